@@ -96,19 +96,22 @@ impl IntegratorDesc {
     /// Whether the algorithm draws scattering under surfaces, or no scattering at all.
     pub fn knows_subsurface(&self) -> bool {
         match self {
-            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::AmbientOcclusion(_) => true,
+            Self::Path(_)
+            | Self::VolPath(_)
+            | Self::SimpleVolPath(_)
+            | Self::AmbientOcclusion(_)
+            | Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Mlt(_)
+            | Self::PhotonMapping(_)
+            | Self::Sppm(_)
+            | Self::Vcm(_) => true,
             // Path tracing takes the place of functions.
             Self::Function(_) => true,
-            Self::Mlt(desc) => desc.technique == MltTechnique::Path,
             Self::RayCasting
             | Self::Whitted(_)
             | Self::RandomWalk(_)
             | Self::SimplePath(_)
-            | Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::PhotonMapping(_)
-            | Self::Sppm(_)
-            | Self::Vcm(_)
             | Self::Radiosity(_) => false,
         }
     }

@@ -111,7 +111,8 @@ impl Builder<'_> {
             integrator.name()
         );
         let warning = Diagnostic::warning("no-subsurface", message, integrator.origin.span);
-        self.diagnostics.push(warning.with_help("`path` and `vol-path` draw it"));
+        self.diagnostics
+            .push(warning.with_help("`path`, `vol-path` and algorithms with light paths draw it"));
     }
 
     /// The sampler of light paths, independent of that of camera paths.

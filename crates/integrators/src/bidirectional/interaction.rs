@@ -5,13 +5,17 @@ use scattering::{Bsdf, BsdfSample, Bxdf, BxdfFlags, Directions, HenyeyGreenstein
 use scene::SurfaceInteraction;
 use spectrum::SampledSpectrum;
 
+use crate::transport::subsurface::Exit;
+
 /// A point of a subpath, before it is a vertex.
 #[expect(clippy::large_enum_variant, reason = "it lives for one vertex, and a box is an allocation")]
-pub(crate) enum Interaction {
+pub(crate) enum Interaction<'a> {
     /// On a surface.
     Surface(SurfaceInteraction),
     /// In a medium.
     Medium(MediumInteraction),
+    /// Where the subpath leaves a body, under the surface of which it went.
+    Exit(Box<Exit<'a>>),
 }
 
 /// A point in a medium that scatters light.
@@ -25,11 +29,12 @@ pub(crate) struct MediumInteraction {
     pub phase: HenyeyGreenstein,
 }
 
-impl Interaction {
+impl Interaction<'_> {
     /// The ray that leaves along a sampled direction.
     pub fn spawn_scattered(&self, from: &RayDifferential, sample: &BsdfSample) -> RayDifferential {
         match self {
             Self::Surface(surface) => surface.spawn_scattered(from, sample),
+            Self::Exit(exit) => exit.surface.spawn_scattered(from, sample),
             Self::Medium(medium) => math::Ray::new(medium.p, sample.wi, from.ray.time).into(),
         }
     }
@@ -73,10 +78,17 @@ impl Law<'_> {
         }
     }
 
-    /// A sampled direction; `None` where there is none.
-    pub fn sample_f(&self, wo: Vector3, uc: f32, u: math::Vec2, mode: TransportMode) -> Option<BsdfSample> {
+    /// A sampled direction, on a surface one of those asked for; `None` where there is none.
+    pub fn sample_f(
+        &self,
+        wo: Vector3,
+        uc: f32,
+        u: math::Vec2,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> Option<BsdfSample> {
         match self {
-            Self::Surface(bsdf) => bsdf.sample_f(wo, uc, u, mode, Directions::All),
+            Self::Surface(bsdf) => bsdf.sample_f(wo, uc, u, mode, directions),
             Self::Medium(phase) => {
                 let (wi, pdf) = phase.sample_p(wo, u);
                 let f = SampledSpectrum::splat(pdf);

@@ -23,6 +23,9 @@
 //! same factor σ_t, which cancels except where merging is involved, and weights may be functions of
 //! the vertices alone.
 //!
+//! Camera subpaths go under the surfaces of bodies of material `subsurface`; `under_surface.rs`
+//! says what that means for the weights.
+//!
 //! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] builds paths from the
 //! vertices. The depth of a vertex is the number of scattering events on its subpath, its own
 //! included: 1 at the first surface. A path whose ends have the depths j and k has j + k scattering
@@ -48,6 +51,7 @@ mod paths;
 mod subpaths;
 #[cfg(test)]
 mod tests;
+mod under_surface;
 mod vertex;
 mod walk;
 

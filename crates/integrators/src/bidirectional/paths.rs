@@ -49,6 +49,9 @@ pub(crate) struct Bidirectional<'a> {
     pub balance: Balance,
     /// Maximum number of scattering events of a path.
     pub max_depth: u32,
+    /// Whether light subpaths go under the surfaces of bodies, too: for algorithms the camera
+    /// subpaths of which end at the first vertices. Their light subpaths have no weights.
+    pub light_goes_under: bool,
     /// Whether to roughen surfaces after the first rough one of each subpath.
     pub regularize: bool,
 }

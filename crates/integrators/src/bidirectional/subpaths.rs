@@ -8,16 +8,16 @@ use super::{Arrival, Bidirectional, Found, Vertex, Walk};
 use crate::transport::Tracer;
 
 /// A vertex or light that a camera subpath hits.
-pub(crate) enum Encounter<'a> {
+pub(crate) enum Encounter<'b, 'a> {
     /// A light that it hit.
     Light(Found),
     /// A vertex.
-    Vertex(&'a Vertex<'a>),
+    Vertex(&'b Vertex<'a>),
 }
 
 impl Bidirectional<'_> {
-    /// Samples a light subpath, and visits the vertices that can be connected. A cancellation cuts
-    /// the subpath off.
+    /// Samples a light subpath, and visits the vertices that can be connected or take photons. A
+    /// cancellation cuts the subpath off.
     pub fn light_subpath<'a>(
         &'a self,
         time: f32,
@@ -26,25 +26,25 @@ impl Bidirectional<'_> {
         mut visit: impl FnMut(&Vertex<'a>, &mut Tracer),
     ) {
         let Some(mut walk) = Walk::from_light(self, time, *lambda, tracer) else { return };
-        while walk.depth < self.max_depth {
+        while walk.depth < self.max_depth || walk.is_under_surface() {
             let Arrival::At(mut interaction) = walk.intersect(tracer) else { return };
             let Some(vertex) = walk.arrive(&mut interaction, tracer) else { continue };
-            if vertex.is_connectible() {
+            if vertex.is_connectible() || vertex.takes_photons() {
                 visit(&vertex, tracer);
             }
-            if !walk.leave(&vertex, &interaction, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer) {
                 return;
             }
         }
     }
 
     /// Samples a camera subpath, and visits every vertex and every light that is hit.
-    pub fn camera_subpath(
-        &self,
+    pub fn camera_subpath<'a>(
+        &'a self,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-        visit: impl FnMut(Encounter, &mut Tracer),
+        visit: impl FnMut(Encounter<'_, 'a>, &mut Tracer),
     ) {
         self.camera_subpath_to(|_| false, camera_ray, lambda, tracer, visit);
     }
@@ -56,7 +56,7 @@ impl Bidirectional<'_> {
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-        mut visit: impl FnMut(Encounter, &mut Tracer),
+        mut visit: impl FnMut(Encounter<'_, 'a>, &mut Tracer),
     ) {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut before: Option<Vertex> = None;
@@ -83,7 +83,7 @@ impl Bidirectional<'_> {
                 return;
             }
             visit(Encounter::Vertex(&vertex), tracer);
-            if is_end(&vertex) || !walk.leave(&vertex, &interaction, tracer.sampler) {
+            if is_end(&vertex) || !walk.leave(&vertex, &interaction, tracer) {
                 return;
             }
             before = Some(vertex);
@@ -102,16 +102,26 @@ impl Bidirectional<'_> {
         Some(walk.follow_to(depth, tracer)?.0)
     }
 
-    /// The vertex where a camera subpath scatters for the `depth`-th time, from 1.
-    pub fn camera_vertex(
-        &self,
+    /// Visits the vertices where a camera subpath scatters for the `depth`-th time, from 1: one, or
+    /// the two between which it goes under a surface.
+    pub fn camera_vertices<'a>(
+        &'a self,
         depth: u32,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-    ) -> Option<Vertex<'_>> {
+        mut visit: impl FnMut(&Vertex<'a>, &mut Tracer),
+    ) {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
-        Some(walk.follow_to(depth, tracer)?.0)
+        let Some((vertex, interaction)) = walk.follow_to(depth, tracer) else { return };
+        visit(&vertex, tracer);
+        if vertex.body().is_some()
+            && walk.scatter(&vertex, &interaction, tracer)
+            && walk.is_under_surface()
+            && let Some((exit, _)) = walk.next(tracer)
+        {
+            visit(&exit, tracer);
+        }
     }
 
     /// The weighted radiance of all lights that a camera subpath hits after `depth` scattering
@@ -125,9 +135,16 @@ impl Bidirectional<'_> {
     ) -> SampledSpectrum {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut l = SampledSpectrum::ZERO;
-        let Some((vertex, interaction)) = walk.follow_to(depth, tracer) else { return l };
-        if !walk.scatter(&vertex, &interaction, tracer.sampler) {
-            return l;
+        let Some((mut vertex, mut interaction)) = walk.follow_to(depth, tracer) else { return l };
+        loop {
+            if !walk.scatter(&vertex, &interaction, tracer) {
+                return l;
+            }
+            if !walk.is_under_surface() {
+                break;
+            }
+            let Some(exit) = walk.next(tracer) else { return l };
+            (vertex, interaction) = exit;
         }
         walk.emitted = SampledSpectrum::ZERO;
         loop {

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use description::{
     AreaLightDesc, CameraKind, LensDesc, MaterialKind, MeshDesc, RoughnessDesc, SceneDesc, ScreenDesc,
-    ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, SubsurfaceScattering, TransformDesc,
 };
 use geometry::RayStats;
 use math::{Bounds2, Normal3, Point2, Point3, Vec2, Vec3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scattering::TransportMode;
+use scattering::{SubsurfaceMethod, TransportMode};
 use scene::camera::{CameraRayDifferential, CameraSample};
 use scene::light::LightId;
 use scene::{Scene, View};
@@ -21,14 +21,22 @@ use crate::{Control, Tracer};
 
 const LIGHT_PATHS: usize = 37;
 
-/// The inside of a cube with two lamps, whose walls are diffuse or rough metal, some of them with
-/// an alpha below 1.
+/// The inside of a cube with two lamps, whose walls are diffuse, rough glass, or bodies that
+/// scatter light under their surface, some of them with an alpha below 1.
 fn room() -> (Scene, View) {
     let mut desc = SceneDesc::default();
-    let rough = RoughnessDesc::isotropic(0.6);
+    let rough = || RoughnessDesc::isotropic(0.6);
     let materials = [
         MaterialKind::Diffuse { reflectance: 0.7.into() },
-        MaterialKind::Dielectric { eta: SpectrumDesc::Constant(1.5), roughness: rough },
+        MaterialKind::Dielectric { eta: SpectrumDesc::Constant(1.5), roughness: rough() },
+        MaterialKind::Subsurface {
+            scattering: SubsurfaceScattering::Coefficients { sigma_a: 0.1.into(), sigma_s: 4.0.into() },
+            scale: 1.0,
+            eta: 1.33,
+            g: 0.0,
+            roughness: rough(),
+            method: SubsurfaceMethod::Diffusion,
+        },
     ]
     .map(|kind| desc.materials.push(kind.into()));
     let mut quad = |corner: Vec3, x: Vec3, y: Vec3, material: usize, alpha: f32, light: Option<f32>| {
@@ -52,7 +60,7 @@ fn room() -> (Scene, View) {
             .enumerate()
     {
         let alpha = [1.0, 1.0, 0.3, 0.6, 1.0, 1.0][i];
-        quad(corner, side_x, side_y, i % 2, alpha, None);
+        quad(corner, side_x, side_y, i % 3, alpha, None);
     }
     quad(Vec3::new(-0.5, -0.5, 0.9), Vec3::Y, Vec3::X, 0, 1.0, Some(5.0));
     quad(Vec3::new(-0.8, -0.2, -0.6), Vec3::Y * 0.2, Vec3::Z * 0.7, 1, 1.0, Some(2.0));
@@ -88,6 +96,7 @@ impl Path<'_> {
     fn scattered(&self, index: usize, from: Point3, to: (Point3, Normal3), mode: TransportMode) -> f64 {
         let vertex = self.surfaces[index];
         let (wo, wi) = ((from - vertex.p.p).normalize(), (to.0 - vertex.p.p).normalize());
+        let wo = if vertex.is_exit { vertex.wo } else { wo };
         per_area(vertex.law.pdf(wo, wi, mode), vertex.p.p, to.0, to.1)
     }
 
@@ -137,6 +146,10 @@ impl Path<'_> {
         let ray = math::Ray::new(self.camera, (to.0 - self.camera).normalize(), 0.0);
         let mut density = per_area(paths.view.camera.pdf_we(&ray).1, self.camera, to.0, to.1);
         for index in ((last + 3 - t).max(1)..=last).rev() {
+            if self.surfaces[index - 1].is_exit {
+                // The way under the surface, which all strategies have.
+                continue;
+            }
             let (from, to) = (self.after(index), self.place(index - 1));
             density *= self.scattered(index, from, to, TransportMode::Radiance);
         }
@@ -149,6 +162,17 @@ impl Path<'_> {
 
     fn density(&self, paths: &Bidirectional, strategy: Strategy) -> f64 {
         let vertices = self.surfaces.len() + 2;
+        let last_of_light = match strategy {
+            Strategy::Connect(s) => s,
+            Strategy::Merge(s) => s - 1,
+        };
+        // Light subpaths do not leave a vertex under its surface.
+        if self.surfaces[..last_of_light.saturating_sub(1).min(self.surfaces.len())]
+            .iter()
+            .any(|surface| surface.is_exit)
+        {
+            return 0.0;
+        }
         match strategy {
             Strategy::Connect(s) => self.light_density(paths, s) * self.camera_density(paths, vertices - s),
             // No merging beyond a diffuse surface, seen from the camera.
@@ -209,6 +233,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
         lights: &lights,
         balance,
         max_depth: 4,
+        light_goes_under: false,
         regularize: false,
     };
     let lambda = SampledWavelengths::sample_visible(0.4);
@@ -300,7 +325,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     }
                 }
             }
-            if !walk.leave(&vertex, &interaction, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer) {
                 break;
             }
         }

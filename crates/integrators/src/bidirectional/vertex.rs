@@ -1,7 +1,7 @@
 //! Vertices of subpaths.
 
 use math::{Normal3, Point3Error, Ray, Vector3};
-use scattering::{BxdfFlags, TransportMode};
+use scattering::{Bsdf, Bxdf, BxdfFlags, Subsurface, TransportMode};
 use scene::light::LightSampleContext;
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
@@ -45,11 +45,13 @@ pub(crate) struct Vertex<'a> {
     pub after_diffuse: bool,
     /// Whether the subpath began in a medium that emits.
     pub begins_in_medium: bool,
+    /// Whether the subpath leaves a body there, under the surface of which it went.
+    pub is_exit: bool,
     /// Whether the subpath carries radiance or importance.
     pub mode: TransportMode,
 }
 
-impl Vertex<'_> {
+impl<'a> Vertex<'a> {
     /// The lobes of its law.
     #[inline]
     pub fn flags(&self) -> BxdfFlags {
@@ -58,7 +60,7 @@ impl Vertex<'_> {
 
     /// The shading normal; zero in a medium.
     #[inline]
-    fn ns(&self) -> Normal3 {
+    pub fn ns(&self) -> Normal3 {
         match &self.law {
             Law::Surface(bsdf) => bsdf.frame.z,
             Law::Medium(_) => Normal3::ZERO,
@@ -98,6 +100,26 @@ impl Vertex<'_> {
             TransportMode::Radiance => !self.after_diffuse,
             TransportMode::Importance => self.depth > 1 || self.begins_in_medium,
         }
+    }
+
+    /// The body under its surface, if the subpath comes from outside.
+    #[inline]
+    pub fn body(&self) -> Option<&Subsurface<'a>> {
+        match &self.law {
+            Law::Surface(Bsdf { bxdf: Bxdf::Subsurface(body), frame })
+                if !self.is_exit && self.wo.dot(frame.z) > 0.0 =>
+            {
+                Some(body)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether photons are stored there: where the lobes, or that by which a camera subpath leaves
+    /// the body, are not all specular. A light subpath that emerges has not arrived by a ray.
+    #[inline]
+    pub fn takes_photons(&self) -> bool {
+        !self.is_exit && (self.is_connectible() || self.body().is_some())
     }
 
     /// Whether it has a diffuse lobe and no specular one, or lies in a medium: camera subpaths

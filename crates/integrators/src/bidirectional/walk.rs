@@ -6,23 +6,28 @@
 //! 1 − q by Russian roulette, where q is the throughput relative to the initial one, at most 1; the
 //! MIS weights ignore it, which costs a little efficiency. A walk to a vertex of a given depth has
 //! no roulette ([`Walk::follow_to`]).
+//!
+//! A camera subpath that is transmitted into a body of material `subsurface` goes on under its
+//! surface (`under_surface.rs`): the next vertex is where it leaves, and has the same
+//! depth.
 
 use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector3};
 use sampling::Sampler;
-use scattering::TransportMode;
+use scattering::{BsdfSample, Directions, Subsurface, TransportMode};
 use scene::camera::CameraRayDifferential;
 use scene::light::LightId;
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::LightPoint;
+use super::under_surface::LightWay;
 use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex};
-use crate::transport::media::FlightEnd;
+use crate::transport::media::{FlightEnd, Heroes};
 use crate::transport::path_state::pass_through;
+use crate::transport::subsurface::{Exit, under_surface};
 use crate::transport::{Tracer, roulette};
 
 /// A subpath between two vertices.
-#[derive(Clone)]
 pub(crate) struct Walk<'a> {
     paths: &'a Bidirectional<'a>,
     /// The ray to the next vertex.
@@ -49,15 +54,17 @@ pub(crate) struct Walk<'a> {
     alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
+    /// Where it leaves a body, if it is under its surface.
+    exit: Option<Box<Exit<'a>>>,
     origin: Origin,
     mode: TransportMode,
 }
 
 /// The end of a ray of a subpath.
 #[expect(clippy::large_enum_variant, reason = "it lives for one vertex, and a box is an allocation")]
-pub(crate) enum Arrival {
+pub(crate) enum Arrival<'a> {
     /// It interacts with the scene.
-    At(Interaction),
+    At(Interaction<'a>),
     /// It leaves the scene.
     Escaped,
     /// A medium absorbed it.
@@ -181,13 +188,17 @@ impl<'a> Walk<'a> {
             alpha: 1.0,
             rough_before: false,
             after_diffuse: false,
+            exit: None,
             origin,
             mode,
         }
     }
 
     /// Where the ray interacts next, or how it ends.
-    pub fn intersect(&mut self, tracer: &mut Tracer) -> Arrival {
+    pub fn intersect(&mut self, tracer: &mut Tracer) -> Arrival<'a> {
+        if let Some(exit) = self.exit.take() {
+            return Arrival::At(Interaction::Exit(exit));
+        }
         let scene = self.paths.scene;
         let hit = tracer.hit(&self.ray.ray);
         let t_max = hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
@@ -220,7 +231,7 @@ impl<'a> Walk<'a> {
 
     /// The vertex of an interaction; `None` if the ray passes the surface and has to be traced
     /// further.
-    pub fn arrive(&mut self, interaction: &mut Interaction, tracer: &mut Tracer) -> Option<Vertex<'a>> {
+    pub fn arrive(&mut self, interaction: &mut Interaction<'a>, tracer: &mut Tracer) -> Option<Vertex<'a>> {
         let (scene, view) = (self.paths.scene, self.paths.view);
         let mut vertex = match interaction {
             Interaction::Surface(surface) => {
@@ -231,6 +242,7 @@ impl<'a> Walk<'a> {
                     self.ray = pass_through(&self.ray, surface, t);
                     return None;
                 };
+                under_surface(&mut bsdf);
                 bsdf.regularize(self.paths.regularize && self.rough_before);
                 let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
                 self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media)
@@ -238,6 +250,15 @@ impl<'a> Walk<'a> {
             Interaction::Medium(MediumInteraction { p, sigma_s, phase }) => {
                 let (p, n, wo) = (Point3Error::exact(*p), Normal3::ZERO, -self.ray.ray.d);
                 self.vertex((p, n, wo), Law::Medium(*phase), *sigma_s, None)
+            }
+            Interaction::Exit(exit) => {
+                let Exit { surface, bsdf, .. } = &**exit;
+                let s = &surface.surface;
+                (self.depth, self.alpha) = (self.depth - 1, 1.0);
+                let law = (Law::Surface(*bsdf), SampledSpectrum::ONE);
+                let vertex = self.vertex((s.p, s.n, s.wo), law.0, law.1, surface.media);
+                // Its partial weights are zero, as if the subpath began there.
+                return Some(Vertex { is_exit: true, ..vertex });
             }
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
@@ -279,38 +300,68 @@ impl<'a> Walk<'a> {
             depth: self.depth,
             after_diffuse: self.after_diffuse,
             begins_in_medium: self.begins_in_medium,
+            is_exit: false,
             mode: self.mode,
         }
     }
 
     /// Leaves a vertex along a direction that it scatters to; `false` if the subpath ends there,
     /// perhaps by Russian roulette.
-    pub fn leave(&mut self, vertex: &Vertex, interaction: &Interaction, sampler: &mut Sampler) -> bool {
-        self.scatter(vertex, interaction, sampler) && self.survive(sampler)
+    pub fn leave(&mut self, vertex: &Vertex, interaction: &Interaction, tracer: &mut Tracer) -> bool {
+        self.scatter(vertex, interaction, tracer) && self.survive(tracer.sampler)
     }
 
-    /// Samples up to the vertex of a depth, without Russian roulette; `None` if the subpath ends
-    /// before.
-    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex<'a>, Interaction)> {
+    /// Samples up to the first vertex of a depth, without Russian roulette; `None` if the subpath
+    /// ends before.
+    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex<'a>, Interaction<'a>)> {
         loop {
-            let Arrival::At(mut interaction) = self.intersect(tracer) else { return None };
-            let Some(vertex) = self.arrive(&mut interaction, tracer) else { continue };
+            let (vertex, interaction) = self.next(tracer)?;
             if vertex.depth == depth {
                 return Some((vertex, interaction));
             }
-            if !self.scatter(&vertex, &interaction, tracer.sampler) {
+            if !self.scatter(&vertex, &interaction, tracer) {
                 return None;
             }
         }
     }
 
+    /// The next vertex, if the subpath has one.
+    pub fn next(&mut self, tracer: &mut Tracer) -> Option<(Vertex<'a>, Interaction<'a>)> {
+        loop {
+            let Arrival::At(mut interaction) = self.intersect(tracer) else { return None };
+            if let Some(vertex) = self.arrive(&mut interaction, tracer) {
+                return Some((vertex, interaction));
+            }
+        }
+    }
+
+    /// Whether the next vertex is where the subpath leaves a body.
+    pub fn is_under_surface(&self) -> bool {
+        self.exit.is_some()
+    }
+
     /// Leaves a vertex along a direction that it scatters to; `false` if it has none.
-    pub fn scatter(&mut self, vertex: &Vertex, interaction: &Interaction, sampler: &mut Sampler) -> bool {
-        let (uc, u) = (sampler.get_1d(), sampler.get_2d());
-        let Some(sample) = vertex.law.sample_f(vertex.wo, uc, u, vertex.mode) else {
+    pub fn scatter(&mut self, vertex: &Vertex, interaction: &Interaction, tracer: &mut Tracer) -> bool {
+        let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
+        let body = vertex.body();
+        let way = match body {
+            Some(body) if self.paths.light_goes_under && vertex.mode == TransportMode::Importance => {
+                LightWay::choose(body, vertex, uc)
+            }
+            _ => LightWay { directions: Some(Directions::All), probability: 1.0, uc },
+        };
+        let Some(directions) = way.directions else {
+            self.scale(SampledSpectrum::splat(1.0 / way.probability));
+            return self.go_under(body, None, interaction, tracer);
+        };
+        let Some(sample) = vertex.law.sample_f(vertex.wo, way.uc, u, vertex.mode, directions) else {
             return false;
         };
-        let scale = sample.f * (vertex.cosine(sample.wi) / sample.pdf);
+        let scale = sample.f * (vertex.cosine(sample.wi) / (sample.pdf * way.probability));
+        if body.is_some() && vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
+            self.scale(scale);
+            return self.go_under(body, Some(&sample), interaction, tracer);
+        }
         let cos_theta = vertex.cos_theta(sample.wi);
         let balance = self.paths.balance;
         self.partial = if sample.flags.is_specular() {
@@ -321,8 +372,7 @@ impl<'a> Walk<'a> {
         };
         self.rough_before |= !sample.flags.is_specular();
         self.after_diffuse |= vertex.is_diffuse();
-        self.beta *= scale;
-        self.share *= scale;
+        self.scale(scale);
         if vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
             self.share *= sample.eta * sample.eta;
         }
@@ -331,6 +381,34 @@ impl<'a> Walk<'a> {
         self.medium = vertex.medium_towards(sample.wi);
         self.ray = interaction.spawn_scattered(&self.ray, &sample);
         !self.beta.is_black()
+    }
+
+    /// Goes on under the surface of a body: a camera subpath by a sample of its boundary, a light
+    /// subpath without. `false` if the subpath ends there.
+    fn go_under(
+        &mut self,
+        body: Option<&Subsurface>,
+        sample: Option<&BsdfSample>,
+        interaction: &Interaction,
+        tracer: &mut Tracer,
+    ) -> bool {
+        let (Some(body), Interaction::Surface(entry)) = (body, interaction) else { return false };
+        let u = tracer.sampler.get_1d();
+        let heroes = Heroes::by_throughput(self.beta, self.lambda.secondary_terminated(), u);
+        let exit = match sample {
+            Some(sample) => tracer.exit(entry, body, sample, &heroes),
+            None => tracer.emerge(self.paths.scene, entry, body, &self.lambda, &heroes),
+        };
+        let Some(exit) = exit else { return false };
+        self.scale(exit.value / heroes.mean(exit.density));
+        self.exit = Some(Box::new(exit));
+        !self.beta.is_black()
+    }
+
+    /// Multiplies the throughput.
+    fn scale(&mut self, scale: SampledSpectrum) {
+        self.beta *= scale;
+        self.share *= scale;
     }
 
     /// Russian roulette.

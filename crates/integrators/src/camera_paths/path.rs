@@ -12,15 +12,14 @@
 
 use description::PathDesc;
 use math::RayDifferential;
-use scattering::{Bsdf, BsdfSample, Subsurface, each_bxdf};
-use scene::{Interfaces, Scene, SurfaceInteraction, View};
+use scattering::{Bsdf, each_bxdf};
+use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::PathsFrom;
 use crate::transport::direct::{DirectLighting, light_context};
-use crate::transport::media::Heroes;
 use crate::transport::path_state::{PathState, Scattered};
-use crate::transport::subsurface::{enters, under_surface};
+use crate::transport::subsurface::{Exit, enters, under_surface};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing.
@@ -38,23 +37,15 @@ impl Path {
         Self { settings, interfaces, direct: DirectLighting::none(interfaces) }
     }
 
-    /// Leads a path that has entered a body at `entry` out of it again; returns the direct light
+    /// Leads a path out of a body under the surface of which it has gone; returns the direct light
     /// where it leaves, and whether it goes on.
-    fn under_surface(
+    fn leave_body(
         &self,
         tracer: &mut Tracer,
         path: &mut PathState,
-        entry: &SurfaceInteraction,
-        (body, sample): (&Subsurface, &BsdfSample),
+        exit: &Exit,
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
-        let u = tracer.sampler.get_1d();
-        let heroes = Heroes::by_throughput(path.beta, lambda.secondary_terminated(), u);
-        let Some(exit) = tracer.exit(entry, body, sample, &heroes) else {
-            return (SampledSpectrum::ZERO, false);
-        };
-        path.beta *= exit.value / heroes.mean(exit.density);
-        path.eta_scale /= body.boundary.eta * body.boundary.eta;
         let context = light_context(&exit.surface, exit.bsdf.flags());
         let l = path.beta * self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
         let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
@@ -108,15 +99,19 @@ impl PathsFrom for Path {
             });
             let Some(scattered) = scattered else { return l };
             rough_before |= !scattered.sample.flags.is_specular();
-            path.scatter(&surface, context, &scattered);
             if let Some(body) = body.filter(|_| enters(&surface, &scattered.sample)) {
-                let entered = (&body, &scattered.sample);
-                let (left, goes_on) = self.under_surface(tracer, &mut path, &surface, entered, lambda);
+                let entry = (&surface, context);
+                let Some(exit) = path.go_under(tracer, entry, (&body, &scattered), lambda) else {
+                    return l;
+                };
+                let (left, goes_on) = self.leave_body(tracer, &mut path, &exit, lambda);
                 l += left;
                 if !goes_on {
                     return l;
                 }
                 rough_before = true;
+            } else {
+                path.scatter(&surface, context, &scattered);
             }
             if !path.survives(tracer.sampler) {
                 return l;

@@ -18,20 +18,27 @@
 //! depth 0, are rendered by one camera ray per pixel, since infinite lights are not vertices of
 //! subpaths.
 //!
+//! Light subpaths go under the surfaces of bodies of material `subsurface`
+//! (`bidirectional/under_surface.rs`). Where they come out of a random walk they are not connected:
+//! a camera ray that meets such a body makes the walk, and those through other bodies that it comes
+//! to directly, and the vertices of the light subpath are connected to the end of each.
+//!
 //! Unbiased for paths that it can sample. Unbounded surfaces are black beyond the scene's bounds
 //! where light comes from infinity (`unbounded.rs`). A light subpath that a cancellation cuts off
 //! has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
+use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::{Diagnostic, LightTracingDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
+use scattering::{Subsurface, SubsurfaceMethod};
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
-use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::light_paths::unbounded;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
@@ -89,9 +96,9 @@ impl Integrator for LightTracing {
             lights: &self.lights,
             balance: Balance::connecting(film.pixel_bounds().area() as f32),
             max_depth: self.settings.max_depth,
+            light_goes_under: true,
             regularize: false,
         };
-        let seen = Bidirectional { max_depth: 0, ..paths };
         let filter = film.filter().clone();
         let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
@@ -99,6 +106,29 @@ impl Integrator for LightTracing {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
+            let (mut l, mut exits) = (SampledSpectrum::ZERO, Vec::new());
+            if let Some(camera_ray) = &sample.camera_ray {
+                let walks = Cell::new(0);
+                let is_end = |vertex: &Vertex| {
+                    let walks_on = |body: &Subsurface| body.method == SubsurfaceMethod::RandomWalk;
+                    // A body of greater depth is seen by reflection.
+                    let is_next = vertex.depth == walks.get() + 1 && vertex.body().is_some_and(walks_on);
+                    !(vertex.is_exit || is_next)
+                };
+                paths.camera_subpath_to(is_end, camera_ray, lambda, tracer, |encounter, tracer| {
+                    match encounter {
+                        Encounter::Light(found) if found.t == 2 => l += found.l,
+                        Encounter::Vertex(vertex) if vertex.is_exit => {
+                            if let Some(found) = paths.direct(vertex, lambda, tracer) {
+                                l += found.l;
+                            }
+                            walks.set(vertex.depth);
+                            exits.push(*vertex);
+                        }
+                        _ => (),
+                    }
+                });
+            }
             let (mut reached, rays_before) = (0, tracer.stats.rays);
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
@@ -107,19 +137,16 @@ impl Integrator for LightTracing {
                         seen.splat(&splatter, &seen.found.l, lambda);
                         reached += 1;
                     }
+                    for exit in exits.iter().filter(|exit| exit.depth + vertex.depth <= paths.max_depth) {
+                        if let Some(found) = paths.connect(exit, vertex, lambda, tracer) {
+                            l += found.l;
+                        }
+                    }
                 });
             });
             splatter.add_paths(1);
             self.rays.fetch_add(tracer.stats.rays - rays_before, Ordering::Relaxed);
             self.reached.fetch_add(reached, Ordering::Relaxed);
-            let mut l = SampledSpectrum::ZERO;
-            if let Some(camera_ray) = &sample.camera_ray {
-                seen.camera_subpath(camera_ray, lambda, tracer, |encounter, _| {
-                    if let Encounter::Light(found) = encounter {
-                        l += found.l;
-                    }
-                });
-            }
             l
         })?;
         Ok(stats)

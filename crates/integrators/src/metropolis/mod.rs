@@ -150,7 +150,9 @@ impl Integrator for Mlt {
             Technique::Path(path) => &CameraPaths { film: domain, path: &**path },
             Technique::Bdpt(lights) => {
                 let balance = Balance::connecting(domain.area());
-                let paths = Bidirectional { scene, view, lights, balance, max_depth, regularize };
+                let light_goes_under = false;
+                let paths =
+                    Bidirectional { scene, view, lights, balance, max_depth, light_goes_under, regularize };
                 &ConnectedPaths { film: domain, paths }
             }
         };

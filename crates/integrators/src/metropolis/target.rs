@@ -162,15 +162,20 @@ impl ConnectedPaths<'_> {
         let l = if s == 0 {
             paths.lights_met(t - 2, camera_ray, lambda, tracer)
         } else {
-            let vertex = paths.camera_vertex(t - 1, camera_ray, lambda, tracer)?;
-            if !vertex.is_connectible() {
-                return None;
-            }
-            let found = match s {
-                1 => tracer.with_sampler(connection, |tracer| paths.direct(&vertex, lambda, tracer))?,
-                _ => paths.connect(&vertex, &light_vertex(tracer)?, lambda, tracer)?,
-            };
-            found.weighted()
+            let (mut l, mut from_light) = (SampledSpectrum::ZERO, None);
+            paths.camera_vertices(t - 1, camera_ray, lambda, tracer, |vertex, tracer| {
+                if !vertex.is_connectible() {
+                    return;
+                }
+                let found = if s == 1 {
+                    tracer.with_sampler(connection, |tracer| paths.direct(vertex, lambda, tracer))
+                } else {
+                    let light = from_light.get_or_insert_with(|| light_vertex(tracer));
+                    light.as_ref().and_then(|light| paths.connect(vertex, light, lambda, tracer))
+                };
+                l += found.map_or(SampledSpectrum::ZERO, |found| found.weighted());
+            });
+            l
         };
         Some((end.film.into(), l * self.film.area()))
     }

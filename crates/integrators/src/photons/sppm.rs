@@ -7,7 +7,8 @@
 //! radius. Before its end the path samples lights like path tracing, by next-event estimation and
 //! by BSDF sampling, weighted by the balance heuristic; at its end by next-event estimation only,
 //! so that no light path counts twice. A surface with a specular lobe besides a diffuse one does
-//! not end the path.
+//! not end the path. Where a path leaves a body of material `subsurface` it ends as at a diffuse
+//! surface; photons go under surfaces, too.
 //!
 //! Its strength is caustics seen through glass or in a mirror; all pixels share all photons. It is
 //! slow where photons are rare: in large scenes of which the camera sees a small part. Caustics on
@@ -101,10 +102,12 @@ impl Integrator for Sppm {
             lights: &self.lights,
             balance: Balance::at_the_end(photon_paths, self.merging.radius(pass)),
             max_depth: self.settings.max_depth,
+            light_goes_under: true,
             regularize: false,
         };
         let photon = |vertex: &Vertex, _: &mut Sampler| {
-            (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
+            let may_end_there = vertex.is_diffuse() || vertex.body().is_some();
+            (vertex.can_merge() && vertex.takes_photons() && may_end_there).then(|| LightVertex::from(vertex))
         };
         // All paths take samples of one sequence, so that the photons of a pass are stratified.
         let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());

@@ -135,6 +135,7 @@ impl Integrator for Vcm {
             lights: &self.lights,
             balance: Balance::merging(pixel_count, photon_paths, self.merging.radius(pass)),
             max_depth: self.settings.max_depth,
+            light_goes_under: false,
             regularize: false,
         };
         let light_sampler = |pixel| {

@@ -19,4 +19,5 @@ mod photon_mapping;
 
 mod session;
 mod subsurface;
+mod subsurface_light_paths;
 mod support;

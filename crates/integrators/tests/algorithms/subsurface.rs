@@ -3,8 +3,8 @@
 use alhazen_integrators::{Path, RayIntegrator, SimplePath, VolPath, build};
 use description::{
     BdptDesc, CoefficientsDesc, IntegratorDesc, LightKind, MaterialKind, MediumDesc, MediumInterface,
-    MediumKind, MltDesc, MltTechnique, PathDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind,
-    SimplePathDesc, SubsurfaceScattering,
+    MediumKind, PathDesc, RadiosityDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc,
+    SubsurfaceScattering,
 };
 use math::Point3;
 use scattering::SubsurfaceMethod::{Diffusion, RandomWalk};
@@ -156,14 +156,12 @@ fn algorithms_without_a_bssrdf_warn() {
         build(&desc).ok().unwrap().warnings
     };
     let path = PathDesc::default();
-    let over_paths = MltDesc { technique: MltTechnique::Path, ..MltDesc::default() };
-    for knows in [IntegratorDesc::Path(path), IntegratorDesc::VolPath(path), IntegratorDesc::Mlt(over_paths)]
-    {
+    let bdpt = IntegratorDesc::Bdpt(BdptDesc::default());
+    for knows in [IntegratorDesc::Path(path), IntegratorDesc::VolPath(path), bdpt] {
         assert_eq!(warnings(knows), []);
     }
     for (name, lacks) in [
-        ("bdpt", IntegratorDesc::Bdpt(BdptDesc::default())),
-        ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
+        ("radiosity", IntegratorDesc::Radiosity(RadiosityDesc::default())),
         ("ray-casting", IntegratorDesc::RayCasting),
     ] {
         let [warning] = &warnings(lacks)[..] else { panic!("one warning for `{name}`") };

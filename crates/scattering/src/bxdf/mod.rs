@@ -26,7 +26,7 @@ pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
 pub use openpbr::{OpenPbr, OpenPbrParameters};
 pub use scatter::{BsdfSample, Scatter};
-pub use subsurface::{Subsurface, SubsurfaceMethod};
+pub use subsurface::{Subsurface, SubsurfaceMethod, SubsurfacePart};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};

@@ -5,14 +5,19 @@
 //! f = f_boundary + (1 − Fr(ωo)) ρ (1 − Fr(ωi))/(c π)
 //! ```
 //!
-//! the limit of a short mean free path. Algorithms that follow paths under the surface take the
-//! boundary and the [`Bssrdf`] apart. The body is opaque from inside.
+//! the limit of a short mean free path. This body is opaque from inside.
+//!
+//! Algorithms that follow paths under the surface take its parts apart. Then light passes the
+//! boundary by refraction from outside to inside only, to be seen from there: what comes out has
+//! been scattered under the surface ([`Bssrdf`]).
 
 use super::{BsdfSample, Dielectric, NormalizedFresnel, Scatter};
 use crate::{Bssrdf, BxdfFlags, Directions, TransportMode, fr_dielectric};
 use math::{Vec2, Vector3};
+use sampling::HashSequence;
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
+use std::f32::consts::FRAC_1_PI;
 
 /// How light is followed under a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +29,24 @@ pub enum SubsurfaceMethod {
     RandomWalk,
 }
 
+/// What of a body scatters light at a point of its surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SubsurfacePart {
+    /// All of it, as if light left where it entered.
+    #[default]
+    Whole,
+    /// The boundary. A direction that is sampled from above to below, for radiance, is the
+    /// beginning of a path under the surface; as light does not pass there by refraction, the value
+    /// is zero.
+    Boundary,
+    /// The boundary where light leaves that has been diffused under it: its transmission from all
+    /// directions inside over π, which is estimated by one of them.
+    Diffused,
+    /// The boundary where light leaves that comes from a direction inside. It can only be sampled,
+    /// for importance; the value is zero.
+    Leaving,
+}
+
 /// A boundary and what is under it.
 #[derive(Clone, Copy, Debug)]
 pub struct Subsurface<'a> {
@@ -33,6 +56,10 @@ pub struct Subsurface<'a> {
     pub bssrdf: Bssrdf<'a>,
     /// How light is followed under it.
     pub method: SubsurfaceMethod,
+    /// What of it scatters light.
+    pub part: SubsurfacePart,
+    /// Chooses the estimates of diffused light, see [`Scatter::seed`].
+    pub seed: u32,
 }
 
 impl Subsurface<'_> {
@@ -43,7 +70,7 @@ impl Subsurface<'_> {
 
     /// The probability to sample the boundary, and not the base, of an albedo.
     fn boundary_probability(&self, wo: Vector3, albedo: SampledSpectrum) -> f32 {
-        if !self.boundary.flags().is_reflective() {
+        if self.part == SubsurfacePart::Diffused || !self.boundary.flags().is_reflective() {
             return 0.0;
         }
         let reflected = fr_dielectric(wo.z, self.boundary.eta);
@@ -57,10 +84,26 @@ impl Subsurface<'_> {
         let (lobe, albedo) = self.base();
         lobe.f(wo, wi, mode) * albedo * (1.0 - fr_dielectric(wo.z, self.boundary.eta))
     }
+
+    /// The value of the base where light leaves to `wi`: the transmission from there.
+    fn left(&self, wi: Vector3) -> f32 {
+        let mut sequence = HashSequence::new([self.seed, wi.x.to_bits(), wi.y.to_bits(), wi.z.to_bits()]);
+        let (uc, u) = (sequence.get_1d(), sequence.get_2d());
+        let mode = TransportMode::Importance;
+        let sample = self.boundary.sample_f(wi, uc, u, mode, Directions::Transmission);
+        let passes = if sample.valid { sample.f[0] * sample.wi.z.abs() / sample.pdf } else { 0.0 };
+        passes * FRAC_1_PI
+    }
 }
 
 impl Scatter for Subsurface<'_> {
     fn flags(&self) -> BxdfFlags {
+        match self.part {
+            SubsurfacePart::Whole => (),
+            SubsurfacePart::Boundary => return self.boundary.flags(),
+            SubsurfacePart::Diffused => return BxdfFlags::DIFFUSE_REFLECTION,
+            SubsurfacePart::Leaving => return BxdfFlags::SPECULAR_TRANSMISSION,
+        }
         let kinds = [BxdfFlags::GLOSSY_REFLECTION, BxdfFlags::SPECULAR_REFLECTION];
         let boundary = self.boundary.flags();
         let reflects = kinds.into_iter().find(|&kind| boundary.contains(kind));
@@ -68,10 +111,13 @@ impl Scatter for Subsurface<'_> {
     }
 
     fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
-        if !(wo.z > 0.0 && wi.z > 0.0) {
-            return SampledSpectrum::ZERO;
+        let is_above = wo.z > 0.0 && wi.z > 0.0;
+        match self.part {
+            SubsurfacePart::Whole if is_above => self.boundary.f(wo, wi, mode) + self.diffused(wo, wi, mode),
+            SubsurfacePart::Boundary if !leaves(wo, wi, mode) => self.boundary.f(wo, wi, mode),
+            SubsurfacePart::Diffused if is_above => SampledSpectrum::splat(self.left(wi)),
+            _ => SampledSpectrum::ZERO,
         }
-        self.boundary.f(wo, wi, mode) + self.diffused(wo, wi, mode)
     }
 
     fn sample_f(
@@ -82,6 +128,21 @@ impl Scatter for Subsurface<'_> {
         mode: TransportMode,
         directions: Directions,
     ) -> BsdfSample {
+        let enters = mode == TransportMode::Radiance;
+        match self.part {
+            SubsurfacePart::Boundary => {
+                let sample = self.boundary.sample_f(wo, uc, u, mode, directions);
+                return BsdfSample {
+                    valid: sample.valid && (enters || !leaves(wo, sample.wi, mode)),
+                    ..sample
+                };
+            }
+            SubsurfacePart::Leaving if wo.z < 0.0 && !enters && directions.transmission() => {
+                return self.boundary.sample_f(wo, uc, u, mode, Directions::Transmission);
+            }
+            SubsurfacePart::Leaving => return BsdfSample::invalid(),
+            SubsurfacePart::Whole | SubsurfacePart::Diffused => (),
+        }
         if !(wo.z > 0.0 && directions.reflection()) {
             return BsdfSample::invalid();
         }
@@ -100,8 +161,18 @@ impl Scatter for Subsurface<'_> {
     }
 
     fn pdf(&self, wo: Vector3, wi: Vector3, mode: TransportMode, directions: Directions) -> f32 {
-        if !(wo.z > 0.0 && wi.z > 0.0 && directions.reflection()) {
+        let samples = match self.part {
+            SubsurfacePart::Boundary => mode == TransportMode::Radiance || !leaves(wo, wi, mode),
+            SubsurfacePart::Leaving => false,
+            SubsurfacePart::Whole | SubsurfacePart::Diffused => {
+                wo.z > 0.0 && wi.z > 0.0 && directions.reflection()
+            }
+        };
+        if !samples {
             return 0.0;
+        }
+        if self.part == SubsurfacePart::Boundary {
+            return self.boundary.pdf(wo, wi, mode, directions);
         }
         let p = self.boundary_probability(wo, self.bssrdf.effective_albedo());
         let boundary = self.boundary.pdf(wo, wi, mode, Directions::Reflection);
@@ -111,4 +182,17 @@ impl Scatter for Subsurface<'_> {
     fn regularize(&mut self, mask: bool) {
         self.boundary.regularize(mask);
     }
+
+    fn seed(&mut self, seed: u32) {
+        self.seed = seed;
+    }
+}
+
+/// Whether light goes from below to above.
+fn leaves(wo: Vector3, wi: Vector3, mode: TransportMode) -> bool {
+    let (from, to) = match mode {
+        TransportMode::Radiance => (wi, wo),
+        TransportMode::Importance => (wo, wi),
+    };
+    from.z < 0.0 && to.z > 0.0
 }

@@ -2,7 +2,7 @@
 
 use alhazen_scattering::{
     Bssrdf, BssrdfTable, Bxdf, Dielectric, Directions, NormalizedFresnel, Scatter, Subsurface,
-    SubsurfaceMethod, TransportMode, TrowbridgeReitz,
+    SubsurfaceMethod, SubsurfacePart, TransportMode, TrowbridgeReitz,
 };
 use math::{Vec2, Vec3, Vector3, spherical_direction};
 use spectrum::SampledSpectrum;
@@ -21,7 +21,8 @@ fn bssrdf(table: &'static BssrdfTable) -> Bssrdf<'static> {
 
 fn body(table: &'static BssrdfTable, alpha: f32) -> Bxdf<'static> {
     let boundary = Dielectric { eta: table.eta(), distribution: TrowbridgeReitz::new(alpha, alpha) };
-    Subsurface { boundary, bssrdf: bssrdf(table), method: SubsurfaceMethod::Diffusion }.into()
+    let (method, part) = (SubsurfaceMethod::Diffusion, SubsurfacePart::Whole);
+    Subsurface { boundary, bssrdf: bssrdf(table), method, part, seed: 0 }.into()
 }
 
 /// Bodies with smooth and rough boundaries.
@@ -163,5 +164,72 @@ fn bodies_conserve_energy() {
             let albedo = bxdf.rho_hd(wo, samples);
             assert!(albedo.max_component() < 1.01, "{bxdf:?} from {wo}: {albedo:?}");
         }
+    }
+}
+
+/// Light passes the boundary inwards by refraction; what leaves is sampled from a direction inside.
+#[test]
+fn parts_of_a_boundary_add_up() {
+    let mut random = Random::new(9);
+    let boundary = Dielectric { eta: WATER.eta(), distribution: TrowbridgeReitz::new(0.4, 0.4) };
+    let (bssrdf, method) = (bssrdf(&WATER), SubsurfaceMethod::Diffusion);
+    let of = |part| Subsurface { boundary, bssrdf, method, part, seed: 0 };
+    let [entered, left] = [SubsurfacePart::Boundary, SubsurfacePart::Leaving].map(of);
+    let mut seen = [0; 2];
+    for _ in 0..2000 {
+        let [light, eye] = [0, 1].map(|_| {
+            let [u, v] = random.get_2d();
+            let z = 1.0 - 2.0 * u;
+            spherical_direction((1.0 - z * z).sqrt(), z, TAU * v)
+        });
+        let leaves = light.z < 0.0 && eye.z > 0.0;
+        for (wo, wi, mode) in [(eye, light, TransportMode::Radiance), (light, eye, TransportMode::Importance)]
+        {
+            let f = if leaves { SampledSpectrum::ZERO } else { boundary.f(wo, wi, mode) };
+            assert_eq!(entered.f(wo, wi, mode), f);
+        }
+        let (mode, uc, u) = (TransportMode::Importance, random.get_1d(), random.get_2d().into());
+        let sample = entered.sample_f(light, uc, u, mode, Directions::All);
+        if sample.valid {
+            let pdf = entered.pdf(light, sample.wi, mode, Directions::All);
+            assert!((sample.pdf - pdf).abs() <= 1e-3 * pdf, "{sample:?} {pdf}");
+            seen[0] += 1;
+        }
+        let sample = left.sample_f(light, uc, u, mode, Directions::All);
+        assert!(!sample.valid || light.z < 0.0 && sample.wi.z > 0.0);
+        seen[1] += usize::from(sample.valid);
+    }
+    assert!(seen[0] > 1000 && seen[1] > 300, "{seen:?}");
+}
+
+/// Diffused light leaves as the boundary transmits it from all directions inside.
+#[test]
+fn diffused_light_leaves_by_the_transmission_of_the_boundary() {
+    let of = |alpha: f32| {
+        let boundary = Dielectric { eta: WATER.eta(), distribution: TrowbridgeReitz::new(alpha, alpha) };
+        let (method, part) = (SubsurfaceMethod::Diffusion, SubsurfacePart::Diffused);
+        Subsurface { boundary, bssrdf: bssrdf(&WATER), method, part, seed: 0 }
+    };
+    let mut random = Random::new(10);
+    for (theta, alpha) in [(0.0f32, 0.4), (0.6, 0.4), (1.2, 0.4), (0.0, 0.0), (1.3, 0.0)] {
+        let mut body = of(alpha);
+        let wi = spherical_direction(theta.sin(), theta.cos(), 0.3);
+        let values: Moments = (0..40_000)
+            .map(|seed| {
+                body.seed(seed);
+                f64::from(body.f(Vec3::Z, wi, TransportMode::Importance)[0])
+            })
+            .collect();
+        let passes: Moments = (0..40_000)
+            .map(|_| {
+                let (uc, u, mode) = (random.get_1d(), random.get_2d().into(), TransportMode::Importance);
+                let sample = body.boundary.sample_f(wi, uc, u, mode, Directions::All);
+                let passes = sample.valid && sample.flags.is_transmissive();
+                if passes { f64::from(sample.f[0] * sample.wi.z.abs() / sample.pdf) } else { 0.0 }
+            })
+            .collect();
+        let error = (values.variance_of_mean() + passes.variance_of_mean()).sqrt();
+        let difference = values.mean * std::f64::consts::PI - passes.mean;
+        assert!(difference.abs() < 5.0 * error + 1e-4, "{theta} {alpha}: {values:?} {passes:?}");
     }
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use super::Roughness;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
-use scattering::{Bssrdf, BssrdfTable, Dielectric, Subsurface, SubsurfaceMethod};
+use scattering::{Bssrdf, BssrdfTable, Dielectric, Subsurface, SubsurfaceMethod, SubsurfacePart};
 use spectrum::SampledWavelengths;
 
 /// A body that scatters light under its surface.
@@ -76,6 +76,8 @@ impl SubsurfaceMaterial {
             boundary: Dielectric { eta: self.table.eta(), distribution },
             bssrdf,
             method: self.method,
+            part: SubsurfacePart::Whole,
+            seed: 0,
         }
     }
 }

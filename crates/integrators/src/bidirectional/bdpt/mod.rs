@@ -86,6 +86,7 @@ impl Integrator for Bdpt {
             lights: &self.lights,
             balance: Balance::connecting(pixel_count as f32),
             max_depth: self.settings.max_depth,
+            light_goes_under: false,
             regularize: self.settings.regularize,
         };
         let filter = film.filter().clone();

@@ -3,7 +3,9 @@
 //! Light subpaths start at lights in proportion to their power and are scattered by BSDF sampling,
 //! so that all photons carry about the same power and are dense where light is bright. The photon
 //! at the first surface that is not purely specular is direct light if no surface comes before it,
-//! and a caustic if specular surfaces do; later photons are indirect light.
+//! and a caustic if specular surfaces do; later photons are indirect light. A body of material
+//! `subsurface` stores photons, too, but one with a smooth boundary reflects light as a mirror
+//! does. Light that goes under its surface is indirect from there on.
 
 use geometry::RayStats;
 use image::require_memory;
@@ -105,19 +107,19 @@ impl Emission<'_> {
             return;
         };
         let mut first = true;
-        while walk.depth < self.paths.max_depth {
+        while walk.depth < self.paths.max_depth || walk.is_under_surface() {
             let Arrival::At(mut interaction) = walk.intersect(tracer) else { return };
             let Some(vertex) = walk.arrive(&mut interaction, tracer) else { continue };
-            if vertex.is_connectible() {
-                if kind.keeps(&vertex, first) {
-                    visit(&vertex, tracer);
-                }
+            if vertex.takes_photons() && kind.keeps(&vertex, first) {
+                visit(&vertex, tracer);
+            }
+            if vertex.is_connectible() || vertex.is_exit {
                 if kind == Kind::Caustic {
                     return;
                 }
                 first = false;
             }
-            if !walk.leave(&vertex, &interaction, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer) {
                 return;
             }
         }
@@ -161,7 +163,9 @@ mod tests {
     fn emit((scene, view): &(Scene, View), kind: Kind, max_depth: u32) -> Vec<Photon> {
         let lights = Lights::of(scene, &Control::default()).unwrap();
         let balance = Balance::connecting(1.0);
-        let paths = Bidirectional { scene, view, lights: &lights, balance, max_depth, regularize: false };
+        let (light_goes_under, regularize) = (true, false);
+        let paths =
+            Bidirectional { scene, view, lights: &lights, balance, max_depth, light_goes_under, regularize };
         let shutter = ShutterSample::new(view, 0.3, 0.0);
         let emission = Emission { paths: &paths, shutter, seed: 5, generation: 2 };
         let keep = |vertex: &Vertex, _: &mut Tracer| Photon::at(vertex);

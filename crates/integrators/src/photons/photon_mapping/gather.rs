@@ -16,6 +16,8 @@
 //! A point in a medium that scatters the path is treated as a diffuse surface is, with photons in
 //! the ball around it and the phase function in place of the BSDF.
 //!
+//! A ray that goes under the surface of a body scatters as at a diffuse surface where it leaves it.
+//!
 //! With a final gather, the global map holds photons of all kinds and is looked up one surface
 //! later: rays leave the diffuse surface along directions of its BSDF, and at the next surface that
 //! is not purely specular the map estimates all reflected radiance.
@@ -36,6 +38,7 @@ use crate::transport::Tracer;
 use crate::transport::direct::{DirectLighting, MediumVertex, light_context};
 use crate::transport::media::FlightEnd;
 use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
+use crate::transport::subsurface::{enters, under_surface};
 
 /// Photons count if the cosine between their normal and that of the gather point is at least this.
 const SAME_SURFACE: f32 = 0.7;
@@ -175,7 +178,7 @@ impl Gather<'_> {
                 let emitted = direct.emitted(scene, &surface, path.origin.as_ref(), &lambda);
                 l += known(path.beta * emitted, &lambda);
             }
-            let Some(bsdf) = tracer.bsdf(&mut surface, &path.ray, &mut lambda) else {
+            let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, &mut lambda) else {
                 path.pass_through(&surface, t);
                 continue;
             };
@@ -184,33 +187,25 @@ impl Gather<'_> {
             }
             path.depth += 1;
 
-            let flags = bsdf.flags();
-            let context = light_context(&surface, flags);
-            let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
-                let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if sought == Sought::Radiance && flags.is_non_specular() {
-                    let vertex = (&surface, &context);
-                    if let Some(light) = direct.connect(scene, tracer.sampler, vertex, &bsdf, &lambda) {
-                        let medium = surface.medium_towards(light.ray.d, path.medium);
-                        l += known(path.beta * light.arriving(medium, &lambda, tracer), &lambda);
-                    }
-                }
-                Scattered::sample(&surface, &bsdf, tracer.sampler)
-            });
-            if flags.is_non_specular() {
-                let point =
-                    GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
-                if sought == Sought::Reflected {
-                    l += path.beta * self.reflected(&self.maps.global, &point);
-                } else {
-                    l += path.beta * self.reflected(&self.maps.caustic, &point);
-                    if flags.is_diffuse() {
-                        l += path.beta * self.indirect(&path, &point, tracer);
-                    }
-                }
+            let body = under_surface(&mut bsdf);
+            let point = GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
+            let (found, scattered) = self.at_surface(&path, &point, sought, tracer);
+            l += found;
+            let Some(mut scattered) = scattered else { return l };
+            let mut flags = bsdf.flags();
+            let mut context = light_context(&surface, flags);
+            if let Some(body) = body.filter(|_| enters(&surface, &scattered.sample)) {
+                let entry = (&surface, context);
+                let Some(exit) = path.go_under(tracer, entry, (&body, &scattered), &lambda) else {
+                    return l;
+                };
+                let point = GatherPoint { surface: &exit.surface, bsdf: &exit.bsdf, ..point };
+                let (found, again) = self.at_surface(&path, &point, sought, tracer);
+                l += found;
+                let Some(again) = again else { return l };
+                (flags, context) = (exit.bsdf.flags(), light_context(&exit.surface, exit.bsdf.flags()));
+                (scattered, surface) = (again, exit.surface);
             }
-
-            let Some(scattered) = scattered else { return l };
             if scattered.sample.flags.is_specular() {
                 // The photon maps do not include light for specular lobes.
                 emission_is_known &= !flags.is_non_specular();
@@ -228,6 +223,44 @@ impl Gather<'_> {
                 return l;
             }
         }
+    }
+
+    /// The light that a surface scatters along the path, except what the scattered ray finds, and
+    /// this ray.
+    fn at_surface(
+        &self,
+        path: &PathState,
+        point: &GatherPoint,
+        sought: Sought,
+        tracer: &mut Tracer,
+    ) -> (SampledSpectrum, Option<Scattered>) {
+        let &GatherPoint { surface, bsdf, lambda, .. } = point;
+        let flags = bsdf.flags();
+        let mut l = SampledSpectrum::ZERO;
+        let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
+            let bsdf = Bsdf { bxdf, frame: bsdf.frame };
+            if sought == Sought::Radiance && flags.is_non_specular() {
+                let context = light_context(surface, flags);
+                let found =
+                    self.direct.connect(tracer.scene, tracer.sampler, (surface, &context), &bsdf, lambda);
+                if let Some(light) = found {
+                    let medium = surface.medium_towards(light.ray.d, path.medium);
+                    l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
+                }
+            }
+            Scattered::sample(surface, &bsdf, tracer.sampler)
+        });
+        if flags.is_non_specular() {
+            if sought == Sought::Reflected {
+                l += path.beta * self.reflected(&self.maps.global, point);
+            } else {
+                l += path.beta * self.reflected(&self.maps.caustic, point);
+                if flags.is_diffuse() {
+                    l += path.beta * self.indirect(path, point, tracer);
+                }
+            }
+        }
+        (l, scattered)
     }
 
     /// The light that a point in a medium scatters along the path, except emission that the

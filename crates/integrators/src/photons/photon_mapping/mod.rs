@@ -191,6 +191,7 @@ impl Integrator for PhotonMapping {
             lights: &self.lights,
             balance: Balance::connecting(film.pixel_bounds().area() as f32),
             max_depth: settings.max_depth,
+            light_goes_under: true,
             regularize: false,
         };
         let shutter = ShutterSample::of_pass(view, self.photon_seed, pass);

@@ -1,30 +1,34 @@
 //! Paths that go on under the surface of a body, and leave it elsewhere.
 //!
-//! A path that is transmitted into a body of material `subsurface` goes on from another point of
-//! the same material, which a probe of the diffusion profile ([`probe`]) or a random walk
-//! ([`walk`]) finds. There light is sampled, and the path leaves, as at a surface that reflects by
-//! the exit lobe; all that happens between counts as one scattering event.
+//! A path from the camera that is transmitted into a body of material `subsurface` goes on from
+//! another point of the same material, which a probe of the diffusion profile ([`probe`]) or a
+//! random walk ([`walk`]) finds. There light is sampled, and the path leaves, as at a surface that
+//! reflects by the exit lobe; all that happens between counts as one scattering event. A path from
+//! a light goes the same way back ([`emerge`]).
 //!
 //! The throughput is multiplied by [`Exit::value`] over its density. One wavelength, the hero,
 //! chooses distances; the others are weighted by spectral MIS as flights are
 //! ([`media`](super::media)). Sources: [King 2013], [Pharr 2016 §15.4].
 
+mod emerge;
 mod probe;
 mod walk;
 
-use scattering::{Bsdf, BsdfSample, Bxdf, Subsurface, SubsurfaceMethod};
+use scattering::{Bsdf, BsdfSample, Bxdf, Subsurface, SubsurfaceMethod, SubsurfacePart};
 use scene::SurfaceInteraction;
-use spectrum::SampledSpectrum;
+use scene::light::LightSampleContext;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::media::Heroes;
+use super::path_state::{PathState, Scattered};
 
 /// The other point of a path under a surface.
-pub(crate) struct Exit {
-    /// The point, seen along its normal.
+pub(crate) struct Exit<'a> {
+    /// The point, seen from where its BSDF continues the path.
     pub surface: SurfaceInteraction,
-    /// The exit lobe.
-    pub bsdf: Bsdf<Bxdf<'static>>,
+    /// How it leaves: for a camera path the exit lobe.
+    pub bsdf: Bsdf<Bxdf<'a>>,
     /// The contribution of the way to it, without the scaling of radiance by the refraction into
     /// the body.
     pub value: SampledSpectrum,
@@ -34,9 +38,9 @@ pub(crate) struct Exit {
 
 /// The body under a surface, of which the BSDF becomes the boundary; `None` if there is none.
 pub(crate) fn under_surface<'a>(bsdf: &mut Bsdf<Bxdf<'a>>) -> Option<Subsurface<'a>> {
-    let Bxdf::Subsurface(body) = bsdf.bxdf else { return None };
-    bsdf.bxdf = body.boundary.into();
-    Some(body)
+    let Bxdf::Subsurface(body) = &mut bsdf.bxdf else { return None };
+    body.part = SubsurfacePart::Boundary;
+    Some(*body)
 }
 
 /// Whether a path enters a body by a sample of its boundary.
@@ -45,19 +49,26 @@ pub(crate) fn enters(surface: &SurfaceInteraction, sample: &BsdfSample) -> bool 
 }
 
 impl Tracer<'_> {
-    /// Samples where a path leaves a body that it enters at `entry` by `sample` of its boundary;
-    /// `None` if it does not.
+    /// Samples where a path from the camera leaves a body that it enters at `entry` by `sample` of
+    /// its boundary; `None` if it does not.
     pub(crate) fn exit(
         &mut self,
         entry: &SurfaceInteraction,
         body: &Subsurface,
         sample: &BsdfSample,
         heroes: &Heroes,
-    ) -> Option<Exit> {
+    ) -> Option<Exit<'static>> {
         let bssrdf = &body.bssrdf;
         let (mut surface, value, density) = match body.method {
-            SubsurfaceMethod::Diffusion => self.probe(entry, bssrdf, heroes.hero)?,
-            SubsurfaceMethod::RandomWalk => self.walk(entry, bssrdf, sample.wi, heroes)?,
+            SubsurfaceMethod::Diffusion => {
+                let (surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
+                let value = bssrdf.profile(surface.p().distance(entry.p()));
+                (surface, value, density)
+            }
+            SubsurfaceMethod::RandomWalk => {
+                let walked = self.walk(entry, bssrdf, sample.wi, heroes, 0.0)?;
+                (walked.surface, walked.value, walked.density)
+            }
         };
         let value = value * (bssrdf.eta() * bssrdf.eta());
         if density[heroes.hero] <= 0.0 || value.is_black() {
@@ -66,5 +77,27 @@ impl Tracer<'_> {
         surface.surface.wo = surface.surface.shading.n;
         let bsdf = Bsdf::new(surface.surface.shading.n, surface.surface.shading.dpdu, bssrdf.exit().into());
         Some(Exit { surface, bsdf, value, density })
+    }
+}
+
+impl PathState {
+    /// Leads the path under the surface of a body, which it enters at a vertex as
+    /// [`scatter`](Self::scatter) would leave it; `None` if it ends there.
+    pub(crate) fn go_under(
+        &mut self,
+        tracer: &mut Tracer,
+        (entry, context): (&SurfaceInteraction, LightSampleContext),
+        (body, scattered): (&Subsurface, &Scattered),
+        lambda: &SampledWavelengths,
+    ) -> Option<Exit<'static>> {
+        let medium = self.medium;
+        self.scatter(entry, context, scattered);
+        self.medium = medium;
+        let u = tracer.sampler.get_1d();
+        let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
+        let exit = tracer.exit(entry, body, &scattered.sample, &heroes)?;
+        self.beta *= exit.value / heroes.mean(exit.density);
+        self.eta_scale /= body.boundary.eta * body.boundary.eta;
+        Some(exit)
     }
 }

@@ -12,14 +12,14 @@ use spectrum::SampledSpectrum;
 use crate::transport::Tracer;
 
 impl Tracer<'_> {
-    /// A point by the profile of wavelength number `hero`, the profile of all there, and its
-    /// density per area, for each wavelength as the hero.
+    /// A point by the profile of wavelength number `hero`, and its density per area, for each
+    /// wavelength as the hero.
     pub(super) fn probe(
         &mut self,
         entry: &SurfaceInteraction,
         bssrdf: &Bssrdf,
         hero: usize,
-    ) -> Option<(SurfaceInteraction, SampledSpectrum, SampledSpectrum)> {
+    ) -> Option<(SurfaceInteraction, SampledSpectrum)> {
         let (uc, u, seed) = (self.sampler.get_1d(), self.sampler.get_2d(), self.sampler.get_1d());
         let (p, n) = (entry.p(), entry.surface.shading.n);
         let probe = bssrdf.sample_probe(n, hero, uc, u)?;
@@ -40,6 +40,6 @@ impl Tracer<'_> {
         let surface = met.sample()?.clone();
         let d = surface.p() - p;
         let density = bssrdf.probe_pdf(n, d, surface.surface.n) * met.sample_probability();
-        Some((surface, bssrdf.profile(d.length()), density))
+        Some((surface, density))
     }
 }

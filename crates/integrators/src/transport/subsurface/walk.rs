@@ -21,16 +21,29 @@ use crate::transport::media::{Heroes, attenuation};
 /// free paths are there longer ones.
 const MAX_EVENTS: u32 = 1 << 14;
 
+/// The end of a walk.
+pub(super) struct Walked {
+    /// Where it leaves, seen from inside.
+    pub surface: SurfaceInteraction,
+    /// Its contribution over the density of the hero.
+    pub value: SampledSpectrum,
+    /// Its density for each wavelength as the hero, over that of the hero.
+    pub density: SampledSpectrum,
+    /// The probability with which it left there, and was not reflected.
+    pub probability: f32,
+}
+
 impl Tracer<'_> {
-    /// The end of a walk that begins at `entry` in direction `wi`, its contribution and its
-    /// density, for each wavelength as the hero; both are divided by the density of the hero.
+    /// A walk that begins at `entry` in direction `wi`. Where it comes to the boundary it leaves
+    /// with the probability with which that lets light out, but at least with `least`.
     pub(super) fn walk(
         &mut self,
         entry: &SurfaceInteraction,
         bssrdf: &Bssrdf,
         wi: Vector3,
         heroes: &Heroes,
-    ) -> Option<(SurfaceInteraction, SampledSpectrum, SampledSpectrum)> {
+        least: f32,
+    ) -> Option<Walked> {
         let (sigma_s, sigma_t, phase) = (bssrdf.sigma_s(), bssrdf.sigma_t(), bssrdf.phase());
         let (mut value, mut density) = (SampledSpectrum::ONE, SampledSpectrum::ONE);
         let mut ray = entry.spawn_ray(wi);
@@ -38,7 +51,7 @@ impl Tracer<'_> {
         for _ in 0..MAX_EVENTS {
             let free = sampling::warp::sample_exponential(u, sigma_t[heroes.hero]);
             u = rng.uniform_f32();
-            let Some((surface, distance)) = self.boundary(&ray, free, entry) else {
+            let Some((mut surface, distance)) = self.boundary(&ray, free, entry) else {
                 if !(free.is_finite() && self.may_trace()) {
                     return None;
                 }
@@ -59,9 +72,13 @@ impl Tracer<'_> {
             value *= passed / passed[heroes.hero];
             density *= passed / passed[heroes.hero];
             let (wo, n) = (-ray.d, surface.surface.n);
-            if rng.uniform_f32() >= fr_dielectric(-wo.dot(n).abs(), bssrdf.eta()) {
-                return Some((surface, value, density));
+            let reflected = fr_dielectric(-wo.dot(n).abs(), bssrdf.eta());
+            let stays = reflected.min(1.0 - least);
+            if rng.uniform_f32() >= stays {
+                surface.surface.wo = wo;
+                return Some(Walked { surface, value, density, probability: 1.0 - stays });
             }
+            value *= reflected / stays;
             ray = surface.spawn_ray(reflect(wo, n));
         }
         None
