@@ -104,6 +104,12 @@ impl<R: Real> TrowbridgeReitz<R> {
         self.d_visible(w, wm)
     }
 
+    /// Whether both α are the same.
+    #[inline(always)]
+    pub(crate) fn is_isotropic(&self) -> R::Mask {
+        self.alpha_x.eq(self.alpha_y)
+    }
+
     /// √(α_x α_y).
     #[inline(always)]
     pub(crate) fn mean_alpha(&self) -> R {

@@ -24,7 +24,7 @@ pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
-pub use openpbr::{OpenPbr, OpenPbrParameters};
+pub use openpbr::{OpenPbr, OpenPbrParameters, OpenPbrTable};
 pub use scatter::{BsdfSample, Scatter};
 pub use subsurface::{Subsurface, SubsurfaceMethod, SubsurfacePart};
 pub use thin_dielectric::ThinDielectric;
@@ -63,7 +63,7 @@ pub enum Bxdf<'a> {
     /// Light that enters such a body.
     NormalizedFresnel(NormalizedFresnel),
     /// A principled surface.
-    OpenPbr(OpenPbr),
+    OpenPbr(OpenPbr<'a>),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -158,5 +158,5 @@ into_bxdf! {
     Measured(Measured<'a>)
     Subsurface(Subsurface<'a>)
     NormalizedFresnel(NormalizedFresnel)
-    OpenPbr(OpenPbr)
+    OpenPbr(OpenPbr<'a>)
 }

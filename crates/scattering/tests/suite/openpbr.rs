@@ -1,8 +1,8 @@
 //! The principled surface: energy, and limits in which it is another member.
 
 use alhazen_scattering::{
-    Bxdf, Dielectric, Directions, OpenPbr, OpenPbrParameters, Scatter, TransportMode, TrowbridgeReitz,
-    fr_dielectric,
+    Bxdf, Dielectric, Directions, OpenPbr, OpenPbrParameters, OpenPbrTable, Scatter, TransportMode,
+    TrowbridgeReitz, fr_dielectric,
 };
 use math::{Vec2, spherical_direction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -11,7 +11,8 @@ use testkit::Random;
 const WHITE: SampledSpectrum = SampledSpectrum::ONE;
 
 fn surface(parameters: OpenPbrParameters) -> Bxdf<'static> {
-    OpenPbr::new(&parameters, &SampledWavelengths::sample_uniform(0.3)).into()
+    let table = Box::leak(Box::new(OpenPbrTable::new(&parameters, &parameters)));
+    OpenPbr::new(table, &parameters, &SampledWavelengths::sample_uniform(0.3)).into()
 }
 
 /// White parameters, which absorb nothing.

@@ -187,7 +187,7 @@ impl Compiler<'_> {
             texture
         });
         let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
-        Material::OpenPbr(OpenPbrMaterial { numbers, colors })
+        Material::OpenPbr(OpenPbrMaterial::new(self.textures.textures(), numbers, colors))
     }
 
     pub(super) fn albedo(

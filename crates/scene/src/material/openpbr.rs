@@ -7,19 +7,28 @@
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
 use description::OpenPbrDesc;
 use math::sqr;
-use scattering::{OpenPbr, OpenPbrParameters};
+use scattering::{OpenPbr, OpenPbrParameters, OpenPbrTable};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// The Fraunhofer lines F, d and C, in nanometres.
 const LINES: [f32; 3] = [486.134, 587.562, 656.281];
 
+/// The values of [`OpenPbrDesc::NUMBERS`].
+type Numbers = [f32; OpenPbrDesc::NUMBERS.len()];
+
 /// A principled surface.
 #[derive(Clone, Debug)]
 pub struct OpenPbrMaterial {
-    /// The values of [`OpenPbrDesc::NUMBERS`].
-    pub numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
-    /// The values of [`OpenPbrDesc::COLORS`].
-    pub colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    /// The textures of [`OpenPbrDesc::NUMBERS`].
+    numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
+    /// Their values where they are the same everywhere.
+    constants: Numbers,
+    /// Which are not.
+    varying: Vec<usize>,
+    /// The textures of [`OpenPbrDesc::COLORS`].
+    colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    /// What its layers do with light.
+    table: OpenPbrTable,
 }
 
 /// The index of refraction at a wavelength, of a glass of index `ior` at the d line.
@@ -29,10 +38,45 @@ fn cauchy(ior: f32, abbe_number: f32, lambda: f32) -> f32 {
 }
 
 impl OpenPbrMaterial {
+    /// Of the textures of its numbers and colours, in the order of the description.
+    pub fn new(
+        textures: &Textures,
+        numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
+        colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    ) -> Self {
+        let ranges: [[f32; 2]; _] = std::array::from_fn(|i| {
+            let [least, most] = OpenPbrDesc::NUMBERS[i].range;
+            textures.constant(numbers[i]).map_or([least, most], |value| [value.clamp(least, most); 2])
+        });
+        let varying = (0..numbers.len()).filter(|&i| textures.constant(numbers[i]).is_none()).collect();
+        let constants = ranges.map(|[least, _]| least);
+        let index = Self::index_range(&ranges);
+        let ends = [0, 1].map(|end| {
+            let values = ranges.map(|range| range[end]);
+            let (mut parameters, _) = parameters(&values);
+            parameters.specular_ior = index[end];
+            parameters
+        });
+        let table = OpenPbrTable::new(&ends[0], &ends[1]);
+        Self { numbers, constants, varying, colors, table }
+    }
+
+    /// The least and the largest index of refraction at all wavelengths.
+    fn index_range(ranges: &[[f32; 2]; OpenPbrDesc::NUMBERS.len()]) -> [f32; 2] {
+        let of = |name| ranges[position(name)];
+        let (index, scale) = (of("specular_ior"), of("transmission_dispersion_scale"));
+        if of("transmission_weight")[1] == 0.0 || scale[1] == 0.0 {
+            return index;
+        }
+        let abbe_number = of("transmission_dispersion_abbe_number")[0] / scale[1];
+        let most = cauchy(index[1], abbe_number, spectrum::LAMBDA_MIN);
+        let least = cauchy(index[0], abbe_number, spectrum::LAMBDA_MAX).max(1.0);
+        [least, most]
+    }
+
     /// The number of a name that is constant.
     fn constant(&self, textures: &Textures, name: &str) -> Option<f32> {
-        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name)?;
-        textures.constant(self.numbers[index])
+        textures.constant(self.numbers[position(name)])
     }
 
     /// Whether the BxDF may be specular somewhere.
@@ -56,72 +100,97 @@ impl OpenPbrMaterial {
         textures: &Textures,
         context: &TextureContext,
         lambda: &mut SampledWavelengths,
-    ) -> OpenPbr {
-        let [
-            base_weight,
-            base_diffuse_roughness,
-            base_metalness,
-            specular_weight,
-            specular_roughness,
-            specular_roughness_anisotropy,
-            mut specular_ior,
-            transmission_weight,
-            transmission_depth,
-            dispersion_scale,
-            abbe_number,
-            subsurface_weight,
-            coat_weight,
-            coat_roughness,
-            coat_roughness_anisotropy,
-            coat_ior,
-            coat_darkening,
-            fuzz_weight,
-            fuzz_roughness,
-            thin_film_weight,
-            thin_film_thickness,
-            thin_film_ior,
-        ] = std::array::from_fn(|i| {
+    ) -> OpenPbr<'_> {
+        let mut numbers = self.constants;
+        for &i in &self.varying {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
-            textures.float(self.numbers[i], context).clamp(least, most)
-        });
-        let [base_color, specular_color, mut transmission_color, subsurface_color, coat_color, fuzz_color] =
-            self.colors.map(|id| textures.spectrum(id, context, lambda).clamp(0.0, 1.0));
-        if dispersion_scale > 0.0 && transmission_weight > 0.0 {
-            specular_ior = cauchy(specular_ior, abbe_number / dispersion_scale, lambda.lambda()[0]).max(1.0);
+            numbers[i] = textures.float(self.numbers[i], context).clamp(least, most);
+        }
+        let (mut p, transmission) = parameters(&numbers);
+        // Colours that are not seen are not looked up.
+        let [base, specular, transmitted, subsurface, coat, fuzz] = self.colors;
+        let color = |id, is_seen| match is_seen {
+            true => textures.spectrum(id, context, lambda).clamp(0.0, 1.0),
+            false => SampledSpectrum::ONE,
+        };
+        p.base_color = color(base, true);
+        p.specular_color = color(specular, true);
+        p.transmission_color = color(transmitted, p.transmission_weight > 0.0 && transmission.depth == 0.0);
+        p.subsurface_color = color(subsurface, p.subsurface_weight > 0.0);
+        p.coat_color = color(coat, p.coat_weight > 0.0);
+        p.fuzz_color = color(fuzz, p.fuzz_weight > 0.0);
+        if transmission.dispersion_scale > 0.0 && p.transmission_weight > 0.0 {
+            let abbe_number = transmission.abbe_number / transmission.dispersion_scale;
+            p.specular_ior = cauchy(p.specular_ior, abbe_number, lambda.lambda()[0]).max(1.0);
             lambda.terminate_secondary();
         }
-        if transmission_depth > 0.0 {
-            transmission_color = SampledSpectrum::ONE;
-        }
-        let parameters = OpenPbrParameters {
-            base_weight,
-            base_color,
-            base_diffuse_roughness,
-            base_metalness,
-            specular_weight,
-            specular_color,
-            specular_roughness,
-            specular_roughness_anisotropy,
-            specular_ior,
-            transmission_weight,
-            transmission_color,
-            subsurface_weight,
-            subsurface_color,
-            coat_weight,
-            coat_color,
-            coat_roughness,
-            coat_roughness_anisotropy,
-            coat_ior,
-            coat_darkening,
-            fuzz_weight,
-            fuzz_color,
-            fuzz_roughness,
-            thin_film_weight,
-            thin_film_thickness,
-            thin_film_ior,
-        };
-        OpenPbr::new(&parameters, lambda)
+        OpenPbr::new(&self.table, &p, lambda)
     }
+}
+
+/// The numbers of transmission that the BxDF does not know.
+struct Transmission {
+    depth: f32,
+    dispersion_scale: f32,
+    abbe_number: f32,
+}
+
+/// The index of a number.
+fn position(name: &str) -> usize {
+    let found = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+    found.expect("invariant: names are those of the description")
+}
+
+/// The parameters of the BxDF, with colours of their defaults.
+#[inline]
+fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
+    let [
+        base_weight,
+        base_diffuse_roughness,
+        base_metalness,
+        specular_weight,
+        specular_roughness,
+        specular_roughness_anisotropy,
+        specular_ior,
+        transmission_weight,
+        depth,
+        dispersion_scale,
+        abbe_number,
+        subsurface_weight,
+        coat_weight,
+        coat_roughness,
+        coat_roughness_anisotropy,
+        coat_ior,
+        coat_darkening,
+        fuzz_weight,
+        fuzz_roughness,
+        thin_film_weight,
+        thin_film_thickness,
+        thin_film_ior,
+    ] = *numbers;
+    let parameters = OpenPbrParameters {
+        base_weight,
+        base_diffuse_roughness,
+        base_metalness,
+        specular_weight,
+        specular_roughness,
+        specular_roughness_anisotropy,
+        specular_ior,
+        transmission_weight,
+        subsurface_weight,
+        coat_weight,
+        coat_roughness,
+        coat_roughness_anisotropy,
+        coat_ior,
+        coat_darkening,
+        fuzz_weight,
+        fuzz_roughness,
+        thin_film_weight,
+        thin_film_thickness,
+        thin_film_ior,
+        ..OpenPbrParameters::default()
+    };
+    (parameters, Transmission { depth, dispersion_scale, abbe_number })
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 //! Facets that refract all light are expanded likewise, over the cosine in the thinner medium.
 //! Roughness is √α.
 
-use super::grid::{Grid, Place, nodes};
+use super::grid::{Grid, Place};
 use crate::{TrowbridgeReitz, reflect, refract};
 use math::{Vec2, Vec3, Vector3, safe_sqrt, sqr};
 use std::sync::LazyLock;
@@ -59,32 +59,15 @@ pub(super) struct White {
 }
 
 impl White {
-    /// Of a roughness in [0, 1] and a cosine, from the table.
-    pub fn at(roughness: f32, cosine: f32) -> Self {
-        static TABLE: LazyLock<Grid<White>> = LazyLock::new(|| Grid::new(White::compute));
-        Self::sum(TABLE.around(roughness, cosine))
-    }
-
-    /// The mean over directions by their cosine.
-    pub fn mean(roughness: f32) -> Self {
-        const LEN: usize = 21;
-        static TABLE: LazyLock<[White; LEN]> = LazyLock::new(|| {
-            std::array::from_fn(|i| {
-                let roughness = i as f32 / (LEN - 1) as f32;
-                let nodes = nodes().map(|(cosine, weight)| (weight, White::at(roughness, cosine)));
-                White::sum(nodes.each_ref().map(|(weight, white)| (*weight, white)))
-            })
-        });
-        let place = Place::new(roughness, LEN);
-        let [lower, upper] = place.weights();
-        Self::sum([(lower, &TABLE[place.index]), (upper, &TABLE[place.index + 1])])
-    }
-
-    /// The sum of weighted nodes.
-    #[inline]
-    fn sum<const N: usize>(nodes: [(f32, &Self); N]) -> Self {
+    /// Of facets seen from a direction above: if they are alike both ways, from a table.
+    pub fn seen(facets: &TrowbridgeReitz, wo: Vector3) -> Self {
+        static TABLE: LazyLock<Grid<White>> =
+            LazyLock::new(|| Grid::new(|roughness, cosine| White::compute(&round(roughness), from(cosine))));
+        if !facets.is_isotropic() {
+            return Self::compute(facets, wo);
+        }
         let mut sum = Self { shares: [0.0; HATS], losses: [0.0; HATS], albedo: 0.0 };
-        for (weight, node) in nodes {
+        for (weight, node) in TABLE.around(facets.mean_alpha().sqrt(), wo.z) {
             for k in 0..HATS {
                 sum.shares[k] += weight * node.shares[k];
                 sum.losses[k] += weight * node.losses[k];
@@ -94,15 +77,15 @@ impl White {
         sum
     }
 
-    fn compute(roughness: f32, cosine: f32) -> Self {
+    fn compute(facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         let mut sums = [[0f64; HATS]; 2];
-        let own = hats(cosine);
-        for (facets, wo, wm) in visible_normals(roughness, cosine) {
+        let own = hats(wo.z);
+        for wm in visible_normals(facets, wo) {
             let wi = reflect(wo, wm);
             if wi.z <= 0.0 {
                 continue;
             }
-            let kept = kept(&facets, wo, wi);
+            let kept = kept(facets, wo, wi);
             let [met, lower] = [hats(wo.dot(wm)), hats(wo.z.min(wi.z))];
             for k in 0..HATS {
                 sums[0][k] += f64::from(kept * met[k]);
@@ -127,19 +110,23 @@ pub(super) struct Glass {
 }
 
 impl Glass {
-    /// Of a relative index, as the light meets it, a roughness in [0, 1] and a cosine, from the
-    /// table.
-    pub fn at(eta: f32, roughness: f32, cosine: f32) -> Self {
+    /// Of facets of a relative index, as the light meets it, seen from a direction with z > 0: if
+    /// they are alike both ways, from a table.
+    pub fn seen(eta: f32, facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         static TABLE: LazyLock<[Grid<Glass>; INDICES]> = LazyLock::new(|| {
             std::array::from_fn(|i| {
                 let x = i as f32 / (INDICES - 1) as f32 - 0.5;
-                Grid::new(|roughness, cosine| Glass::compute((1.0 + x) / (1.0 - x), roughness, cosine))
+                let eta = (1.0 + x) / (1.0 - x);
+                Grid::new(|roughness, cosine| Glass::compute(eta, &round(roughness), from(cosine)))
             })
         });
+        if !facets.is_isotropic() {
+            return Self::compute(eta, facets, wo);
+        }
         let place = Place::new((eta - 1.0) / (eta + 1.0) + 0.5, INDICES);
         let mut sum = Self { reflected: [0.0; HATS], refracted: [0.0; HATS], total: 0.0 };
         for (i, share) in place.weights().into_iter().enumerate() {
-            for (weight, node) in TABLE[place.index + i].around(roughness, cosine) {
+            for (weight, node) in TABLE[place.index + i].around(facets.mean_alpha().sqrt(), wo.z) {
                 for k in 0..HATS {
                     sum.reflected[k] += share * weight * node.reflected[k];
                     sum.refracted[k] += share * weight * node.refracted[k];
@@ -150,16 +137,16 @@ impl Glass {
         sum
     }
 
-    fn compute(eta: f32, roughness: f32, cosine: f32) -> Self {
+    fn compute(eta: f32, facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         let mut sums = [[0f64; HATS]; 2];
         let mut total = 0.0;
-        for (facets, wo, wm) in visible_normals(roughness, cosine) {
+        for wm in visible_normals(facets, wo) {
             let reflected = reflect(wo, wm);
             let (refracted, _, is_refracted) = refract(wo, wm, eta);
             let outer = if eta < 1.0 { -refracted.dot(wm) } else { wo.dot(wm) };
             let met = hats(outer);
             for (i, wi) in [reflected, -refracted].into_iter().enumerate() {
-                let share = if wi.z > 0.0 { f64::from(kept(&facets, wo, wi)) } else { 0.0 };
+                let share = if wi.z > 0.0 { f64::from(kept(facets, wo, wi)) } else { 0.0 };
                 if is_refracted {
                     (0..HATS).for_each(|k| sums[i][k] += share * f64::from(met[k]));
                 } else if i == 0 {
@@ -172,14 +159,21 @@ impl Glass {
     }
 }
 
-/// Microfacets, the direction of a cosine, and normals that it sees, each of the same share of it.
-fn visible_normals(roughness: f32, cosine: f32) -> impl Iterator<Item = (TrowbridgeReitz, Vector3, Vector3)> {
-    let facets = TrowbridgeReitz::new(sqr(roughness), sqr(roughness));
+/// Facets that are alike both ways.
+fn round(roughness: f32) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(sqr(roughness), sqr(roughness))
+}
+
+/// A direction of a cosine.
+fn from(cosine: f32) -> Vector3 {
     let cosine = cosine.max(1e-4);
-    let wo = Vec3::new(safe_sqrt(1.0 - sqr(cosine)), 0.0, cosine);
+    Vec3::new(safe_sqrt(1.0 - sqr(cosine)), 0.0, cosine)
+}
+
+/// Normals of facets that a direction sees, each of the same share of what it sees.
+fn visible_normals(facets: &TrowbridgeReitz, wo: Vector3) -> impl Iterator<Item = Vector3> {
     let middle = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    (0..STEPS * STEPS)
-        .map(move |i| (facets, wo, facets.sample_wm(wo, Vec2::new(middle(i % STEPS), middle(i / STEPS)))))
+    (0..STEPS * STEPS).map(move |i| facets.sample_wm(wo, Vec2::new(middle(i % STEPS), middle(i / STEPS))))
 }
 
 /// The share of the light from facets seen by `wo` that leaves to `wi`.

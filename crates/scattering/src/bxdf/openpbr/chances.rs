@@ -1,8 +1,8 @@
 //! The probabilities of lobes, about what each scatters from a direction, and their densities.
 
-use super::shares::Inside;
+use super::mirror::Mirror;
 use super::{OpenPbr, View, flip};
-use crate::{Directions, Scatter, TransportMode};
+use crate::{Directions, TransportMode};
 use math::{Vector3, same_hemisphere};
 use sampling::warp::{cosine_hemisphere_pdf, uniform_hemisphere_pdf};
 use spectrum::SampledSpectrum;
@@ -26,6 +26,9 @@ pub(super) enum Lobe {
 
 const LOBES: [Lobe; 6] = [Lobe::Fuzz, Lobe::Coat, Lobe::Facets, Lobe::Glass, Lobe::Rest, Lobe::Through];
 
+/// Lobes of less than this share are rounding errors, and not sampled.
+const NEGLIGIBLE: f32 = 1e-6;
+
 /// The probabilities of all lobes.
 pub(super) struct Chances([f32; 6]);
 
@@ -33,42 +36,52 @@ impl Chances {
     /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
     pub fn new(surface: &OpenPbr, view: &View, wo: Vector3, directions: Directions) -> Self {
         let cosine = wo.z.abs();
-        let shares = &view.shares;
+        let (shares, rests) = (&view.shares, &view.rests);
+        let taken = &shares.taken;
         let weights = surface.weights(wo.z);
-        let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
-        let glass = surface.glass();
-        let rests = &surface.rests;
-
-        let fuzz = surface.fuzz_weight * shares.fuzz.upwards() * surface.fuzz_color.average();
-        let mut reflected = SampledSpectrum::ZERO;
-        let mut rest = SampledSpectrum::ZERO;
+        let mut fuzz = 0.0;
+        if surface.stack.fuzz_weight > 0.0 {
+            let upwards = taken.fuzz_once + 0.5 * taken.fuzz_more;
+            fuzz = surface.stack.fuzz_weight * upwards * surface.fuzz_color.average();
+        }
+        let (mut reflected, mut rest) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
         if weights.diffuse > 0.0 {
             reflected += shares.dielectric * surface.specular_color * weights.diffuse;
             rest += shares.diffuse_rest * surface.diffuse_color * weights.diffuse;
         }
         if weights.metal > 0.0 {
-            reflected += surface.facets.metal(cosine) * (shares.metal * weights.metal);
-            rest += rests.metal_color * (shares.metal_rest * weights.metal);
+            reflected += surface.metal(cosine) * (taken.metal * weights.metal);
+            if rests.metal > 0.0 {
+                rest += surface.metal_again * (shares.metal_rest() * weights.metal);
+            }
         }
-        let reflected = (reflected * opaque).average();
-        let mut rest = (rest * opaque).average();
+        if surface.stack.coat_weight > 0.0 {
+            let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
+            (reflected, rest) = (reflected * opaque, rest * opaque);
+        }
+        let reflected = reflected.average();
+        let mut rest = rest.average();
         let (mut facets, mut through) = (0.0, 0.0);
+        let glass = surface.glass();
         if glass > 0.0 {
-            let inside = match wo.z > 0.0 {
-                true => Inside {
-                    reflected: (shares.dielectric * surface.specular_color).average(),
-                    refracted: shares.refracted.average(),
-                    rest: shares.glass_rest,
-                },
-                false => Inside::new(surface, &view.facing, cosine),
+            let (reflects, refracts, left) = match wo.z > 0.0 {
+                true => {
+                    let reflects = (shares.dielectric * surface.specular_color).average();
+                    (reflects, shares.refracted, shares.glass_rest)
+                }
+                false => {
+                    let inside = surface.inside(wo);
+                    (inside.reflected, inside.refracted, inside.left())
+                }
             };
             let side = usize::from(wo.z < 0.0);
-            rest += glass * inside.rest * (1.0 - rests.through[side]);
+            let left = if rests.glass[side] > 0.0 { left } else { 0.0 };
+            rest += glass * left * (1.0 - rests.through[side]);
             let tint = glass * surface.transmission_color.average();
-            facets = glass * inside.reflected + tint * inside.refracted;
-            through = tint * inside.rest * rests.through[side];
+            facets = glass * reflects + tint * refracts;
+            through = tint * left * rests.through[side];
         }
-        let coat = weights.layers * shares.coat;
+        let coat = weights.layers * taken.coat;
         let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through];
         match directions {
             Directions::All => (),
@@ -77,7 +90,9 @@ impl Chances {
         }
         let sum: f32 = chances.iter().sum();
         if sum > 0.0 {
-            chances.iter_mut().for_each(|chance| *chance /= sum);
+            for chance in &mut chances {
+                *chance = if *chance > NEGLIGIBLE * sum { *chance / sum } else { 0.0 };
+            }
         }
         Self(chances)
     }
@@ -110,7 +125,6 @@ impl Chances {
         directions: Directions,
     ) -> f32 {
         let [fuzz, coat, facets, glass, rest, through] = self.0;
-        let boundary = surface.boundary();
         let mut pdf = 0.0;
         if glass > 0.0 {
             pdf += glass * surface.pdf_glass(wo, wi, mode, directions);
@@ -120,12 +134,12 @@ impl Chances {
             return pdf + through * cosine;
         }
         let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
-        let reflection = Directions::Reflection;
-        if coat > 0.0 {
-            pdf += coat * surface.coat_boundary().pdf(wo, wi, mode, reflection);
-        }
-        if facets > 0.0 {
-            pdf += facets * boundary.pdf(wo, wi, mode, reflection);
+        for (chance, distribution) in [(coat, &surface.stack.coat), (facets, &surface.stack.base)] {
+            if chance > 0.0
+                && let Some(mirror) = Mirror::new(distribution, wo, wi)
+            {
+                pdf += chance * mirror.pdf;
+            }
         }
         pdf + rest * cosine + fuzz * uniform_hemisphere_pdf()
     }

@@ -13,7 +13,7 @@
 //! and half down to the base, with what meets no fibre. Sources: [Heitz 2015], and the sheen of
 //! [Zeltner 2022], which is fitted to simulations of such layers.
 
-use super::grid::{Grid, mean};
+use super::grid::Grid;
 use math::{Vector3, spherical_direction, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::{PI, TAU};
@@ -62,11 +62,6 @@ impl Scattered {
     pub fn upwards(self) -> f32 {
         self.once + 0.5 * self.more
     }
-}
-
-/// X̄: the mean of what is scattered more than once.
-pub(super) fn mean_scattered_again(roughness: f32) -> f32 {
-    mean(|cosine| Scattered::at(roughness, cosine).more)
 }
 
 /// The value for two directions above; `mean` is X̄.

@@ -1,32 +1,25 @@
 //! Transparent bases: what is reflected inside, and what passes.
 
-use super::albedo::{dot, hats};
-use super::shares::{Inside, Shares};
 use super::{OpenPbr, View};
 use crate::{BsdfSample, Directions, Scatter, TransportMode};
 use math::{Vec2, Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
 
-impl OpenPbr {
+impl OpenPbr<'_> {
     /// The cosine outside of light that meets glass from inside at a cosine; `None` if all of it is
     /// reflected.
     pub(super) fn outer_cosine(&self, cosine: f32) -> Option<f32> {
-        let squared = 1.0 - (1.0 - sqr(cosine)) * sqr(self.index);
+        let squared = 1.0 - (1.0 - sqr(cosine)) * sqr(self.stack.index);
         (squared > 0.0).then(|| squared.sqrt())
-    }
-
-    /// What the layers above the base let pass at a cosine.
-    pub(super) fn passed(&self, cosine: f32) -> f32 {
-        dot(&hats(cosine), &self.above.coat)
     }
 
     /// The reflectance of facets of glass from inside: what the base reflects, and what the layers
     /// outside do of the rest.
     pub(super) fn inner_reflectance(&self, cosine: f32) -> SampledSpectrum {
         let Some(outer) = self.outer_cosine(cosine) else { return SampledSpectrum::ONE };
-        let reflected = self.facets.dielectric(outer);
-        if !self.has_layers() {
+        let reflected = self.stack.dielectrics(outer, &self.waves);
+        if !self.stack.has_layers() {
             return reflected;
         }
         let kept = 1.0 - self.passed(outer);
@@ -38,7 +31,7 @@ impl OpenPbr {
         match directions {
             Directions::Reflection => 1.0,
             Directions::Transmission => 0.0,
-            Directions::All if wo.z > 0.0 => self.facets.dielectric(wo.dot(wm).abs()).average(),
+            Directions::All if wo.z > 0.0 => self.stack.dielectrics(wo.dot(wm).abs(), &self.waves).average(),
             Directions::All => self.inner_reflectance(wo.dot(wm).abs()).average(),
         }
     }
@@ -52,8 +45,8 @@ impl OpenPbr {
         mode: TransportMode,
         directions: Directions,
     ) -> BsdfSample {
-        let smooth = self.base.effectively_smooth();
-        let wm = if smooth { Vector3::Z } else { self.base.sample_wm(wo, u) };
+        let smooth = self.stack.base.effectively_smooth();
+        let wm = if smooth { Vector3::Z } else { self.stack.base.sample_wm(wo, u) };
         let reflects = self.reflects(wo, wm, directions);
         let (chance, directions) = match uc < reflects {
             true => (reflects, Directions::Reflection),
@@ -93,10 +86,10 @@ impl OpenPbr {
             let white = boundary.f_facet(wo, wi, &facet, 1.0, TransportMode::Radiance);
             f += self.inner_reflectance(wo.dot(facet.wm).abs()) * white;
         }
-        if self.rests.glass[1] > 0.0 {
-            let [o, i] = [wo, wi].map(|w| Inside::new(self, &view.facing, -w.z).rest);
+        if view.rests.glass[1] > 0.0 {
+            let [o, i] = [wo, wi].map(|w| self.inside(w).left());
             let left = o * i;
-            f += SampledSpectrum::splat(left / (PI * self.rests.glass[1]) * (1.0 - self.rests.through[1]));
+            f += SampledSpectrum::splat(left / (PI * view.rests.glass[1]) * (1.0 - view.rests.through[1]));
         }
         f * self.glass()
     }
@@ -113,7 +106,7 @@ impl OpenPbr {
         let inside = if wo.z > 0.0 { wi } else { wo };
         let shares = match wo.z > 0.0 {
             true => view.shares,
-            false => Shares::new(self, &view.facing, outside.z),
+            false => self.shares(outside),
         };
         let boundary = self.boundary();
         let (facet, is_met) = boundary.facet(wo, wi);
@@ -121,21 +114,21 @@ impl OpenPbr {
         if is_met {
             let outer = outside.dot(facet.wm).abs();
             // At least what `inner_reflectance` sends back does not pass.
-            let passed = match self.has_layers() {
-                true => shares.below_coat.min(self.passed(outer)),
+            let passed = match self.stack.has_layers() {
+                true => shares.taken.below_coat.min(self.passed(outer)),
                 false => 1.0,
             };
             let white = boundary.f_facet(wo, wi, &facet, 0.0, mode) * passed;
-            let reflected = self.facets.dielectric(outer);
+            let reflected = self.stack.dielectrics(outer, &self.waves);
             f += (SampledSpectrum::ONE - reflected) * white;
         }
-        if self.rests.glass[1] > 0.0 {
+        if view.rests.glass[1] > 0.0 {
             // The rest of one side to that of the other, as energy from above to below.
-            let left = shares.glass_rest * Inside::new(self, &view.facing, -inside.z).rest;
-            let down = left * self.rests.through[0] / (PI * self.rests.glass[1]);
+            let left = shares.glass_rest * self.inside(inside).left();
+            let down = left * view.rests.through[0] / (PI * view.rests.glass[1]);
             let scale = match (mode, wo.z > 0.0) {
                 (TransportMode::Importance, true) | (TransportMode::Radiance, false) => 1.0,
-                _ => 1.0 / sqr(self.index),
+                _ => 1.0 / sqr(self.stack.index),
             };
             f += SampledSpectrum::splat(down * scale);
         }

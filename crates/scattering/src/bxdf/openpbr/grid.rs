@@ -53,13 +53,8 @@ impl Place {
     }
 }
 
-/// ∫ 2μ f(μ) dμ from 0 to 1 by six nodes of Gauss in √μ: the mean of f over the directions of a
-/// hemisphere by their cosine.
-pub(super) fn mean(mut f: impl FnMut(f32) -> f32) -> f32 {
-    nodes().map(|(cosine, weight)| weight * f(cosine)).into_iter().sum()
-}
-
-/// The cosines and weights of [`mean`].
+/// The nodes x and weights w of ∫ 2μ f(μ) dμ from 0 to 1 by six nodes of Gauss in √μ, the mean of f
+/// over the directions of a hemisphere by their cosine.
 pub(super) fn nodes() -> [(f32, f32); 6] {
     const GAUSS: [(f32, f32); 3] =
         [(0.238_619_2, 0.467_913_93), (0.661_209_4, 0.360_761_57), (0.932_469_5, 0.171_324_49)];

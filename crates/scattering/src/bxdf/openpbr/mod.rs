@@ -10,7 +10,7 @@
 //! ```
 //!
 //! with a thin film on the facets of the base. From above, with the shares that layers pass on and
-//! what is left at the end (shares.rs), and the weights w of lobes,
+//! what is left at the end (stack.rs), and the weights w of lobes,
 //!
 //! ```text
 //! f = w_f f_fuzz + min(T_f(θo), T_f(θi)) w_c f_coat
@@ -37,78 +37,69 @@ mod film;
 mod fuzz;
 mod glass;
 mod grid;
+mod mirror;
 mod parameters;
 mod shares;
+mod stack;
+mod table;
 mod value;
 
 pub use parameters::OpenPbrParameters;
+pub use table::OpenPbrTable;
 
 use super::{BsdfSample, Dielectric, Scatter};
 use crate::fresnel::mean_fresnel;
-use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz};
-use albedo::{HATS, White, hat_cosines};
+use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, reflect};
 use chances::{Chances, Lobe};
-use facets::{Facets, Film};
-use grid::mean;
-use math::{Vec2, Vector3, sqr};
+use math::{Vec2, Vec3, Vector3, lerp, sqr};
 use sampling::warp::{sample_cosine_hemisphere, sample_uniform_hemisphere};
-use shares::{Above, Facing, Inside, Shares};
+use shares::{Rests, Shares};
 use spectrum::{SampledSpectrum, SampledWavelengths};
+use stack::Stack;
+use table::Numbers;
 
 /// Directions nearer to the horizon scatter nothing.
 const HORIZON: f32 = 1e-6;
 
 /// A principled surface.
 #[derive(Clone, Copy, Debug)]
-pub struct OpenPbr {
-    base: TrowbridgeReitz,
-    facets: Facets,
-    /// Index of refraction of glass.
-    index: f32,
+pub struct OpenPbr<'a> {
+    table: &'a OpenPbrTable,
+    /// The place in the table.
+    numbers: Numbers,
+    stack: Stack,
+    /// The thickness of the film in wavelengths.
+    waves: SampledSpectrum,
     metalness: f32,
     transmission: f32,
+    /// Factor on the reflectance of metal.
+    metal_weight: f32,
+    diffuse_roughness: f32,
+    /// F₀ of metal.
+    metal_color: SampledSpectrum,
+    /// The share of light that metal keeps between its facets.
+    metal_again: SampledSpectrum,
     specular_color: SampledSpectrum,
     transmission_color: SampledSpectrum,
     diffuse_color: SampledSpectrum,
-    diffuse_roughness: f32,
-    coat: TrowbridgeReitz,
-    coat_weight: f32,
-    coat_ior: f32,
     coat_color: SampledSpectrum,
     /// Factor on opaque bases.
     darkening: SampledSpectrum,
-    fuzz_weight: f32,
     fuzz_color: SampledSpectrum,
-    fuzz_roughness: f32,
-    above: Above,
-    rests: Rests,
-}
-
-/// Means of what is left for the last layer, over directions by their cosine.
-#[derive(Clone, Copy, Debug)]
-struct Rests {
-    fuzz: f32,
-    metal: f32,
-    /// The share of light that metal keeps between its facets.
-    metal_color: SampledSpectrum,
-    diffuse: SampledSpectrum,
-    glass: [f32; 2],
-    /// The share of the rest of glass that passes to the other side, from above and from below.
-    through: [f32; 2],
 }
 
 /// What all values and densities of one direction share.
 struct View {
-    facing: Facing,
     /// Of the direction or, if it is below, of its opposite.
     shares: Shares,
+    rests: Rests,
 }
 
 impl View {
     /// For a direction off the horizon.
+    #[inline]
     fn new(surface: &OpenPbr, wo: Vector3) -> Self {
-        let facing = Facing::new(surface);
-        Self { shares: Shares::new(surface, &facing, wo.z.abs()), facing }
+        Self { shares: surface.shares(wo), rests: surface.rests() }
     }
 }
 
@@ -121,175 +112,73 @@ struct Weights {
     glass: f32,
 }
 
-/// α both ways, of a roughness and anisotropy in [0, 1].
-fn distribution(roughness: f32, anisotropy: f32) -> TrowbridgeReitz {
-    let narrow = 1.0 - anisotropy;
-    let alpha_x = sqr(roughness) * (2.0 / (1.0 + sqr(narrow))).sqrt();
-    TrowbridgeReitz::new(alpha_x, narrow * alpha_x)
-}
-
-/// The roughness of a base under a coat, by the variance that refraction in it adds.
-fn roughened(p: &OpenPbrParameters) -> f32 {
-    let under = (p.specular_roughness.powi(4) + 2.0 * p.coat_roughness.powi(4)).min(1.0).sqrt().sqrt();
-    math::lerp(p.coat_weight, p.specular_roughness, under)
-}
-
-impl OpenPbr {
-    /// The surface at the wavelengths of a path.
-    pub fn new(p: &OpenPbrParameters, lambda: &SampledWavelengths) -> Self {
-        let above = math::lerp(p.coat_weight, 1.0, p.coat_ior);
-        // The weight scales the reflectance at normal incidence, ((η − 1)/(η + 1))².
-        let root = (p.specular_ior - above) / (p.specular_ior + above);
-        let root = (root * p.specular_weight.sqrt()).clamp(-0.999, 0.999);
-        let facets = Facets {
-            above,
-            below: above * (1.0 + root) / (1.0 - root),
-            metal: p.base_color * p.base_weight,
-            edge: p.specular_color,
-            metal_weight: p.specular_weight.min(1.0),
-            film: Film {
-                weight: p.thin_film_weight,
-                thickness: 1000.0 * p.thin_film_thickness,
-                ior: p.thin_film_ior,
-                lambda: SampledSpectrum::new(*lambda.lambda()),
-            },
-        };
-        let black = SampledSpectrum::ZERO;
+impl<'a> OpenPbr<'a> {
+    /// The surface at the wavelengths of a path, of a material with a table for its numbers.
+    #[inline]
+    pub fn new(table: &'a OpenPbrTable, p: &OpenPbrParameters, lambda: &SampledWavelengths) -> Self {
         let mut surface = Self {
-            base: distribution(roughened(p), p.specular_roughness_anisotropy),
-            facets,
-            index: p.specular_ior.max(1.001),
+            table,
+            numbers: table.place(p),
+            stack: table.stack(p),
+            waves: SampledSpectrum::ZERO,
             metalness: p.base_metalness,
             transmission: p.transmission_weight,
+            metal_weight: p.specular_weight.min(1.0),
+            diffuse_roughness: p.base_diffuse_roughness,
+            metal_color: p.base_color * p.base_weight,
+            metal_again: SampledSpectrum::ZERO,
             specular_color: p.specular_color,
             transmission_color: p.transmission_color,
             diffuse_color: (p.base_color * p.base_weight).lerp(p.subsurface_color, p.subsurface_weight),
-            diffuse_roughness: p.base_diffuse_roughness,
-            coat: distribution(p.coat_roughness, p.coat_roughness_anisotropy),
-            coat_weight: p.coat_weight,
-            coat_ior: p.coat_ior,
             coat_color: p.coat_color,
             darkening: SampledSpectrum::ONE,
-            fuzz_weight: p.fuzz_weight,
             fuzz_color: p.fuzz_color,
-            fuzz_roughness: p.fuzz_roughness,
-            above: Above { fuzz: [1.0; HATS], coat: [1.0; HATS] },
-            rests: Rests {
-                fuzz: 1.0,
-                metal: 0.0,
-                metal_color: black,
-                diffuse: black,
-                glass: [0.0; 2],
-                through: [0.0; 2],
-            },
         };
+        if surface.stack.film_weight > 0.0 {
+            let thickness = SampledSpectrum::splat(1000.0 * p.thin_film_thickness);
+            surface.waves = thickness / SampledSpectrum::new(*lambda.lambda());
+        }
         if p.coat_weight > 0.0 && p.coat_darkening > 0.0 {
             let amount = p.coat_weight * p.coat_darkening;
             surface.darkening = SampledSpectrum::ONE.lerp(surface.darkened(), amount);
         }
-        surface.balance();
+        if p.base_metalness > 0.0 && surface.stack.spreads() {
+            let kept = table.means(&surface.numbers, surface.waves[0]).white;
+            surface.metal_again = surface.mean_metal().map(|f| sqr(f) * kept / (1.0 - f * (1.0 - kept)));
+        }
         surface
     }
 
     /// Index of refraction of the glass that it is or could be.
     pub fn eta(&self) -> f32 {
-        self.index
+        self.stack.index
     }
 
     /// The share of light that reflections in the coat leave of an opaque base.
     fn darkened(&self) -> SampledSpectrum {
         let one = SampledSpectrum::ONE;
-        let reflected = SampledSpectrum::splat(mean_fresnel(self.facets.below / self.facets.above).max(0.0));
+        let stack = &self.stack;
+        let reflected = SampledSpectrum::splat(mean_fresnel(stack.below / stack.above).max(0.0));
         let dielectric = reflected + (one - reflected) * self.diffuse_color;
-        let albedo = dielectric.lerp(self.facets.metal, self.metalness);
+        let albedo = dielectric.lerp(self.metal_color, self.metalness);
         // Inside, light is reflected as outside where the base keeps its directions, and beyond the
         // critical angle, too, where it spreads them.
-        let outer = mean_fresnel(self.coat_ior);
-        let inner = 1.0 - (1.0 - outer) / sqr(self.coat_ior);
-        let roughness = math::lerp(self.metalness, 1.0, self.roughness());
-        let k = math::lerp(roughness, outer, inner);
+        let outer = mean_fresnel(stack.coat_ior);
+        let inner = 1.0 - (1.0 - outer) / sqr(stack.coat_ior);
+        let roughness = lerp(self.metalness, 1.0, stack.base.mean_alpha().sqrt());
+        let k = lerp(roughness, outer, inner);
         albedo.map(|albedo| (1.0 - k) / (1.0 - k * albedo))
     }
 
-    /// Computes what depends on all layers.
-    fn balance(&mut self) {
-        let facing = Facing::new(self);
-        if self.has_layers() {
-            let cosines = hat_cosines().map(|cosine| cosine.max(HORIZON));
-            self.above.fuzz = cosines.map(|cosine| Shares::new(self, &facing, cosine).below_fuzz);
-            self.above.coat = cosines.map(|cosine| Shares::new(self, &facing, cosine).below_coat);
-        }
-        let white = White::mean(self.roughness());
-        if self.has_layers() || self.glass() > 0.0 {
-            let mut rests =
-                Rests { metal: 0.0, diffuse: SampledSpectrum::ZERO, glass: [0.0; 2], ..self.rests };
-            for (cosine, weight) in grid::nodes() {
-                let shares = Shares::new(self, &facing, cosine);
-                rests.metal += weight * shares.metal_rest;
-                rests.glass[0] += weight * shares.glass_rest;
-                rests.diffuse += shares.diffuse_rest * weight;
-            }
-            self.rests = rests;
-        } else {
-            self.rests.metal = if self.spreads() { 1.0 - white.albedo } else { 0.0 };
-            self.rests.diffuse = facing.passed(&white);
-        }
-        if self.fuzz_weight > 0.0 {
-            self.rests.fuzz = fuzz::mean_scattered_again(self.fuzz_roughness);
-        }
-        if self.metalness > 0.0 && self.spreads() {
-            let kept = white.albedo;
-            let mut reflected = SampledSpectrum::ZERO;
-            for (cosine, weight) in grid::nodes() {
-                reflected += self.facets.metal(cosine) * weight;
-            }
-            self.rests.metal_color = reflected.map(|f| sqr(f) * kept / (1.0 - f * (1.0 - kept)));
-        }
-        if self.glass() > 0.0 {
-            let below = mean(|cosine| Inside::new(self, &facing, cosine).rest);
-            self.rests.glass[1] = below;
-            let above = self.rests.glass[0];
-            if above > 0.0 && below > 0.0 {
-                let most = sqr(self.index) * below / above;
-                let through = (1.0 - mean_fresnel(self.index)).min(most);
-                self.rests.through = [through, through / most];
-            }
-        }
-    }
-
-    /// √α of the base, the geometric mean of both ways.
-    fn roughness(&self) -> f32 {
-        self.base.mean_alpha().sqrt()
-    }
-
-    /// √α of the coat.
-    fn coat_roughness(&self) -> f32 {
-        self.coat.mean_alpha().sqrt()
-    }
-
-    fn has_layers(&self) -> bool {
-        self.coat_weight > 0.0 || self.fuzz_weight > 0.0
-    }
-
     /// The share of the surface that is glass.
+    #[inline]
     fn glass(&self) -> f32 {
         (1.0 - self.metalness) * self.transmission
     }
 
-    /// Whether some layer spreads light, so that there is a rest to scatter.
-    fn spreads(&self) -> bool {
-        let rough = |facets: &TrowbridgeReitz| !facets.effectively_smooth();
-        rough(&self.base) || self.coat_weight > 0.0 && rough(&self.coat) || self.fuzz_weight > 0.0
-    }
-
     /// The boundary of the base.
     fn boundary(&self) -> Dielectric {
-        Dielectric { eta: self.index, distribution: self.base }
-    }
-
-    /// The boundary of the coat.
-    fn coat_boundary(&self) -> Dielectric {
-        Dielectric { eta: self.coat_ior, distribution: self.coat }
+        Dielectric { eta: self.stack.index, distribution: self.stack.base }
     }
 
     /// What is met from the side of `z`.
@@ -308,28 +197,38 @@ fn flip(below: bool, w: Vector3) -> Vector3 {
     if below { -w } else { w }
 }
 
+/// A sample of the mirror images of a direction above in facets, without its value, and of the
+/// density only that of a smooth surface.
+fn mirrored(facets: &TrowbridgeReitz, wo: Vector3, u: Vec2) -> BsdfSample {
+    let (wi, lobe) = match facets.effectively_smooth() {
+        true => (Vec3::new(-wo.x, -wo.y, wo.z), BxdfFlags::SPECULAR_REFLECTION),
+        false => (reflect(wo, facets.sample_wm(wo, u)), BxdfFlags::GLOSSY_REFLECTION),
+    };
+    BsdfSample { valid: wi.z > 0.0, ..BsdfSample::new(SampledSpectrum::ZERO, wi, 1.0, lobe) }
+}
+
 /// Whether a direction is off the horizon.
 fn is_off_horizon(w: Vector3) -> bool {
     w.z.abs() > HORIZON
 }
 
-impl Scatter for OpenPbr {
+impl Scatter for OpenPbr<'_> {
     fn flags(&self) -> BxdfFlags {
         let kind = |facets: &TrowbridgeReitz| match facets.effectively_smooth() {
             true => BxdfFlags::SPECULAR,
             false => BxdfFlags::GLOSSY,
         };
-        let mut flags = BxdfFlags::REFLECTION | kind(&self.base);
-        if self.coat_weight > 0.0 {
-            flags |= kind(&self.coat);
+        let mut flags = BxdfFlags::REFLECTION | kind(&self.stack.base);
+        if self.stack.coat_weight > 0.0 {
+            flags |= kind(&self.stack.coat);
         }
         if self.glass() > 0.0 {
             flags |= BxdfFlags::TRANSMISSION;
         }
-        if self.spreads() {
+        if self.stack.spreads() {
             flags |= BxdfFlags::GLOSSY;
         }
-        if self.weights(1.0).diffuse > 0.0 || self.fuzz_weight > 0.0 {
+        if self.weights(1.0).diffuse > 0.0 || self.stack.fuzz_weight > 0.0 {
             flags |= BxdfFlags::DIFFUSE;
         }
         flags
@@ -362,12 +261,9 @@ impl Scatter for OpenPbr {
             false => BxdfFlags::GLOSSY,
         };
         let above = |w: Vector3, kind| (flip(below, w), BxdfFlags::REFLECTION | kind);
-        let boundary =
-            |boundary: Dielectric, wo, uc, directions| boundary.sample_f(wo, uc, u, mode, directions);
-        let reflection = Directions::Reflection;
         let facets = match lobe {
-            Lobe::Coat => Some(boundary(self.coat_boundary(), flip(below, wo), uc, reflection)),
-            Lobe::Facets => Some(boundary(self.boundary(), flip(below, wo), uc, reflection)),
+            Lobe::Coat => Some(mirrored(&self.stack.coat, flip(below, wo), u)),
+            Lobe::Facets => Some(mirrored(&self.stack.base, flip(below, wo), u)),
             Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),
             Lobe::Fuzz | Lobe::Rest | Lobe::Through => None,
         };
@@ -383,7 +279,7 @@ impl Scatter for OpenPbr {
             }
             None if lobe == Lobe::Through => {
                 let wi = flip(!below, sample_cosine_hemisphere(u));
-                let eta = if below { 1.0 / self.index } else { self.index };
+                let eta = if below { 1.0 / self.stack.index } else { self.stack.index };
                 (wi, BxdfFlags::GLOSSY_TRANSMISSION, eta)
             }
             None => {
@@ -406,9 +302,9 @@ impl Scatter for OpenPbr {
         Chances::new(self, &View::new(self, wo), wo, directions).pdf(self, wo, wi, mode, directions)
     }
 
+    /// The layers pass on what they did before: what is wider loses a little.
     fn regularize(&mut self, mask: bool) {
-        self.base.regularize(mask);
-        self.coat.regularize(mask);
-        self.balance();
+        self.stack.base.regularize(mask);
+        self.stack.coat.regularize(mask);
     }
 }

@@ -2,35 +2,37 @@
 
 use super::chances::Lobe;
 use super::diffuse::oren_nayar;
+use super::fuzz::{self, Scattered};
+use super::mirror::Mirror;
 use super::shares::Shares;
-use super::{OpenPbr, View, Weights, fuzz};
-use crate::{BsdfSample, Scatter, TransportMode, fr_dielectric};
+use super::{OpenPbr, View, Weights};
+use crate::{BsdfSample, TransportMode, fr_dielectric};
 use math::{Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
 
-impl OpenPbr {
+impl OpenPbr<'_> {
     /// Absorption in the coat on paths of these lengths, in units of its thickness.
     pub(super) fn absorbed(&self, lengths: f32) -> SampledSpectrum {
-        if self.coat_weight == 0.0 || self.coat_color == SampledSpectrum::ONE {
+        if self.stack.coat_weight == 0.0 || self.coat_color == SampledSpectrum::ONE {
             return SampledSpectrum::ONE;
         }
-        SampledSpectrum::ONE.lerp(self.coat_color.powf(0.5 * lengths), self.coat_weight)
+        SampledSpectrum::ONE.lerp(self.coat_color.powf(0.5 * lengths), self.stack.coat_weight)
     }
 
     /// The length of a path through the coat.
     pub(super) fn coat_length(&self, cosine: f32) -> f32 {
-        1.0 / (1.0 - (1.0 - sqr(cosine)) / sqr(self.coat_ior)).sqrt().max(1e-3)
+        1.0 / (1.0 - (1.0 - sqr(cosine)) / sqr(self.stack.coat_ior)).sqrt().max(1e-3)
     }
 
     /// The reflectance of the facets of the base met from above at a cosine.
     pub(super) fn reflectance(&self, cosine: f32, weights: &Weights) -> SampledSpectrum {
         let mut reflected = SampledSpectrum::ZERO;
         if weights.metal > 0.0 {
-            reflected += self.facets.metal(cosine) * self.darkening * weights.metal;
+            reflected += self.metal(cosine) * self.darkening * weights.metal;
         }
         if weights.diffuse + weights.glass > 0.0 {
-            let dielectric = self.facets.dielectric(cosine) * self.specular_color;
+            let dielectric = self.stack.dielectrics(cosine, &self.waves) * self.specular_color;
             reflected +=
                 dielectric * (self.darkening * weights.diffuse + SampledSpectrum::splat(weights.glass));
         }
@@ -45,39 +47,43 @@ impl OpenPbr {
         wi: Vector3,
         weights: &Weights,
     ) -> SampledSpectrum {
-        let (o, i) = (&view.shares, Shares::new(self, &view.facing, wi.z));
-        let mode = TransportMode::Radiance;
+        let (o, i, rests) = (&view.shares, &self.shares(wi), &view.rests);
         let mut f = SampledSpectrum::ZERO;
-        if self.fuzz_weight > 0.0 {
-            let fibres = [o.fuzz, i.fuzz];
-            let fuzz = fuzz::value(self.fuzz_color, self.fuzz_roughness, self.rests.fuzz, [wo, wi], fibres);
-            f += fuzz * (self.fuzz_weight * weights.layers);
+        if self.stack.fuzz_weight > 0.0 {
+            let fibres = [o, i].map(|w| Scattered { once: w.taken.fuzz_once, more: w.taken.fuzz_more });
+            let roughness = self.stack.fuzz_roughness;
+            let fuzz = fuzz::value(self.fuzz_color, roughness, rests.fuzz, [wo, wi], fibres);
+            f += fuzz * (self.stack.fuzz_weight * weights.layers);
         }
-        if self.coat_weight > 0.0 {
-            let coat = self.coat_boundary().f(wo, wi, mode) * o.below_fuzz.min(i.below_fuzz);
-            f += coat * (self.coat_weight * weights.layers);
+        if self.stack.coat_weight > 0.0
+            && let Some(mirror) = Mirror::new(&self.stack.coat, wo, wi)
+        {
+            let coat = fr_dielectric(mirror.cosine, self.stack.coat_ior) * mirror.f;
+            let coat = coat * o.below_fuzz().min(i.below_fuzz());
+            f += SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers);
         }
         let mut base = SampledSpectrum::ZERO;
-        let boundary = self.boundary();
-        let (facet, is_met) = boundary.facet(wo, wi);
-        if is_met {
-            let white = boundary.f_facet(wo, wi, &facet, 1.0, mode) * o.below_coat.min(i.below_coat);
-            base += self.reflectance(wo.dot(facet.wm), weights) * white;
+        if let Some(mirror) = Mirror::new(&self.stack.base, wo, wi) {
+            let white = mirror.f * o.taken.below_coat.min(i.taken.below_coat);
+            base += self.reflectance(mirror.cosine, weights) * white;
         }
         if weights.diffuse > 0.0 {
-            let left = (o.diffuse_rest * i.diffuse_rest).safe_div(self.rests.diffuse);
+            let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
             let diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
             base += diffuse * left * self.darkening * weights.diffuse;
         }
-        if weights.metal > 0.0 && self.rests.metal > 0.0 {
-            let left = o.metal_rest * i.metal_rest / (PI * self.rests.metal);
-            base += self.rests.metal_color * self.darkening * (left * weights.metal);
+        if weights.metal > 0.0 && rests.metal > 0.0 {
+            let left = o.metal_rest() * i.metal_rest() / (PI * rests.metal);
+            base += self.metal_again * self.darkening * (left * weights.metal);
         }
-        if weights.glass > 0.0 && self.rests.glass[0] > 0.0 {
-            let left = o.glass_rest * i.glass_rest / (PI * self.rests.glass[0]);
-            base += SampledSpectrum::splat(left * (1.0 - self.rests.through[0]) * weights.glass);
+        if weights.glass > 0.0 && rests.glass[0] > 0.0 {
+            let left = o.glass_rest * i.glass_rest / (PI * rests.glass[0]);
+            base += SampledSpectrum::splat(left * (1.0 - rests.through[0]) * weights.glass);
         }
-        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
+        if self.stack.coat_weight > 0.0 {
+            base *= self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z));
+        }
+        f + base
     }
 
     /// The value for two directions off the horizon.
@@ -115,19 +121,19 @@ impl OpenPbr {
         let weights = self.weights(wo.z);
         let value = match lobe {
             Lobe::Coat => {
-                let coat = fr_dielectric(cosine, self.coat_ior) * shares.below_fuzz;
-                SampledSpectrum::splat(coat * self.coat_weight * weights.layers)
+                let coat = fr_dielectric(cosine, self.stack.coat_ior) * shares.below_fuzz();
+                SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers)
             }
             Lobe::Glass if sample.flags.is_transmissive() => {
                 let outside = if wo.z > 0.0 { cosine } else { sample.wi.z };
-                let refracted = SampledSpectrum::ONE - self.facets.dielectric(outside);
+                let refracted = SampledSpectrum::ONE - self.stack.dielectrics(outside, &self.waves);
                 let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
-                let passed = if wo.z > 0.0 { shares.below_coat } else { self.passed(outside) };
+                let passed = if wo.z > 0.0 { shares.taken.below_coat } else { self.passed(outside) };
                 refracted * tint * (passed * self.glass())
             }
             Lobe::Glass if wo.z < 0.0 => self.inner_reflectance(cosine) * self.glass(),
             _ => {
-                let tint = self.absorbed(2.0 * self.coat_length(cosine)) * shares.below_coat;
+                let tint = self.absorbed(2.0 * self.coat_length(cosine)) * shares.taken.below_coat;
                 let weights = match lobe {
                     Lobe::Glass => Weights { metal: 0.0, diffuse: 0.0, ..weights },
                     _ => Weights { glass: 0.0, ..weights },
