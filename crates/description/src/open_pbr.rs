@@ -28,6 +28,8 @@ pub struct OpenPbrDesc {
     pub numbers: [FloatParameter; Self::NUMBERS.len()],
     /// The values of [`Self::COLORS`], each in [0, 1].
     pub colors: [SpectrumParameter; Self::COLORS.len()],
+    /// Whether it is a sheet without an inside.
+    pub thin_walled: bool,
     /// Emitted luminance, in cd/m².
     pub emission_luminance: f32,
     /// Colour of what is emitted.
@@ -36,7 +38,7 @@ pub struct OpenPbrDesc {
 
 impl OpenPbrDesc {
     /// All numbers but the emitted luminance.
-    pub const NUMBERS: [OpenPbrNumber; 22] = [
+    pub const NUMBERS: [OpenPbrNumber; 23] = [
         number("base_weight", 1.0, SHARE),
         number("base_diffuse_roughness", 0.0, SHARE),
         number("base_metalness", 0.0, SHARE),
@@ -49,6 +51,7 @@ impl OpenPbrDesc {
         number("transmission_dispersion_scale", 0.0, SHARE),
         number("transmission_dispersion_abbe_number", 20.0, [1.0, 1000.0]),
         number("subsurface_weight", 0.0, SHARE),
+        number("subsurface_scatter_anisotropy", 0.0, [-1.0, 1.0]),
         number("coat_weight", 0.0, SHARE),
         number("coat_roughness", 0.0, SHARE),
         number("coat_roughness_anisotropy", 0.0, SHARE),
@@ -77,6 +80,7 @@ impl Default for OpenPbrDesc {
         Self {
             numbers: Self::NUMBERS.map(|number| number.default.into()),
             colors: Self::COLORS.map(|(_, default)| default.into()),
+            thin_walled: false,
             emission_luminance: 0.0,
             emission_color: SpectrumDesc::rgb(1.0, 1.0, 1.0),
         }

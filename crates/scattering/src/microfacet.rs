@@ -110,6 +110,12 @@ impl<R: Real> TrowbridgeReitz<R> {
         self.alpha_x.eq(self.alpha_y)
     }
 
+    /// The distribution whose α are `scale` times as large.
+    #[inline(always)]
+    pub(crate) fn scaled(&self, scale: R) -> Self {
+        Self::new(self.alpha_x * scale, self.alpha_y * scale)
+    }
+
     /// √(α_x α_y).
     #[inline(always)]
     pub(crate) fn mean_alpha(&self) -> R {

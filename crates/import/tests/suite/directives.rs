@@ -369,6 +369,7 @@ fn principled_materials_have_the_parameters_of_the_specification() {
     let (glowing, _) = openpbr("\"float emission_luminance\" 40 \"rgb emission_color\" [1 0.5 0]");
     assert_eq!(glowing.emission_luminance, 40.0);
     assert_eq!(glowing.emission_color, SpectrumDesc::rgb(1.0, 0.5, 0.0));
+    assert!(openpbr("\"bool geometry_thin_walled\" true").0.thin_walled && !plain.thin_walled);
     let (_, messages) = openpbr("\"float subsurface_radius\" 2");
     assert_eq!(messages, ["`subsurface_radius` has no effect: light leaves where it entered"]);
 }

@@ -41,6 +41,16 @@ fn everything() -> OpenPbrParameters {
     }
 }
 
+/// A thin wall, half of whose opaque part scatters inside, most of it forwards.
+fn thin(parameters: OpenPbrParameters) -> OpenPbrParameters {
+    OpenPbrParameters {
+        geometry_thin_walled: true,
+        subsurface_weight: 0.5,
+        subsurface_scatter_anisotropy: 0.4,
+        ..parameters
+    }
+}
+
 /// Opaque and transparent surfaces, smooth and rough, with and without layers.
 pub fn members() -> Vec<Bxdf<'static>> {
     let base = OpenPbrParameters::default();
@@ -55,13 +65,23 @@ pub fn members() -> Vec<Bxdf<'static>> {
         surface(OpenPbrParameters { specular_roughness: 0.0, ..glass }),
         surface(OpenPbrParameters { fuzz_weight: 1.0, ..base }),
         surface(everything()),
+        surface(OpenPbrParameters { specular_roughness: 1.0, specular_roughness_anisotropy: 0.8, ..glass }),
+        surface(thin(base)),
+        surface(thin(OpenPbrParameters { specular_roughness: 0.7, ..glass })),
+        surface(thin(OpenPbrParameters { specular_roughness: 0.0, ..glass })),
+        surface(thin(everything())),
     ]
 }
 
 /// What is scattered from a direction, by stratified samples.
 fn albedo(bxdf: &Bxdf, cosine: f32) -> SampledSpectrum {
+    albedo_from(bxdf, cosine, 0.4)
+}
+
+/// The same from an azimuth.
+fn albedo_from(bxdf: &Bxdf, cosine: f32, phi: f32) -> SampledSpectrum {
     const COUNT: usize = 4000;
-    let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, 0.4);
+    let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, phi);
     let mut random = Random::new(7);
     let samples = (0..COUNT).map(|i| {
         let u = Vec2::new((i as f32 + random.get_1d()) / COUNT as f32, random.get_1d());
@@ -94,6 +114,14 @@ fn what_absorbs_nothing_loses_nothing() {
         ("film", OpenPbrParameters { thin_film_weight: 1.0, ..lossless() }, 0.012),
         ("film on metal", OpenPbrParameters { thin_film_weight: 1.0, ..metal }, 0.012),
         ("film on glass", OpenPbrParameters { thin_film_weight: 1.0, ..glass }, 0.015),
+        ("leaf", thin(lossless()), 0.012),
+        ("rough leaf", thin(OpenPbrParameters { base_diffuse_roughness: 1.0, ..lossless() }), 0.035),
+        ("coated leaf", thin(OpenPbrParameters { coat_weight: 1.0, ..lossless() }), 0.012),
+        ("window", thin(glass), 0.035),
+        ("coated window", thin(OpenPbrParameters { coat_weight: 1.0, coat_roughness: 0.3, ..glass }), 0.025),
+        ("fuzzy window", thin(OpenPbrParameters { fuzz_weight: 1.0, ..glass }), 0.02),
+        ("film on a window", thin(OpenPbrParameters { thin_film_weight: 1.0, ..glass }), 0.06),
+        ("half metal, half window", thin(OpenPbrParameters { base_metalness: 0.5, ..glass }), 0.035),
     ];
     for (name, parameters, tolerance) in cases {
         for specular_roughness in [0.0, 0.25, 0.5, 1.0] {
@@ -106,6 +134,125 @@ fn what_absorbs_nothing_loses_nothing() {
                 }
             }
         }
+    }
+}
+
+/// Facets that are not alike both ways, from directions along, across and between.
+#[test]
+fn strokes_lose_nothing() {
+    let metal = OpenPbrParameters { base_metalness: 1.0, ..lossless() };
+    let glass = OpenPbrParameters { transmission_weight: 1.0, ..lossless() };
+    let coat = OpenPbrParameters { coat_weight: 1.0, coat_roughness: 0.7, ..lossless() };
+    for (name, parameters, tolerance) in [
+        ("metal", metal, 0.02),
+        ("diffuse", lossless(), 0.012),
+        ("glass", glass, 0.03),
+        ("window", thin(glass), 0.04),
+        ("coat", OpenPbrParameters { coat_roughness_anisotropy: 0.8, ..coat }, 0.012),
+    ] {
+        for specular_roughness in [0.25, 0.5, 0.8, 1.0] {
+            for specular_roughness_anisotropy in [0.2, 0.5, 0.8, 1.0] {
+                let strokes =
+                    OpenPbrParameters { specular_roughness, specular_roughness_anisotropy, ..parameters };
+                let bxdf = surface(strokes);
+                for cosine in COSINES {
+                    for phi in [0.0, 0.5, 1.1, 1.5] {
+                        let albedo = albedo_from(&bxdf, cosine, phi)[0];
+                        let case = format!("{name} {specular_roughness} {specular_roughness_anisotropy}");
+                        assert!((albedo - 1.0).abs() < tolerance, "{case} from {cosine} {phi}: {albedo}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where numbers vary, the table has nodes between which it is linear.
+#[test]
+fn surfaces_of_numbers_that_vary_are_those_of_constant_ones() {
+    let least = OpenPbrParameters { specular_roughness: 0.0, coat_weight: 0.0, ..lossless() };
+    let most = OpenPbrParameters {
+        specular_roughness: 1.0,
+        coat_weight: 1.0,
+        thin_film_weight: 1.0,
+        fuzz_weight: 1.0,
+        thin_film_thickness: 2.0,
+        transmission_weight: 1.0,
+        specular_ior: 2.0,
+        ..lossless()
+    };
+    let lambda = SampledWavelengths::sample_uniform(0.3);
+    let mut random = Random::new(11);
+    let tables = [
+        OpenPbrTable::new(&least, &OpenPbrParameters { specular_roughness: 1.0, ..least }),
+        OpenPbrTable::new(&OpenPbrParameters { thin_film_thickness: 0.1, ..least }, &most),
+    ];
+    for (table, tolerance) in tables.iter().zip([0.012, 0.08]) {
+        let is_free = tolerance > 0.02;
+        for _ in 0..12 {
+            let mut share = |free: f32| if is_free { random.get_1d() } else { free };
+            let parameters = OpenPbrParameters {
+                coat_weight: share(0.0),
+                thin_film_weight: share(0.0),
+                fuzz_weight: share(0.0),
+                thin_film_thickness: 0.1 + 1.9 * share(0.4 / 1.9),
+                transmission_weight: share(0.0),
+                specular_ior: 1.5 + 0.5 * share(0.0),
+                specular_roughness: random.get_1d(),
+                ..lossless()
+            };
+            let bxdf = Bxdf::from(OpenPbr::new(table, &parameters, &lambda));
+            for cosine in [1.0, 0.6, 0.2] {
+                let albedo = albedo(&bxdf, cosine);
+                for share in albedo.0 {
+                    assert!((share - 1.0).abs() < tolerance, "{parameters:?} at {cosine}: {albedo:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A smooth sheet sums the reflections between its sides, and does not turn light.
+#[test]
+fn thin_walls_reflect_and_transmit_as_the_specification_says() {
+    let clear = OpenPbrParameters { specular_roughness: 0.0, transmission_weight: 1.0, ..lossless() };
+    let window = surface(OpenPbrParameters { geometry_thin_walled: true, ..clear });
+    let absorbing = SampledSpectrum::splat(0.5);
+    let tinted =
+        surface(OpenPbrParameters { geometry_thin_walled: true, transmission_color: absorbing, ..clear });
+    for cosine in [1.0f32, 0.4, -0.7] {
+        let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, 2.0);
+        let share = |bxdf: &Bxdf, directions| {
+            let sample = bxdf.sample_f(wo, 0.5, Vec2::ZERO, TransportMode::Radiance, directions);
+            assert!(sample.valid && sample.eta == 1.0);
+            (sample.f[0] * sample.wi.z.abs() / sample.pdf, sample.wi)
+        };
+        let f = fr_dielectric(cosine.abs(), 1.5);
+        let (transmitted, wi) = share(&window, Directions::Transmission);
+        assert!((wi + wo).length() < 1e-5 && (transmitted - (1.0 - f) / (1.0 + f)).abs() < 1e-5);
+        let (reflected, _) = share(&window, Directions::Reflection);
+        assert!((reflected - 2.0 * f / (1.0 + f)).abs() < 1e-5);
+        let (through, back) =
+            (share(&tinted, Directions::Transmission), share(&tinted, Directions::Reflection));
+        // The sum of what crosses the sheet once, three times, …, and of what returns.
+        let sum = |first: f32| (0..30).map(|n| first * (0.25 * f * f).powi(n)).sum::<f32>();
+        assert!((through.0 - sum(0.5 * (1.0 - f) * (1.0 - f))).abs() < 1e-5);
+        assert!((back.0 - f - sum(0.25 * f * (1.0 - f) * (1.0 - f))).abs() < 1e-5);
+    }
+    let leaf = |subsurface_scatter_anisotropy| {
+        surface(OpenPbrParameters {
+            geometry_thin_walled: true,
+            subsurface_weight: 1.0,
+            subsurface_scatter_anisotropy,
+            specular_weight: 0.0,
+            ..lossless()
+        })
+    };
+    let wo = spherical_direction(0.6, 0.8, 0.0);
+    for (g, above) in [(-1.0, 1.0), (0.0, 0.5), (0.6, 0.2), (1.0, 0.0)] {
+        let value = |wi| leaf(g).f(wo, wi, TransportMode::Radiance)[0] * std::f32::consts::PI;
+        assert!((value(spherical_direction(0.8, 0.6, 1.0)) - above).abs() < 1e-3, "{g}");
+        assert!((value(spherical_direction(0.8, -0.6, 1.0)) - (1.0 - above)).abs() < 1e-3, "{g}");
     }
 }
 
@@ -129,6 +276,8 @@ fn nothing_gains_light() {
             fuzz_roughness: weight(),
             thin_film_weight: weight(),
             thin_film_thickness: weight(),
+            subsurface_weight: weight(),
+            geometry_thin_walled: weight() > 0.5,
             ..lossless()
         });
         for cosine in COSINES {

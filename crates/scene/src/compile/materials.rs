@@ -187,7 +187,8 @@ impl Compiler<'_> {
             texture
         });
         let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
-        Material::OpenPbr(OpenPbrMaterial::new(self.textures.textures(), numbers, colors))
+        let textures = self.textures.textures();
+        Material::OpenPbr(OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled))
     }
 
     pub(super) fn albedo(

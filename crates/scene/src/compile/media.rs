@@ -78,7 +78,7 @@ impl Compiler<'_> {
                     placement,
                     bounds,
                     coefficients: self.coefficients(coefficients, origin),
-                    majorants: MajorantGrid::uniform(1.0),
+                    majorants: CloudMedium::layers(&bounds, *density),
                     density: *density,
                     wispiness: *wispiness,
                     frequency: *frequency,

@@ -27,6 +27,7 @@ pub struct OpenPbrMaterial {
     varying: Vec<usize>,
     /// The textures of [`OpenPbrDesc::COLORS`].
     colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    is_thin: bool,
     /// What its layers do with light.
     table: OpenPbrTable,
 }
@@ -43,6 +44,7 @@ impl OpenPbrMaterial {
         textures: &Textures,
         numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
         colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+        is_thin: bool,
     ) -> Self {
         let ranges: [[f32; 2]; _] = std::array::from_fn(|i| {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
@@ -50,15 +52,16 @@ impl OpenPbrMaterial {
         });
         let varying = (0..numbers.len()).filter(|&i| textures.constant(numbers[i]).is_none()).collect();
         let constants = ranges.map(|[least, _]| least);
-        let index = Self::index_range(&ranges);
+        let index = if is_thin { ranges[position("specular_ior")] } else { Self::index_range(&ranges) };
         let ends = [0, 1].map(|end| {
             let values = ranges.map(|range| range[end]);
             let (mut parameters, _) = parameters(&values);
             parameters.specular_ior = index[end];
+            parameters.geometry_thin_walled = is_thin;
             parameters
         });
         let table = OpenPbrTable::new(&ends[0], &ends[1]);
-        Self { numbers, constants, varying, colors, table }
+        Self { numbers, constants, varying, colors, is_thin, table }
     }
 
     /// The least and the largest index of refraction at all wavelengths.
@@ -84,13 +87,17 @@ impl OpenPbrMaterial {
         // α below 0.001 counts as smooth.
         let may_be_smooth = |name| self.constant(textures, name).is_none_or(|roughness| roughness < 0.032);
         let is_coated = self.constant(textures, "coat_weight") != Some(0.0);
+        // Sheets spread what they transmit less than what they reflect, if at all.
+        if self.is_thin && self.constant(textures, "transmission_weight") != Some(0.0) {
+            return true;
+        }
         may_be_smooth("specular_roughness") || is_coated && may_be_smooth("coat_roughness")
     }
 
     /// Whether secondary wavelengths may be terminated.
     pub(super) fn may_disperse(&self, textures: &Textures) -> bool {
         let is_zero = |name| self.constant(textures, name) == Some(0.0);
-        !(is_zero("transmission_weight") || is_zero("transmission_dispersion_scale"))
+        !(self.is_thin || is_zero("transmission_weight") || is_zero("transmission_dispersion_scale"))
     }
 
     /// Its BxDF.
@@ -107,6 +114,7 @@ impl OpenPbrMaterial {
             numbers[i] = textures.float(self.numbers[i], context).clamp(least, most);
         }
         let (mut p, transmission) = parameters(&numbers);
+        p.geometry_thin_walled = self.is_thin;
         // Colours that are not seen are not looked up.
         let [base, specular, transmitted, subsurface, coat, fuzz] = self.colors;
         let color = |id, is_seen| match is_seen {
@@ -115,11 +123,12 @@ impl OpenPbrMaterial {
         };
         p.base_color = color(base, true);
         p.specular_color = color(specular, true);
-        p.transmission_color = color(transmitted, p.transmission_weight > 0.0 && transmission.depth == 0.0);
+        p.transmission_color =
+            color(transmitted, p.transmission_weight > 0.0 && (self.is_thin || transmission.depth == 0.0));
         p.subsurface_color = color(subsurface, p.subsurface_weight > 0.0);
         p.coat_color = color(coat, p.coat_weight > 0.0);
         p.fuzz_color = color(fuzz, p.fuzz_weight > 0.0);
-        if transmission.dispersion_scale > 0.0 && p.transmission_weight > 0.0 {
+        if transmission.dispersion_scale > 0.0 && p.transmission_weight > 0.0 && !self.is_thin {
             let abbe_number = transmission.abbe_number / transmission.dispersion_scale;
             p.specular_ior = cauchy(p.specular_ior, abbe_number, lambda.lambda()[0]).max(1.0);
             lambda.terminate_secondary();
@@ -157,6 +166,7 @@ fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
         dispersion_scale,
         abbe_number,
         subsurface_weight,
+        subsurface_scatter_anisotropy,
         coat_weight,
         coat_roughness,
         coat_roughness_anisotropy,
@@ -178,6 +188,7 @@ fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
         specular_ior,
         transmission_weight,
         subsurface_weight,
+        subsurface_scatter_anisotropy,
         coat_weight,
         coat_roughness,
         coat_roughness_anisotropy,

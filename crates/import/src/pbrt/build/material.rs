@@ -261,10 +261,6 @@ fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
     let unused = [
         ("subsurface_radius", reader.optional_float_parameter("subsurface_radius").is_some()),
         ("subsurface_radius_scale", reader.optional_spectrum_parameter("subsurface_radius_scale").is_some()),
-        (
-            "subsurface_scatter_anisotropy",
-            reader.optional_float_parameter("subsurface_scatter_anisotropy").is_some(),
-        ),
     ];
     for (name, _) in unused.into_iter().filter(|(_, is_given)| *is_given) {
         reader.ignored(name, format!("`{name}` has no effect: light leaves where it entered"));
@@ -272,6 +268,7 @@ fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
     OpenPbrDesc {
         numbers,
         colors,
+        thin_walled: reader.boolean("geometry_thin_walled", false),
         emission_luminance,
         emission_color: emission_color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space)),
     }

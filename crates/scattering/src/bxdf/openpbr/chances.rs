@@ -16,11 +16,11 @@ pub(super) enum Lobe {
     Coat,
     /// The reflection of opaque bases, by their facets.
     Facets,
-    /// Glass, reflected or refracted by its facets.
+    /// Glass, reflected or refracted by its facets; of a sheet, what passes it.
     Glass,
     /// The rest, by its cosine.
     Rest,
-    /// The rest of glass on its other side, by its cosine.
+    /// The rest of glass and of thin walls on their other side, by its cosine.
     Through,
 }
 
@@ -47,7 +47,7 @@ impl Chances {
         let (mut reflected, mut rest) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
         if weights.diffuse > 0.0 {
             reflected += shares.dielectric * surface.specular_color * weights.diffuse;
-            rest += shares.diffuse_rest * surface.diffuse_color * weights.diffuse;
+            rest += shares.diffuse_rest * surface.diffuse_albedo() * weights.diffuse;
         }
         if weights.metal > 0.0 {
             reflected += surface.metal(cosine) * (taken.metal * weights.metal);
@@ -59,33 +59,44 @@ impl Chances {
             let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
             (reflected, rest) = (reflected * opaque, rest * opaque);
         }
-        let reflected = reflected.average();
+        let mut reflected = reflected.average();
         let mut rest = rest.average();
         let (mut facets, mut through) = (0.0, 0.0);
         let glass = surface.glass();
         if glass > 0.0 {
-            let (reflects, refracts, left) = match wo.z > 0.0 {
-                true => {
-                    let reflects = (shares.dielectric * surface.specular_color).average();
-                    (reflects, shares.refracted, shares.glass_rest)
-                }
-                false => {
-                    let inside = surface.inside(wo);
-                    (inside.reflected, inside.refracted, inside.left())
+            let inside = (wo.z < 0.0 && !surface.stack.is_thin).then(|| surface.inside(wo));
+            let (reflects, refracts, left) = match inside {
+                Some(inside) => (inside.reflected, inside.refracted, inside.left()),
+                None => {
+                    let tint = surface.specular_color.average();
+                    (shares.reflected * tint, shares.refracted, shares.glass_rest)
                 }
             };
-            let side = usize::from(wo.z < 0.0);
+            let side = usize::from(inside.is_some());
             let left = if rests.glass[side] > 0.0 { left } else { 0.0 };
             rest += glass * left * (1.0 - rests.through[side]);
             let tint = glass * surface.transmission_color.average();
             facets = glass * reflects + tint * refracts;
             through = tint * left * rests.through[side];
+            if surface.stack.is_thin {
+                reflected += glass * reflects;
+                facets = tint * refracts;
+            }
+        }
+        if weights.diffuse > 0.0 && surface.stack.is_thin {
+            let transmitted = shares.diffuse_rest * surface.scattered * surface.darkening;
+            through += transmitted.average() * (surface.forward * weights.diffuse);
         }
         let coat = weights.layers * taken.coat;
         let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through];
         match directions {
             Directions::All => (),
-            Directions::Reflection => chances[5] = 0.0,
+            Directions::Reflection => {
+                chances[5] = 0.0;
+                if surface.stack.is_thin {
+                    chances[3] = 0.0;
+                }
+            }
             Directions::Transmission => [0, 1, 2, 4].into_iter().for_each(|i| chances[i] = 0.0),
         }
         let sum: f32 = chances.iter().sum();
@@ -126,7 +137,11 @@ impl Chances {
     ) -> f32 {
         let [fuzz, coat, facets, glass, rest, through] = self.0;
         let mut pdf = 0.0;
-        if glass > 0.0 {
+        if glass > 0.0 && surface.stack.is_thin {
+            if !same_hemisphere(wo, wi) {
+                pdf += glass * surface.pdf_sheet(wo, wi);
+            }
+        } else if glass > 0.0 {
             pdf += glass * surface.pdf_glass(wo, wi, mode, directions);
         }
         let cosine = cosine_hemisphere_pdf(wi.z.abs());

@@ -27,7 +27,7 @@
 //! light is reflected back to the base again and again: darkening follows the specification's form
 //! with mean albedos, so that it does not depend on directions. From below, glass is met from
 //! inside, and an opaque base is as from above. Colours only absorb. Sources: [OpenPBR 2024],
-//! [Kulla 2017].
+//! [Kulla 2017]. Thin walls are in thin.rs.
 
 mod albedo;
 mod chances;
@@ -42,6 +42,7 @@ mod parameters;
 mod shares;
 mod stack;
 mod table;
+mod thin;
 mod value;
 
 pub use parameters::OpenPbrParameters;
@@ -82,6 +83,11 @@ pub struct OpenPbr<'a> {
     specular_color: SampledSpectrum,
     transmission_color: SampledSpectrum,
     diffuse_color: SampledSpectrum,
+    /// The share of the diffuse base that has this colour.
+    diffuse_weight: f32,
+    /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
+    scattered: SampledSpectrum,
+    forward: f32,
     coat_color: SampledSpectrum,
     /// Factor on opaque bases.
     darkening: SampledSpectrum,
@@ -130,10 +136,19 @@ impl<'a> OpenPbr<'a> {
             specular_color: p.specular_color,
             transmission_color: p.transmission_color,
             diffuse_color: (p.base_color * p.base_weight).lerp(p.subsurface_color, p.subsurface_weight),
+            diffuse_weight: 1.0,
+            scattered: SampledSpectrum::ZERO,
+            forward: 0.0,
             coat_color: p.coat_color,
             darkening: SampledSpectrum::ONE,
             fuzz_color: p.fuzz_color,
         };
+        if p.geometry_thin_walled {
+            surface.diffuse_color = surface.metal_color;
+            surface.diffuse_weight = 1.0 - p.subsurface_weight;
+            surface.scattered = p.subsurface_color * p.subsurface_weight;
+            surface.forward = 0.5 * (1.0 + p.subsurface_scatter_anisotropy);
+        }
         if surface.stack.film_weight > 0.0 {
             let thickness = SampledSpectrum::splat(1000.0 * p.thin_film_thickness);
             surface.waves = thickness / SampledSpectrum::new(*lambda.lambda());
@@ -149,9 +164,9 @@ impl<'a> OpenPbr<'a> {
         surface
     }
 
-    /// Index of refraction of the glass that it is or could be.
+    /// Index of refraction of the glass that it is or could be; 1 for thin walls.
     pub fn eta(&self) -> f32 {
-        self.stack.index
+        if self.stack.is_thin { 1.0 } else { self.stack.index }
     }
 
     /// The share of light that reflections in the coat leave of an opaque base.
@@ -159,7 +174,8 @@ impl<'a> OpenPbr<'a> {
         let one = SampledSpectrum::ONE;
         let stack = &self.stack;
         let reflected = SampledSpectrum::splat(mean_fresnel(stack.below / stack.above).max(0.0));
-        let dielectric = reflected + (one - reflected) * self.diffuse_color;
+        let dielectric =
+            reflected + (one - reflected) * (self.diffuse_color * self.diffuse_weight + self.scattered);
         let albedo = dielectric.lerp(self.metal_color, self.metalness);
         // Inside, light is reflected as outside where the base keeps its directions, and beyond the
         // critical angle, too, where it spreads them.
@@ -168,6 +184,20 @@ impl<'a> OpenPbr<'a> {
         let roughness = lerp(self.metalness, 1.0, stack.base.mean_alpha().sqrt());
         let k = lerp(roughness, outer, inner);
         albedo.map(|albedo| (1.0 - k) / (1.0 - k * albedo))
+    }
+
+    /// Whether the diffuse base is that of a thin wall which transmits light.
+    fn transmits_diffusely(&self) -> bool {
+        self.forward > 0.0 && !self.scattered.is_black()
+    }
+
+    /// What the diffuse base reflects of the light that is left for it.
+    #[inline]
+    fn diffuse_albedo(&self) -> SampledSpectrum {
+        match self.stack.is_thin {
+            true => self.diffuse_color * self.diffuse_weight + self.scattered * (1.0 - self.forward),
+            false => self.diffuse_color,
+        }
     }
 
     /// The share of the surface that is glass.
@@ -185,7 +215,7 @@ impl<'a> OpenPbr<'a> {
     fn weights(&self, z: f32) -> Weights {
         let glass = self.glass();
         let diffuse = (1.0 - self.metalness) * (1.0 - self.transmission);
-        if z > 0.0 {
+        if z > 0.0 || self.stack.is_thin {
             return Weights { layers: 1.0, metal: self.metalness, diffuse, glass };
         }
         Weights { layers: 1.0 - glass, metal: self.metalness, diffuse, glass: 0.0 }
@@ -223,6 +253,12 @@ impl Scatter for OpenPbr<'_> {
             flags |= kind(&self.stack.coat);
         }
         if self.glass() > 0.0 {
+            flags |= BxdfFlags::TRANSMISSION;
+            if self.stack.is_thin {
+                flags |= kind(&self.stack.sheet());
+            }
+        }
+        if self.weights(1.0).diffuse > 0.0 && self.transmits_diffusely() {
             flags |= BxdfFlags::TRANSMISSION;
         }
         if self.stack.spreads() {
@@ -264,6 +300,7 @@ impl Scatter for OpenPbr<'_> {
         let facets = match lobe {
             Lobe::Coat => Some(mirrored(&self.stack.coat, flip(below, wo), u)),
             Lobe::Facets => Some(mirrored(&self.stack.base, flip(below, wo), u)),
+            Lobe::Glass if self.stack.is_thin => Some(self.sample_sheet(wo, u)),
             Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),
             Lobe::Fuzz | Lobe::Rest | Lobe::Through => None,
         };
@@ -279,8 +316,9 @@ impl Scatter for OpenPbr<'_> {
             }
             None if lobe == Lobe::Through => {
                 let wi = flip(!below, sample_cosine_hemisphere(u));
-                let eta = if below { 1.0 / self.stack.index } else { self.stack.index };
-                (wi, BxdfFlags::GLOSSY_TRANSMISSION, eta)
+                let eta = if below { 1.0 / self.eta() } else { self.eta() };
+                let kind = if self.transmits_diffusely() { rest } else { BxdfFlags::GLOSSY };
+                (wi, BxdfFlags::TRANSMISSION | kind, eta)
             }
             None => {
                 let (wi, flags) = match lobe {

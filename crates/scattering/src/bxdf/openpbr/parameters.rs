@@ -32,6 +32,8 @@ pub struct OpenPbrParameters {
     pub subsurface_weight: f32,
     /// Albedo of that share.
     pub subsurface_color: SampledSpectrum,
+    /// Of light that is scattered in a thin wall, from all reflected, −1, to all transmitted, 1.
+    pub subsurface_scatter_anisotropy: f32,
     /// Presence of the coat.
     pub coat_weight: f32,
     /// Factor on light that crosses the coat twice along the normal.
@@ -56,6 +58,8 @@ pub struct OpenPbrParameters {
     pub thin_film_thickness: f32,
     /// Its index of refraction.
     pub thin_film_ior: f32,
+    /// Whether the surface is a sheet without an inside.
+    pub geometry_thin_walled: bool,
 }
 
 impl Default for OpenPbrParameters {
@@ -75,6 +79,7 @@ impl Default for OpenPbrParameters {
             transmission_color: SampledSpectrum::ONE,
             subsurface_weight: 0.0,
             subsurface_color: SampledSpectrum::splat(0.8),
+            subsurface_scatter_anisotropy: 0.0,
             coat_weight: 0.0,
             coat_color: SampledSpectrum::ONE,
             coat_roughness: 0.0,
@@ -87,6 +92,7 @@ impl Default for OpenPbrParameters {
             thin_film_weight: 0.0,
             thin_film_thickness: 0.5,
             thin_film_ior: 1.4,
+            geometry_thin_walled: false,
         }
     }
 }

@@ -15,7 +15,9 @@ pub(super) struct Shares {
     pub dielectric: SampledSpectrum,
     /// What is left for the diffuse base.
     pub diffuse_rest: SampledSpectrum,
-    /// What the facets of glass refract, on average.
+    /// What the facets of glass reflect, on average.
+    pub reflected: f32,
+    /// What they refract.
     pub refracted: f32,
     /// What is left for scattering between the facets of glass.
     pub glass_rest: f32,
@@ -51,28 +53,43 @@ impl OpenPbr<'_> {
     /// The shares of a direction above or, if it is below, of its opposite.
     #[inline]
     pub(super) fn shares(&self, w: Vector3) -> Shares {
+        let shares = self.bulk_shares(w);
+        if !(self.stack.is_thin && self.glass() > 0.0) {
+            return shares;
+        }
+        let sheet = self.inside(w);
+        let (reflected, refracted, glass_rest) = (sheet.reflected, sheet.refracted, sheet.left());
+        Shares { reflected, refracted, glass_rest, ..shares }
+    }
+
+    /// The same where glass is no sheet.
+    #[inline]
+    fn bulk_shares(&self, w: Vector3) -> Shares {
         if !self.table.has_film() {
             let taken = self.table.taken(&self.numbers, 0.0, w);
             return Shares {
                 taken,
                 dielectric: SampledSpectrum::splat(taken.dielectric),
                 diffuse_rest: SampledSpectrum::splat((taken.left - taken.dielectric).max(0.0)),
+                reflected: taken.dielectric,
                 refracted: taken.refracted,
                 glass_rest: (taken.left - taken.dielectric - taken.refracted).max(0.0),
             };
         }
         let each = self.waves.0.map(|waves| self.table.taken(&self.numbers, waves, w));
         let of = |value: fn(&Taken) -> f32| SampledSpectrum::new(each.each_ref().map(value));
+        let dielectric = of(|taken| taken.dielectric);
         Shares {
             taken: each[0],
-            dielectric: of(|taken| taken.dielectric),
+            dielectric,
+            reflected: dielectric.average(),
             diffuse_rest: of(|taken| (taken.left - taken.dielectric).max(0.0)),
             refracted: of(|taken| taken.refracted).average(),
             glass_rest: of(|taken| (taken.left - taken.dielectric - taken.refracted).max(0.0)).average(),
         }
     }
 
-    /// What glass does with light from a direction below.
+    /// What glass does with light from a direction below or, if it is a sheet, from either side.
     pub(super) fn inside(&self, w: Vector3) -> Inside {
         self.table.inside(&self.numbers, &self.waves, w)
     }
@@ -99,6 +116,10 @@ impl OpenPbr<'_> {
         }
         if !self.stack.spreads() {
             (rests.metal, rests.glass) = (0.0, [0.0; 2]);
+        }
+        if self.stack.is_thin {
+            rests.through = [0.5; 2];
+            return rests;
         }
         let [above, below] = rests.glass;
         if above > 0.0 && below > 0.0 && self.glass() > 0.0 {

@@ -3,7 +3,8 @@
 //! Every layer takes what its lobe reflects, by the tables of albedos, and passes on the rest; the
 //! last one scatters whatever is left, diffusely or between microfacets, so that nothing is lost
 //! or gained unless something absorbs. Below a coat light meets the base at a smaller angle:
-//! sin θ' = sin θ/η_coat.
+//! sin θ' = sin θ/η_coat. A sheet of glass sums the reflections between its sides, and light that
+//! passes it goes on in its direction.
 
 use super::OpenPbrParameters;
 use super::albedo::{Glass, HATS, Hats, White, dot, hat_cosines, hats};
@@ -34,6 +35,8 @@ pub(super) struct Stack {
     pub film_weight: f32,
     /// Its index of refraction.
     pub film_ior: f32,
+    /// Whether glass is a sheet.
+    pub is_thin: bool,
 }
 
 /// What the layers do with light from one direction above, as if nothing absorbed.
@@ -57,27 +60,31 @@ pub(super) struct Taken {
     pub left: f32,
 }
 
+/// The numbers of [`Taken`], as tables have them.
+pub(super) type Row = [f32; 8];
+
 impl Taken {
     #[inline]
-    pub fn add(&mut self, weight: f32, taken: &Self) {
-        self.fuzz_once += weight * taken.fuzz_once;
-        self.fuzz_more += weight * taken.fuzz_more;
-        self.coat += weight * taken.coat;
-        self.below_coat += weight * taken.below_coat;
-        self.metal += weight * taken.metal;
-        self.dielectric += weight * taken.dielectric;
-        self.refracted += weight * taken.refracted;
-        self.left += weight * taken.left;
+    pub fn from_row(row: Row) -> Self {
+        let [fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left] = row;
+        Self { fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left }
+    }
+
+    pub fn to_row(self) -> Row {
+        let Self { fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left } = self;
+        [fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left]
     }
 }
 
-/// What glass does with light from one direction below.
+/// What glass does with light from one direction below or, if it is a sheet, from either side.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Inside {
-    /// What facets reflect, with what the layers above send back.
+    /// What facets reflect; from below, with what the layers above send back.
     pub reflected: f32,
     /// What passes.
     pub refracted: f32,
+    /// What is left for scattering between facets, before it is cut off at zero.
+    left: f32,
 }
 
 impl Inside {
@@ -85,11 +92,12 @@ impl Inside {
     pub fn add(&mut self, weight: f32, inside: &Self) {
         self.reflected += weight * inside.reflected;
         self.refracted += weight * inside.refracted;
+        self.left += weight * inside.left;
     }
 
     /// What is left for scattering between facets.
     pub fn left(&self) -> f32 {
-        (1.0 - self.reflected - self.refracted).max(0.0)
+        self.left.max(0.0)
     }
 }
 
@@ -105,7 +113,15 @@ pub(super) struct Seen {
     wo: Vector3,
     coat: White,
     base: White,
-    glass: Option<[Glass; 2]>,
+    glass: Option<SeenGlass>,
+}
+
+/// Facets of glass seen from one direction.
+enum SeenGlass {
+    /// From above, and from below with the opposite direction.
+    Body([Glass; 2]),
+    /// Those that light which passes a sheet seems to be mirrored by.
+    Sheet(White),
 }
 
 impl Seen {
@@ -154,6 +170,7 @@ impl Stack {
             index: p.specular_ior.max(1.001),
             film_weight: p.thin_film_weight,
             film_ior: p.thin_film_ior,
+            is_thin: p.geometry_thin_walled,
         }
     }
 
@@ -204,8 +221,12 @@ impl Stack {
     pub fn seen(&self, wo: Vector3, with_glass: bool) -> Seen {
         let base = White::seen(&self.base, wo);
         let coat = if self.coat_weight > 0.0 { White::seen(&self.coat, wo) } else { base };
-        let glass = |eta| Glass::seen(eta, &self.base, wo);
-        Seen { wo, base, coat, glass: with_glass.then(|| [glass(self.index), glass(1.0 / self.index)]) }
+        let body = |eta| Glass::seen(eta, &self.base, wo);
+        let glass = with_glass.then(|| match self.is_thin {
+            true => SeenGlass::Sheet(White::seen(&self.sheet(), wo)),
+            false => SeenGlass::Body([body(self.index), body(1.0 / self.index)]),
+        });
+        Seen { wo, base, coat, glass }
     }
 
     /// What the layers over the base pass on.
@@ -248,7 +269,7 @@ impl Stack {
         let met = below_coat - dot(&white.losses, &above.coat) / white.albedo;
         let here = self.dielectric(cosine, waves);
         let mut refracted = 0.0;
-        if let Some([glass, _]) = &seen.glass {
+        if let Some(SeenGlass::Body([glass, _])) = &seen.glass {
             // At the direction's own reflectance where facets are smooth.
             let kept: f32 = glass.refracted.iter().sum();
             let passed =
@@ -267,15 +288,44 @@ impl Stack {
         }
     }
 
-    /// What glass does with light from the direction opposite to one seen with glass.
-    pub fn inside(&self, seen: &Seen, above: &Above, [facing, _]: &[Hats; 2]) -> Inside {
-        let Some([_, glass]) = &seen.glass else { return Inside::default() };
-        let mut inside = Inside { reflected: glass.total, refracted: 0.0 };
-        for k in 0..HATS {
-            let passed = (1.0 - facing[k]) * above.coat[k];
-            inside.reflected += (1.0 - passed) * glass.reflected[k];
-            inside.refracted += passed * glass.refracted[k];
+    /// What glass does with light from the direction opposite to one seen with glass or, if it is
+    /// a sheet, from either.
+    pub fn inside(&self, seen: &Seen, above: &Above, facing: &[Hats; 2], waves: f32) -> Inside {
+        match &seen.glass {
+            None => Inside::default(),
+            Some(SeenGlass::Body([_, glass])) => {
+                let mut inside = Inside { reflected: glass.total, refracted: 0.0, left: 0.0 };
+                for k in 0..HATS {
+                    let passed = (1.0 - facing[0][k]) * above.coat[k];
+                    inside.reflected += (1.0 - passed) * glass.reflected[k];
+                    inside.refracted += passed * glass.refracted[k];
+                }
+                Inside { left: 1.0 - inside.reflected - inside.refracted, ..inside }
+            }
+            Some(SeenGlass::Sheet(passing)) => {
+                let own = hats(seen.wo.z);
+                let here = sheet_reflectance(self.dielectric(seen.wo.z, waves));
+                let at_hats = facing[0].map(sheet_reflectance);
+                let taken = self.taken(seen, above, facing, waves);
+                let met = |white: &White| taken.below_coat - dot(&white.losses, &above.coat) / white.albedo;
+                let reflected = albedo(&seen.base, &own, &at_hats, here) * met(&seen.base);
+                let passed = albedo(passing, &own, &at_hats.map(|f| 1.0 - f), 1.0 - here);
+                let refracted = passed * met(passing);
+                Inside { reflected, refracted, left: taken.left - reflected - refracted }
+            }
         }
-        inside
     }
+
+    /// The facets that mirror light, turned over, as a sheet with rough sides refracts it.
+    ///
+    /// A facet of slope m mirrors light by an angle of 2m and refracts it by (η − 1) m; the two
+    /// sides are independent, so that their variances add.
+    pub fn sheet(&self) -> TrowbridgeReitz {
+        self.base.scaled(((self.index - 1.0) * std::f32::consts::FRAC_1_SQRT_2).min(1.0))
+    }
+}
+
+/// What a clear sheet reflects whose sides reflect the share `f`: F + F (1 − F)²/(1 − F²).
+fn sheet_reflectance(f: f32) -> f32 {
+    2.0 * f / (1.0 + f)
 }

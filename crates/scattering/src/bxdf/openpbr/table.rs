@@ -7,7 +7,7 @@
 
 use super::OpenPbrParameters;
 use super::grid::{Place, nodes};
-use super::stack::{Inside, Seen, Stack, Taken};
+use super::stack::{Inside, Row, Seen, Stack, Taken};
 use math::{Vec3, Vector3, safe_sqrt, sqr};
 use spectrum::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum};
 use std::f32::consts::FRAC_PI_2;
@@ -16,11 +16,13 @@ use std::fmt;
 /// Cosines, the squares of 0, 1/36, … 1, among which are those of the tables of albedos.
 const COSINES: usize = 37;
 /// Cosines of the azimuth, where it matters.
-const AZIMUTHS: usize = 9;
+const AZIMUTHS: usize = 13;
 /// Tables have about so many nodes at most, without those of cosines.
-const MOST_NODES: usize = 8192;
+const MOST_NODES: usize = 16384;
 /// Nodes of one number.
 const NODES: [usize; 2] = [2, 17];
+/// The most nodes of a film's thickness where numbers vary.
+const FEW_FILMS: usize = 64;
 /// A film of more wavelengths counts as one of so many.
 const MOST_WAVES: f32 = 8.0;
 /// Nodes for each wavelength of a film's thickness, which is 2n periods of its reflectance.
@@ -38,13 +40,13 @@ const AXES: [(Number, Scale); NUMBERS] = [
     (|p| &mut p.specular_weight, Scale::Weight),
     (|p| &mut p.specular_ior, Scale::Index),
     (|p| &mut p.specular_roughness_anisotropy, Scale::Share),
-    (|p| &mut p.coat_weight, Scale::Share),
+    (|p| &mut p.coat_weight, Scale::Presence(3)),
     (|p| &mut p.coat_roughness, Scale::Share),
     (|p| &mut p.coat_ior, Scale::Index),
     (|p| &mut p.coat_roughness_anisotropy, Scale::Share),
-    (|p| &mut p.fuzz_weight, Scale::Share),
+    (|p| &mut p.fuzz_weight, Scale::Presence(2)),
     (|p| &mut p.fuzz_roughness, Scale::Share),
-    (|p| &mut p.thin_film_weight, Scale::Share),
+    (|p| &mut p.thin_film_weight, Scale::Presence(2)),
     (|p| &mut p.thin_film_ior, Scale::Index),
 ];
 
@@ -53,6 +55,8 @@ const AXES: [(Number, Scale); NUMBERS] = [
 enum Scale {
     /// It is.
     Share,
+    /// It is, more or less exactly, so that so many nodes do.
+    Presence(usize),
     /// Any number ≥ 0.
     Weight,
     /// An index of refraction.
@@ -60,9 +64,17 @@ enum Scale {
 }
 
 impl Scale {
+    /// How many nodes do, if not as many as possible.
+    fn nodes(self) -> Option<usize> {
+        match self {
+            Self::Presence(nodes) => Some(nodes),
+            _ => None,
+        }
+    }
+
     fn to_unit(self, value: f32) -> f32 {
         match self {
-            Self::Share => value,
+            Self::Share | Self::Presence(_) => value,
             Self::Weight => value.sqrt() / (1.0 + value.sqrt()),
             Self::Index => (value - 1.0) / (value + 1.0),
         }
@@ -70,7 +82,7 @@ impl Scale {
 
     fn from_unit(self, unit: f32) -> f32 {
         match self {
-            Self::Share => unit,
+            Self::Share | Self::Presence(_) => unit,
             Self::Weight => sqr(unit / (1.0 - unit).max(1e-3)),
             Self::Index => (1.0 + unit) / (1.0 - unit),
         }
@@ -123,10 +135,12 @@ pub struct OpenPbrTable {
     /// The thickness of films in wavelengths, and the number of its nodes.
     waves: [f32; 2],
     films: usize,
+    /// Whether only the cosine varies.
+    is_plain: bool,
     /// The layers, if their numbers are the same everywhere.
     fixed: Option<Stack>,
     /// By axes, film, azimuth and cosine.
-    taken: Vec<Taken>,
+    taken: Vec<Row>,
     /// The same for glass; else empty.
     inside: Vec<Inside>,
     /// By axes and film.
@@ -173,13 +187,19 @@ impl OpenPbrTable {
                 .map(|waves| (1000.0 * waves).min(MOST_WAVES));
             films = 2 + ((waves[1] - waves[0]) * NODES_PER_WAVE) as usize;
         }
+        if !axes.is_empty() {
+            films = films.min(FEW_FILMS);
+        }
         let azimuths = if is_round { 1 } else { AZIMUTHS };
-        let each = (MOST_NODES / (films * azimuths)).max(1) as f64;
-        let len = each.powf(1.0 / axes.len().max(1) as f64) as usize;
-        axes.iter_mut().for_each(|axis| axis.len = len.clamp(NODES[0], NODES[1]));
+        let few: usize = axes.iter().filter_map(|axis| AXES[axis.number].1.nodes()).product();
+        let others = axes.iter().filter(|axis| AXES[axis.number].1.nodes().is_none()).count();
+        let each = (MOST_NODES / (films * azimuths * few)).max(1) as f64;
+        let len = (each.powf(1.0 / others.max(1) as f64) as usize).clamp(NODES[0], NODES[1]);
+        axes.iter_mut().for_each(|axis| axis.len = AXES[axis.number].1.nodes().unwrap_or(len));
         let fixed = axes.is_empty().then(|| Stack::new(least));
+        let is_plain = axes.is_empty() && films * azimuths == 1;
         let (taken, inside, means) = (Vec::new(), Vec::new(), Vec::new());
-        let mut table = Self { axes, azimuths, waves, films, fixed, taken, inside, means };
+        let mut table = Self { axes, azimuths, waves, films, is_plain, fixed, taken, inside, means };
         table.fill(least, has_fuzz, has_glass);
         table
     }
@@ -209,17 +229,17 @@ impl OpenPbrTable {
             for film in 0..self.films {
                 let waves = math::lerp(part(film, self.films), self.waves[0], self.waves[1]);
                 let facing = stack.facing(waves);
-                self.taken.extend(seen.iter().map(|seen| stack.taken(seen, &above, &facing, waves)));
+                self.taken.extend(seen.iter().map(|seen| stack.taken(seen, &above, &facing, waves).to_row()));
                 if has_glass {
-                    self.inside.extend(seen.iter().map(|seen| stack.inside(seen, &above, &facing)));
+                    self.inside.extend(seen.iter().map(|seen| stack.inside(seen, &above, &facing, waves)));
                 }
-                self.means.push(self.mean(self.means.len(), &seen));
+                self.means.push(self.mean(self.means.len(), &seen, stack.is_thin));
             }
         }
     }
 
     /// The means over the directions of one node.
-    fn mean(&self, node: usize, seen: &[Seen]) -> Means {
+    fn mean(&self, node: usize, seen: &[Seen], is_thin: bool) -> Means {
         const STEPS: usize = 8;
         let mut means = Means::default();
         let steps = if self.azimuths > 1 { STEPS } else { 1 };
@@ -227,18 +247,20 @@ impl OpenPbrTable {
             let cos_phi = (FRAC_PI_2 * (i as f32 + 0.5) / steps as f32).cos();
             for (cosine, weight) in nodes() {
                 let weight = weight / steps as f32;
-                let (mut taken, mut inside) = (Taken::default(), Inside::default());
+                let (mut taken, mut inside) = (Row::default(), Inside::default());
                 for (row, share) in self.rows(cos_phi, cosine) {
                     means.white += weight * share * seen[row].white();
-                    taken.add(share, &self.taken[node * self.rows_of_node() + row]);
+                    add(&mut taken, share, &self.taken[node * self.rows_of_node() + row]);
                     if let Some(row) = self.inside.get(node * self.rows_of_node() + row) {
                         inside.add(share, row);
                     }
                 }
+                let taken = Taken::from_row(taken);
                 means.fuzz += weight * taken.fuzz_more;
                 means.metal += weight * (taken.left - taken.metal).max(0.0);
                 means.diffuse += weight * (taken.left - taken.dielectric).max(0.0);
-                means.glass[0] += weight * (taken.left - taken.dielectric - taken.refracted).max(0.0);
+                let above = (taken.left - taken.dielectric - taken.refracted).max(0.0);
+                means.glass[0] += weight * if is_thin { inside.left() } else { above };
                 means.glass[1] += weight * inside.left();
             }
         }
@@ -323,17 +345,22 @@ impl OpenPbrTable {
     /// What the layers take of the light from a direction above, or from its opposite.
     #[inline]
     pub(super) fn taken(&self, numbers: &Numbers, waves: f32, w: Vector3) -> Taken {
-        let mut sum = Taken::default();
+        if self.is_plain {
+            let place = Place::new(safe_sqrt(w.z.abs()), COSINES);
+            let ([lower, upper], rows) = (place.weights(), &self.taken[place.index..place.index + 2]);
+            return Taken::from_row(std::array::from_fn(|i| lower * rows[0][i] + upper * rows[1][i]));
+        }
+        let mut sum = Row::default();
         let (cosine, cos_phi) = (w.z.abs(), self.cos_phi(w));
         self.around(numbers, waves, |node, weight| {
             for (row, share) in self.rows(cos_phi, cosine) {
-                sum.add(weight * share, &self.taken[node * self.rows_of_node() + row]);
+                add(&mut sum, weight * share, &self.taken[node * self.rows_of_node() + row]);
             }
         });
-        sum
+        Taken::from_row(sum)
     }
 
-    /// What glass does with light from a direction below.
+    /// What glass does with light from a direction below or, if it is a sheet, from either side.
     pub(super) fn inside(&self, numbers: &Numbers, waves: &SampledSpectrum, w: Vector3) -> Inside {
         let mut sum = Inside::default();
         let (cosine, cos_phi) = (w.z.abs(), self.cos_phi(w));
@@ -361,6 +388,9 @@ impl OpenPbrTable {
     /// The means at a place.
     #[inline]
     pub(super) fn means(&self, numbers: &Numbers, waves: f32) -> Means {
+        if self.is_plain {
+            return self.means[0];
+        }
         let mut sum = Means::default();
         self.around(numbers, waves, |node, weight| sum.add(weight, &self.means[node]));
         sum
@@ -371,6 +401,11 @@ impl OpenPbrTable {
     pub(super) fn has_film(&self) -> bool {
         self.films > 1
     }
+}
+
+#[inline]
+fn add(sum: &mut Row, weight: f32, row: &Row) {
+    sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
 }
 
 impl Means {

@@ -28,6 +28,10 @@ impl OpenPbr<'_> {
     /// The reflectance of the facets of the base met from above at a cosine.
     pub(super) fn reflectance(&self, cosine: f32, weights: &Weights) -> SampledSpectrum {
         let mut reflected = SampledSpectrum::ZERO;
+        if weights.glass > 0.0 && self.stack.is_thin {
+            reflected += self.sheet_shares(cosine)[0] * self.specular_color * weights.glass;
+            return reflected + self.reflectance(cosine, &Weights { glass: 0.0, ..*weights });
+        }
         if weights.metal > 0.0 {
             reflected += self.metal(cosine) * self.darkening * weights.metal;
         }
@@ -69,7 +73,10 @@ impl OpenPbr<'_> {
         }
         if weights.diffuse > 0.0 {
             let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
-            let diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
+            let mut diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
+            if self.stack.is_thin {
+                diffuse = diffuse * self.diffuse_weight + self.scattered(1.0 - self.forward, wo, wi);
+            }
             base += diffuse * left * self.darkening * weights.diffuse;
         }
         if weights.metal > 0.0 && rests.metal > 0.0 {
@@ -94,6 +101,9 @@ impl OpenPbr<'_> {
         wi: Vector3,
         mode: TransportMode,
     ) -> SampledSpectrum {
+        if self.stack.is_thin {
+            return self.thin_value(view, wo, wi);
+        }
         let glass = self.glass() > 0.0;
         match (same_hemisphere(wo, wi), wo.z > 0.0) {
             (true, true) => self.reflected(view, wo, wi, &self.weights(1.0)),
@@ -124,6 +134,10 @@ impl OpenPbr<'_> {
                 let coat = fr_dielectric(cosine, self.stack.coat_ior) * shares.below_fuzz();
                 SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers)
             }
+            Lobe::Glass if self.stack.is_thin => {
+                let tint = self.absorbed(2.0 * self.coat_length(cosine));
+                self.sheet_shares(cosine)[1] * tint * (shares.taken.below_coat * self.glass())
+            }
             Lobe::Glass if sample.flags.is_transmissive() => {
                 let outside = if wo.z > 0.0 { cosine } else { sample.wi.z };
                 let refracted = SampledSpectrum::ONE - self.stack.dielectrics(outside, &self.waves);
@@ -136,6 +150,7 @@ impl OpenPbr<'_> {
                 let tint = self.absorbed(2.0 * self.coat_length(cosine)) * shares.taken.below_coat;
                 let weights = match lobe {
                     Lobe::Glass => Weights { metal: 0.0, diffuse: 0.0, ..weights },
+                    _ if self.stack.is_thin => weights,
                     _ => Weights { glass: 0.0, ..weights },
                 };
                 self.reflectance(cosine, &weights) * tint
