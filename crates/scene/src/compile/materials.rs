@@ -188,7 +188,7 @@ impl Compiler<'_> {
         });
         let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
         let textures = self.textures.textures();
-        Material::OpenPbr(OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled))
+        Material::OpenPbr(Box::new(OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled)))
     }
 
     pub(super) fn albedo(

@@ -84,7 +84,7 @@ pub enum Material {
     /// See [`SubsurfaceMaterial`].
     Subsurface(SubsurfaceMaterial),
     /// See [`OpenPbrMaterial`].
-    OpenPbr(OpenPbrMaterial),
+    OpenPbr(Box<OpenPbrMaterial>),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.

@@ -20,8 +20,8 @@
 //! A narrow lobe keeps what the layers above pass on, as both directions have nearly the same T.
 //! What the minimum takes from a wide one, what the facets mask, and what they let pass is the rest
 //! L: it is scattered by the diffuse base or, as in [Kulla 2017], between facets. All factors are
-//! symmetric, so that f is reciprocal, and what absorbs nothing reflects or transmits all light:
-//! exactly but for tables, for facets that are alike both ways.
+//! symmetric, so that f is reciprocal, and what absorbs nothing reflects or transmits all light,
+//! exactly but for tables. A material has a table of the shares (table.rs).
 //!
 //! Refraction is by the index of the glass alone, as the coat has parallel sides. Inside the coat
 //! light is reflected back to the base again and again: darkening follows the specification's form

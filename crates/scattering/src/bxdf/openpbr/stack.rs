@@ -295,8 +295,8 @@ impl Stack {
             None => Inside::default(),
             Some(SeenGlass::Body([_, glass])) => {
                 let mut inside = Inside { reflected: glass.total, refracted: 0.0, left: 0.0 };
-                for k in 0..HATS {
-                    let passed = (1.0 - facing[0][k]) * above.coat[k];
+                for (k, facing) in facing[0].into_iter().enumerate() {
+                    let passed = (1.0 - facing) * above.coat[k];
                     inside.reflected += (1.0 - passed) * glass.reflected[k];
                     inside.refracted += passed * glass.refracted[k];
                 }

@@ -80,7 +80,7 @@ impl Scale {
         }
     }
 
-    fn from_unit(self, unit: f32) -> f32 {
+    fn value(self, unit: f32) -> f32 {
         match self {
             Self::Share | Self::Presence(_) => unit,
             Self::Weight => sqr(unit / (1.0 - unit).max(1e-3)),
@@ -108,7 +108,7 @@ impl Axis {
     /// The value of a node.
     fn value(&self, node: usize) -> f32 {
         let t = node as f32 / (self.len - 1) as f32;
-        AXES[self.number].1.from_unit(math::lerp(t, self.range[0], self.range[1]))
+        AXES[self.number].1.value(math::lerp(t, self.range[0], self.range[1]))
     }
 }
 
@@ -165,7 +165,7 @@ impl OpenPbrTable {
         let has_film = has(|p| p.thin_film_weight) && has(|p| p.thin_film_thickness);
         let has_glass = has(|p| p.transmission_weight) && least.base_metalness < 1.0;
         let is_round =
-            !has(|p| p.specular_roughness_anisotropy) && !(has_coat && has(|p| p.coat_roughness_anisotropy));
+            !(has(|p| p.specular_roughness_anisotropy) || has_coat && has(|p| p.coat_roughness_anisotropy));
         let (mut low, mut high) = (*least, *most);
         let mut axes = Vec::new();
         for (number, (value, scale)) in AXES.into_iter().enumerate() {
