@@ -5,9 +5,9 @@
 //! evaluated, so that edges fray. It lies within [0, 1]. Parameters: a factor on the noise (1), the
 //! amount of fraying (1), the frequency of the noise (5). Source: [Pharr 2023 §11.4.5].
 //!
-//! Majorants are those of layers in y: as the noise lies in (−1, 1), a bound follows from the height
-//! alone. Noise itself bounds too little for more: fraying moves its points by up to a quarter of a
-//! period, and its small octaves alone may add 0.2 to the sum.
+//! Majorants are those of layers in y: as the noise lies in (−1, 1), a bound follows from the
+//! height alone. Noise itself bounds too little for more: fraying moves its points by up to a
+//! quarter of a period, and its small octaves alone may add 0.2 to the sum.
 
 use super::{Coefficients, MajorantGrid, Majorants, MediumModel, MediumProperties, Placement};
 use crate::texture::noise;

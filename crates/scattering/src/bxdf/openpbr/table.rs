@@ -135,7 +135,7 @@ pub struct OpenPbrTable {
     /// The thickness of films in wavelengths, and the number of its nodes.
     waves: [f32; 2],
     films: usize,
-    /// Whether only the cosine varies.
+    /// Whether only the cosine and the film vary.
     is_plain: bool,
     /// The layers, if their numbers are the same everywhere.
     fixed: Option<Stack>,
@@ -197,7 +197,7 @@ impl OpenPbrTable {
         let len = (each.powf(1.0 / others.max(1) as f64) as usize).clamp(NODES[0], NODES[1]);
         axes.iter_mut().for_each(|axis| axis.len = AXES[axis.number].1.nodes().unwrap_or(len));
         let fixed = axes.is_empty().then(|| Stack::new(least));
-        let is_plain = axes.is_empty() && films * azimuths == 1;
+        let is_plain = axes.is_empty() && azimuths == 1;
         let (taken, inside, means) = (Vec::new(), Vec::new(), Vec::new());
         let mut table = Self { axes, azimuths, waves, films, is_plain, fixed, taken, inside, means };
         table.fill(least, has_fuzz, has_glass);
@@ -286,11 +286,17 @@ impl OpenPbrTable {
         places
     }
 
+    /// The place of a film of so many wavelengths, if there is one.
+    #[inline]
+    fn film(&self, waves: f32) -> Option<Place> {
+        let [least, most] = self.waves;
+        (self.films > 1).then(|| Place::new((waves - least) / (most - least), self.films))
+    }
+
     /// The nodes around a place and a film of so many wavelengths, with their weights.
     #[inline]
     fn around(&self, numbers: &Numbers, waves: f32, mut node: impl FnMut(usize, f32)) {
-        let [least, most] = self.waves;
-        let film = (self.films > 1).then(|| Place::new((waves - least) / (most - least), self.films));
+        let film = self.film(waves);
         for corner in 0..1usize << self.axes.len() {
             let (mut index, mut stride, mut weight) = (0, self.films, 1.0);
             for (i, axis) in self.axes.iter().enumerate() {
@@ -347,8 +353,12 @@ impl OpenPbrTable {
     pub(super) fn taken(&self, numbers: &Numbers, waves: f32, w: Vector3) -> Taken {
         if self.is_plain {
             let place = Place::new(safe_sqrt(w.z.abs()), COSINES);
-            let ([lower, upper], rows) = (place.weights(), &self.taken[place.index..place.index + 2]);
-            return Taken::from_row(std::array::from_fn(|i| lower * rows[0][i] + upper * rows[1][i]));
+            let row = |film: usize| {
+                let rows = &self.taken[film * COSINES + place.index..][..2];
+                mix(place.weights(), &rows[0], &rows[1])
+            };
+            let Some(film) = self.film(waves) else { return Taken::from_row(row(0)) };
+            return Taken::from_row(mix(film.weights(), &row(film.index), &row(film.index + 1)));
         }
         let mut sum = Row::default();
         let (cosine, cos_phi) = (w.z.abs(), self.cos_phi(w));
@@ -388,7 +398,7 @@ impl OpenPbrTable {
     /// The means at a place.
     #[inline]
     pub(super) fn means(&self, numbers: &Numbers, waves: f32) -> Means {
-        if self.is_plain {
+        if self.is_plain && self.films == 1 {
             return self.means[0];
         }
         let mut sum = Means::default();
@@ -401,6 +411,12 @@ impl OpenPbrTable {
     pub(super) fn has_film(&self) -> bool {
         self.films > 1
     }
+}
+
+/// The weighted sum of two rows.
+#[inline]
+fn mix([lower, upper]: [f32; 2], a: &Row, b: &Row) -> Row {
+    std::array::from_fn(|i| lower * a[i] + upper * b[i])
 }
 
 #[inline]
