@@ -78,7 +78,7 @@ impl Compiler<'_> {
                     placement,
                     bounds,
                     coefficients: self.coefficients(coefficients, origin),
-                    majorants: CloudMedium::layers(&bounds, *density),
+                    majorants: MajorantGrid::uniform(1.0),
                     density: *density,
                     wispiness: *wispiness,
                     frequency: *frequency,

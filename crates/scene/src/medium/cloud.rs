@@ -4,10 +4,6 @@
 //! y of the medium's space and has a floor below y = ½; noise moves the points at which it is
 //! evaluated, so that edges fray. It lies within [0, 1]. Parameters: a factor on the noise (1), the
 //! amount of fraying (1), the frequency of the noise (5). Source: [Pharr 2023 §11.4.5].
-//!
-//! Majorants are those of layers in y: as the noise lies in (−1, 1), a bound follows from the
-//! height alone. Noise itself bounds too little for more: fraying moves its points by up to a
-//! quarter of a period, and its small octaves alone may add 0.2 to the sum.
 
 use super::{Coefficients, MajorantGrid, Majorants, MediumModel, MediumProperties, Placement};
 use crate::texture::noise;
@@ -36,24 +32,7 @@ pub struct CloudMedium {
     pub frequency: f32,
 }
 
-/// The sum of the weights of five octaves.
-const SUM: f32 = 31.0 / 32.0;
-
-/// Layers of majorants.
-const LAYERS: usize = 32;
-
 impl CloudMedium {
-    /// Upper bounds of the density within `bounds` for a factor on the noise.
-    pub(crate) fn layers(bounds: &Bounds3, density: f32) -> MajorantGrid {
-        let y = |unit: f32| bounds.min.y + unit * bounds.diagonal().y;
-        MajorantGrid::of_cells([1, LAYERS, 1], |layer| {
-            let [low, high] = [y(layer.min.y), y(layer.max.y)];
-            let thickest = (1.0 - low).abs().max((1.0 - high).abs());
-            let shape = (thickest * 4.5 * density * SUM).min(1.0);
-            (shape + 2.0 * (0.5 - low.min(high)).max(0.0)).min(1.0)
-        })
-    }
-
     /// The density at a point of the medium's space.
     fn density(&self, p: Point3) -> f32 {
         let mut place = p * self.frequency;

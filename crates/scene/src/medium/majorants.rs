@@ -51,17 +51,18 @@ pub struct MajorantGrid {
 }
 
 impl MajorantGrid {
+    /// The bound of the whole box in one cell.
+    pub fn uniform(largest: f32) -> Self {
+        Self { resolution: [1; 3], values: vec![largest] }
+    }
+
     /// Of a medium with this many values along each axis. `largest` returns an upper bound of the
     /// density within a box in the unit cube.
     pub fn new(values: [usize; 3], largest: impl Fn(Bounds3) -> f32) -> Self {
         // Cells of a few values bound well; more of them cost steps and memory.
         const VALUES_PER_CELL: usize = 4;
         const MOST_CELLS: usize = 64;
-        Self::of_cells(values.map(|n| n.div_ceil(VALUES_PER_CELL).clamp(1, MOST_CELLS)), largest)
-    }
-
-    /// Of so many cells along each axis.
-    pub(super) fn of_cells(resolution: [usize; 3], largest: impl Fn(Bounds3) -> f32) -> Self {
+        let resolution = values.map(|n| n.div_ceil(VALUES_PER_CELL).clamp(1, MOST_CELLS));
         let [nx, ny, nz] = resolution;
         let size = Vec3::from_array(resolution.map(|n| n as f32)).recip();
         let mut values = Vec::with_capacity(nx * ny * nz);
