@@ -398,10 +398,14 @@ impl OpenPbrTable {
     /// The means at a place.
     #[inline]
     pub(super) fn means(&self, numbers: &Numbers, waves: f32) -> Means {
-        if self.is_plain && self.films == 1 {
-            return self.means[0];
-        }
         let mut sum = Means::default();
+        if self.is_plain {
+            let Some(film) = self.film(waves) else { return self.means[0] };
+            let [lower, upper] = film.weights();
+            sum.add(lower, &self.means[film.index]);
+            sum.add(upper, &self.means[film.index + 1]);
+            return sum;
+        }
         self.around(numbers, waves, |node, weight| sum.add(weight, &self.means[node]));
         sum
     }
