@@ -7,6 +7,7 @@
 //! and measures their errors.
 
 pub use description;
+pub use export;
 pub use film;
 pub use geometry;
 pub use image;

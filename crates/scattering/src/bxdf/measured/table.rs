@@ -40,19 +40,14 @@ pub struct MeasuredData {
 /// The tables of a material.
 #[derive(Clone, PartialEq)]
 pub struct MeasuredTable {
-    phi: Vec<f32>,
-    theta: Vec<f32>,
-    wavelengths: Option<Vec<f32>>,
-    ndf: MeasuredGrid,
-    sigma: MeasuredGrid,
-    values: MeasuredGrid,
+    data: MeasuredData,
     pub(super) normals: PiecewiseBilinear2d,
     pub(super) luminance: PiecewiseBilinear2d,
 }
 
 impl fmt::Debug for MeasuredTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let directions = [self.phi.len(), self.theta.len()];
+        let directions = [self.data.phi.len(), self.data.theta.len()];
         f.debug_struct("MeasuredTable").field("directions", &directions).finish_non_exhaustive()
     }
 }
@@ -73,10 +68,10 @@ impl Between {
 impl MeasuredTable {
     /// Makes tables of measurements; on failure, the reason.
     pub fn new(data: MeasuredData) -> Result<Self, String> {
-        let MeasuredData { phi, theta, wavelengths, ndf, sigma, vndf, luminance, values } = data;
-        increasing(&phi, "azimuths")?;
-        increasing(&theta, "elevations")?;
-        if let Some(wavelengths) = &wavelengths {
+        let MeasuredData { phi, theta, wavelengths, ndf, sigma, vndf, luminance, values } = &data;
+        increasing(phi, "azimuths")?;
+        increasing(theta, "elevations")?;
+        if let Some(wavelengths) = wavelengths {
             increasing(wavelengths, "wavelengths")?;
         }
         let directions = phi.len() * theta.len();
@@ -92,25 +87,25 @@ impl MeasuredTable {
         Ok(Self {
             normals: PiecewiseBilinear2d::new(vndf.size, &vndf.values),
             luminance: PiecewiseBilinear2d::new(luminance.size, &luminance.values),
-            phi,
-            theta,
-            wavelengths,
-            ndf,
-            sigma,
-            values,
+            data,
         })
+    }
+
+    /// The measurements that they are made of.
+    pub fn data(&self) -> &MeasuredData {
+        &self.data
     }
 
     /// Whether azimuths count from that of the outgoing direction.
     pub(super) fn is_isotropic(&self) -> bool {
-        self.phi.len() <= 2
+        self.data.phi.len() <= 2
     }
 
     /// The place of an outgoing direction.
     pub(super) fn between(&self, phi: f32, theta: f32) -> Between {
-        let ((i, s), (j, t)) = (place(&self.phi, phi), place(&self.theta, theta));
-        let next = (j + 1).min(self.theta.len() - 1);
-        let layer = |i: usize, j: usize| i * self.theta.len() + j;
+        let ((i, s), (j, t)) = (place(&self.data.phi, phi), place(&self.data.theta, theta));
+        let next = (j + 1).min(self.data.theta.len() - 1);
+        let layer = |i: usize, j: usize| i * self.data.theta.len() + j;
         let after = if s > 0.0 { i + 1 } else { i };
         let layers = [
             (layer(i, j), (1.0 - s) * (1.0 - t)),
@@ -123,12 +118,12 @@ impl MeasuredTable {
 
     /// The density of microfacet normals at a point of the square.
     pub(super) fn ndf(&self, p: Point2) -> f32 {
-        self.ndf.at(0, p).max(0.0)
+        self.data.ndf.at(0, p).max(0.0)
     }
 
     /// The projected area of microfacets towards a point of the square.
     pub(super) fn sigma(&self, p: Point2) -> f32 {
-        self.sigma.at(0, p)
+        self.data.sigma.at(0, p)
     }
 
     /// The reflectances at a point of the square; beyond the wavelengths measured, those at their
@@ -139,13 +134,13 @@ impl MeasuredTable {
         between: &Between,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        let channels = self.wavelengths.as_ref().map_or(3, Vec::len);
+        let channels = self.data.wavelengths.as_ref().map_or(3, Vec::len);
         let channel = |channel: usize| -> f32 {
             let value =
-                |&(layer, weight): &(usize, f32)| weight * self.values.at(layer * channels + channel, u);
+                |&(layer, weight): &(usize, f32)| weight * self.data.values.at(layer * channels + channel, u);
             between.layers().iter().map(value).sum()
         };
-        let Some(wavelengths) = &self.wavelengths else {
+        let Some(wavelengths) = &self.data.wavelengths else {
             let rgb = RgbUnboundedSpectrum::new(RgbColorSpace::srgb(), [0, 1, 2].map(channel));
             return SampledSpectrum::new(lambda.lambda().map(|lambda| rgb.at(lambda)));
         };
