@@ -54,7 +54,7 @@ pub enum Command {
     /// reference, maps of their errors, error over time, bias and noise apart, efficiency and rays.
     /// Ctrl-C ends with a report of what has been done.
     Compare(Box<Compare>),
-    /// Check scene files.
+    /// Check and convert scene files.
     #[command(subcommand)]
     Scene(Scene),
     /// Inspect, compare and convert pictures.
@@ -75,6 +75,7 @@ impl Command {
             Self::Merge(merge) => merge.json,
             Self::Compare(compare) => compare.json,
             Self::Scene(Scene::Check(check)) => check.json,
+            Self::Scene(Scene::Convert(convert)) => convert.json,
             Self::Image(Image::Info(info)) => info.json,
             Self::Image(Image::Diff(diff)) => diff.json,
             Self::Image(Image::Convert(convert)) => convert.json,
@@ -343,6 +344,12 @@ pub struct Compare {
 pub enum Scene {
     /// Report all errors and warnings of a scene without rendering it.
     Check(Check),
+    /// Write a scene as pbrt-v4, which renders to the same picture.
+    ///
+    /// Meshes, images and tables are written to a folder beside it, which has the name of the output
+    /// with .assets for .pbrt. The output and files in that folder are replaced if they exist, each
+    /// when it is complete, the output last; other files in the folder stay.
+    Convert(ConvertScene),
 }
 
 /// Options of `alhazen scene check`.
@@ -352,6 +359,20 @@ pub struct Check {
     /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
     /// input.
     pub scene: PathBuf,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `alhazen scene convert`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct ConvertScene {
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
+    /// input.
+    pub scene: PathBuf,
+    /// The scene to write, with the extension .pbrt.
+    pub output: PathBuf,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
     pub json: bool,
@@ -485,115 +506,4 @@ fn render_long_help() -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    fn render(arguments: &[&str]) -> Result<Render, String> {
-        let cli = Cli::try_parse_from(["alhazen", "render", "a.pbrt"].iter().chain(arguments));
-        match cli.map_err(|error| error.to_string())?.command {
-            Command::Render(render) => Ok(*render),
-            other => Err(format!("{other:?}")),
-        }
-    }
-
-    #[test]
-    fn the_definition_is_consistent() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn options_become_overrides() {
-        let arguments = [
-            "--integrator",
-            "path",
-            "--set",
-            "maxdepth=3",
-            "--set",
-            "filter=box",
-            "--accelerator",
-            "none",
-            "--engine",
-            "scalar",
-            "--spp",
-            "4",
-            "--resolution",
-            "64x32",
-            "--crop",
-            "0,0.5,0.25,1",
-            "--seed",
-            "9",
-            "-o",
-            "a.exr",
-            "-o",
-            "b.png",
-        ];
-        let render = render(&arguments).unwrap();
-        let expected = Overrides {
-            integrator: Some("path".into()),
-            accelerator: Some("none".into()),
-            settings: vec![
-                ("maxdepth".into(), "3".into()),
-                ("filter".into(), "box".into()),
-                ("engine".into(), "scalar".into()),
-            ],
-            samples_per_pixel: Some(4),
-            resolution: Some([64, 32]),
-            crop: Some([0.0, 0.5, 0.25, 1.0]),
-            pixel: None,
-            seed: Some(9),
-            layers: Vec::new(),
-        };
-        assert_eq!(render.overrides(), expected);
-        assert_eq!(render.output, [PathBuf::from("a.exr"), PathBuf::from("b.png")]);
-    }
-
-    fn compare(arguments: &[&str]) -> Result<Compare, String> {
-        let cli = Cli::try_parse_from(["alhazen", "compare", "a.pbrt"].iter().chain(arguments));
-        match cli.map_err(|error| error.to_string())?.command {
-            Command::Compare(compare) => Ok(*compare),
-            other => Err(format!("{other:?}")),
-        }
-    }
-
-    #[test]
-    fn comparisons_have_algorithms_and_one_limit() {
-        let compared = compare(&["--integrators", "path,path:maxdepth=8", "--time", "1.5min"]).unwrap();
-        assert_eq!(compared.time, Some(Duration::from_secs(90)));
-        let names: Vec<String> = compared.integrators.iter().map(ToString::to_string).collect();
-        assert_eq!(names, ["path", "path:maxdepth=8"]);
-        let named = ["--integrators", "path"];
-        for arguments in [
-            &["--spp", "4"][..],
-            &named,
-            &[&named[..], &["--time", "1s", "--spp", "4"]].concat(),
-            &[&named[..], &["--time", "0s"]].concat(),
-            &[&named[..], &["--time", "1 day"]].concat(),
-            &["--integrators", "path,", "--spp", "4"],
-            &[&named[..], &["--spp", "4", "--reference", "a.exr", "--reference-spp", "4"]].concat(),
-        ] {
-            assert!(compare(arguments).is_err(), "{arguments:?}");
-        }
-    }
-
-    #[test]
-    fn values_that_make_no_sense_are_refused() {
-        for arguments in [
-            ["--resolution", "640"],
-            ["--resolution", "0x480"],
-            ["--resolution", "640x-1"],
-            ["--crop", "0,1,0"],
-            ["--crop", "0,2,0,1"],
-            ["--crop", "0.5,0.5,0,1"],
-            ["--crop", "nan,1,0,1"],
-            ["--pixel", "1"],
-            ["--pixel", "-1,2"],
-            ["--set", "maxdepth"],
-            ["--spp", "0"],
-            ["--threads", "0"],
-            ["--seed", "-1"],
-        ] {
-            assert!(render(&arguments).is_err(), "{arguments:?}");
-        }
-    }
-}
+mod tests;

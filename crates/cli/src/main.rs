@@ -47,6 +47,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => merge::merge(arguments).map(done),
         Command::Compare(arguments) => compare::compare(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
+        Command::Scene(args::Scene::Convert(arguments)) => scene::convert(arguments).map(done),
         Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),

@@ -19,7 +19,8 @@ pub(crate) fn film(desc: &SceneDesc, text: &mut Text, extensions: &mut BTreeSet<
     let mut statement = statement("Film", &film.value, extensions);
     statement.space = Some(film.color_space);
     // Otherwise the picture is named after the scene.
-    if film.origin.states("filename") && !statement.parameters.iter().any(|p| p.declaration == "string filename")
+    if film.origin.states("filename")
+        && !statement.parameters.iter().any(|p| p.declaration == "string filename")
     {
         statement.text("filename", &film.filename);
     }
@@ -38,7 +39,8 @@ pub(crate) fn camera(
     text: &mut Text,
     extensions: &mut BTreeSet<String>,
 ) {
-    let CameraDesc { kind, camera_from_world, shutter_open: _, shutter_close: _, medium } = &desc.camera.value;
+    let CameraDesc { kind, camera_from_world, shutter_open: _, shutter_close: _, medium } =
+        &desc.camera.value;
     text.transform(camera_from_world);
     if let Some(medium) = medium {
         text.line(&format!("MediumInterface \"\" {}", quoted(names.medium(*medium))));
@@ -53,7 +55,9 @@ pub(crate) fn camera(
             focus_distance: _,
         }) => {
             let rows = lenses.iter().map(|lens| {
-                [lens.curvature_radius, lens.thickness, lens.eta, lens.aperture_diameter].map(decimal).join(" ")
+                [lens.curvature_radius, lens.thickness, lens.eta, lens.aperture_diameter]
+                    .map(decimal)
+                    .join(" ")
             });
             let head = "# radius of curvature, thickness, index of refraction, aperture diameter";
             let rows: Vec<_> = std::iter::once(head.to_owned()).chain(rows).collect();

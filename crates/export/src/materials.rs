@@ -67,7 +67,12 @@ fn write(
             remap(to, &[rough]);
         }
         MaterialKind::ThinDielectric { eta } => to.index_of_refraction("eta", eta, 1.5),
-        MaterialKind::CoatedDiffuse(CoatedDiffuseDesc { reflectance, eta, roughness: rough, layers: coat }) => {
+        MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
+            reflectance,
+            eta,
+            roughness: rough,
+            layers: coat,
+        }) => {
             to.spectrum_parameter("reflectance", reflectance, Some(0.5), names);
             to.index_of_refraction("eta", eta, 1.5);
             roughness(to, "", rough, names);

@@ -5,6 +5,7 @@
 mod agreement;
 mod common;
 mod compare;
+mod converted;
 mod documents;
 mod engines;
 mod furnaces;

@@ -13,3 +13,4 @@ mod memory;
 mod meshes;
 mod render;
 mod resume;
+mod scene;

@@ -37,7 +37,8 @@ pub(super) fn bytes(triangles: &MeshDesc, patches: &PatchMeshDesc) -> Result<Vec
         header += "property int face_indices\n";
     }
     let mut bytes = (header + "end_header\n").into_bytes();
-    let floats = |bytes: &mut Vec<u8>, values: &[f32]| bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+    let floats =
+        |bytes: &mut Vec<u8>, values: &[f32]| bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
     for (i, position) in positions.iter().enumerate() {
         floats(&mut bytes, &position.to_array());
         if let Some(normal) = normals.get(i) {

@@ -300,9 +300,8 @@ impl Out {
             // In the file z is the fastest.
             let [x, y, z] = [i >> 6, i >> 3 & 7, i & 7];
             let index = [x, y, z];
-            let is_active = (0..3).all(|axis| {
-                (first[axis]..=last[axis]).contains(&(brick.origin[axis] + index[axis] as i32))
-            });
+            let is_active = (0..3)
+                .all(|axis| (first[axis]..=last[axis]).contains(&(brick.origin[axis] + index[axis] as i32)));
             if is_active {
                 self.bit(at + 16, i);
             }
@@ -311,7 +310,12 @@ impl Out {
     }
 
     /// The header of a grid, the index-th of a count; its bounds and the size of its voxels.
-    fn header(&mut self, name: &str, [index, count]: [usize; 2], voxels: &VoxelsDesc) -> ([f64; 6], [f64; 3]) {
+    fn header(
+        &mut self,
+        name: &str,
+        [index, count]: [usize; 2],
+        voxels: &VoxelsDesc,
+    ) -> ([f64; 6], [f64; 3]) {
         let [x, y, z] = voxels.world_from_index;
         let matrix = DMat4::from_cols_array_2d(&[x, y, z, [0.0, 0.0, 0.0, 1.0]]).transpose();
         let inverse = matrix.inverse();
@@ -356,9 +360,8 @@ impl Out {
 
 /// The hash by which grids are found.
 fn name_key(name: &str) -> u64 {
-    name.bytes().fold(0, |key: u64, byte| {
-        key.wrapping_mul(67).wrapping_add(u64::from(byte)).wrapping_add(key >> 56)
-    })
+    name.bytes()
+        .fold(0, |key: u64, byte| key.wrapping_mul(67).wrapping_add(u64::from(byte)).wrapping_add(key >> 56))
 }
 
 /// A file of grids with their names, of less than 256 bytes each.

@@ -12,6 +12,7 @@ mod reader;
 mod reference;
 mod settings;
 mod shape;
+mod spectra;
 mod texture;
 mod volume;
 

@@ -26,13 +26,14 @@ pub(crate) struct Reader<'b, 'a> {
     pub(crate) span: Span,
     pub(crate) kind: Spanned<String>,
     pub(crate) color_space: ColorSpaceDesc,
-    given: Vec<Given>,
+    pub(super) given: Vec<Given>,
     pub(super) asked: Vec<Asked>,
     origin: Origin,
 }
 
-struct Given {
-    parameter: RawParameter,
+/// A parameter that was given.
+pub(super) struct Given {
+    pub(super) parameter: RawParameter,
     used: bool,
     /// It comes from `Attribute`; being unused is no error.
     default: bool,
@@ -105,7 +106,7 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// The index of the parameter of a name, if it is given with one of the types; any other type
     /// is reported.
-    fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
+    pub(super) fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
         self.asked.push(Asked::new(name, types));
         let index = self.given.iter().position(|given| given.parameter.name == name)?;
         let given = &mut self.given[index];
@@ -142,7 +143,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.take_at(index, name)
     }
 
-    fn take_at(&mut self, index: usize, name: &str) -> Option<(ParameterType, Values, Span)> {
+    /// [`Self::take`] for the parameter of an index.
+    pub(super) fn take_at(&mut self, index: usize, name: &str) -> Option<(ParameterType, Values, Span)> {
         let parameter = &mut self.given[index].parameter;
         let values = std::mem::replace(&mut parameter.values, Values::Bools(Vec::new()));
         let (kind, span, length) = (parameter.kind, parameter.span, values.len());
@@ -166,7 +168,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// Reports a wrong number of values.
-    fn count(&mut self, name: &str, expected: usize, found: usize, span: Span) {
+    pub(super) fn count(&mut self, name: &str, expected: usize, found: usize, span: Span) {
         let values = if expected == 1 { "one value" } else { &format!("{expected} values") };
         let message = format!("`{name}` takes {values}, not {found}");
         self.builder.report.error("parameter-count", message, span);
@@ -481,62 +483,6 @@ impl<'b, 'a> Reader<'b, 'a> {
         let value = self.spectrum_of(name, TYPES).unwrap_or(default.into());
         self.note(default, "");
         value
-    }
-
-    fn spectrum_of(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<SpectrumDesc> {
-        let index = self.find(name, types)?;
-        self.spectrum_at(index, name)
-    }
-
-    fn spectrum_at(&mut self, index: usize, name: &'static str) -> Option<SpectrumDesc> {
-        let color_space = self.given[index].parameter.color_space;
-        let (kind, values, span) = self.take_at(index, name)?;
-        match (kind, values) {
-            (ParameterType::Rgb, Values::Floats(values)) => match values[..] {
-                [r, g, b] => Some(SpectrumDesc::Rgb { rgb: [r, g, b], space: color_space }),
-                _ => {
-                    self.count(name, 3, values.len(), span);
-                    None
-                }
-            },
-            (ParameterType::Float, Values::Floats(values)) if values.len() == 1 => {
-                Some(SpectrumDesc::Constant(values[0]))
-            }
-            (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 2 => {
-                let message =
-                    format!("`{name}` takes one temperature; its brightness is now the light's `scale`");
-                self.refuse(name, message);
-                None
-            }
-            (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 1 => {
-                if values[0] > 0.0 {
-                    return Some(SpectrumDesc::Blackbody(values[0]));
-                }
-                self.refuse(name, "the temperature of a black body must be above zero");
-                None
-            }
-            (ParameterType::Spectrum, Values::Floats(values)) => self.samples(name, &values),
-            (ParameterType::Spectrum, Values::Strings(values)) if values.len() == 1 => {
-                self.builder.named_spectrum(&values[0])
-            }
-            (_, values) => {
-                self.count(name, 1, values.len(), span);
-                None
-            }
-        }
-    }
-
-    fn samples(&mut self, name: &'static str, values: &[f32]) -> Option<SpectrumDesc> {
-        let (pairs, rest) = values.as_chunks::<2>();
-        if pairs.is_empty() || !rest.is_empty() {
-            self.refuse(name, format!("`{name}` takes pairs of wavelength and value"));
-            return None;
-        }
-        if pairs.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
-            self.refuse(name, format!("the wavelengths of `{name}` must increase"));
-            return None;
-        }
-        Some(SpectrumDesc::Samples(pairs.iter().map(|&[lambda, value]| (lambda, value)).collect()))
     }
 
     /// A number or a texture of numbers, which may be absent.

@@ -1,0 +1,140 @@
+//! Descriptions that programs make: what the importer never gives.
+
+use std::sync::Arc;
+
+use alhazen_export::{ExportError, export};
+use description::{
+    AreaLightDesc, CoatedConductorDesc, ConductorDesc, ImageDesc, ImageTextureDesc, InfiniteRadiance,
+    LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, RoughnessDesc, SceneDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc,
+};
+use image::{ColorEncoding, Image, Pixels};
+use math::Vec3;
+
+use crate::plain::lines;
+use crate::round_trip;
+
+fn check(desc: &SceneDesc) -> String {
+    let (exported, again) = round_trip(desc);
+    assert_eq!(lines(desc), lines(&again), "{}", exported.text);
+    exported.text
+}
+
+fn sphere() -> ShapeDesc {
+    ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 }.into()
+}
+
+/// Why a description cannot be written.
+fn problem(desc: &SceneDesc) -> String {
+    match export(desc, "files", &mut |_, _| Ok(())) {
+        Err(ExportError::Unsupported(problem)) => problem,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn constants_are_kept() {
+    let mut desc = SceneDesc::default();
+    let material = desc.materials.push(MaterialKind::Diffuse { reflectance: 0.65.into() }.into());
+    let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(2.5));
+    desc.lights.push(LightKind::Infinite { radiance, illuminance: Some(3.0), portal: None }.into());
+    let area_light = Some(desc.area_lights.push(AreaLightDesc::new(0.1.into())));
+    desc.shapes.push(ShapeDesc { material: Some(material), area_light, ..sphere() });
+    check(&desc);
+}
+
+#[test]
+fn images_are_kept_with_their_codes_and_values() {
+    let codes: Vec<u8> = (0..=255).collect();
+    let mut desc = SceneDesc::default();
+    let mut images = Vec::new();
+    for encoding in [ColorEncoding::Srgb, ColorEncoding::Linear, ColorEncoding::Gamma(1.7)] {
+        for (channels, width) in [(&["Y"][..], 16), (&["Y", "A"], 8), (&["R", "G", "B", "A"], 4)] {
+            let pixels = Pixels::U8(codes.clone(), encoding);
+            images.push(Image::new(width, 16, channels.iter().copied(), pixels).unwrap());
+        }
+    }
+    images.push(Image::from_fn(3, 2, ["R", "G", "B"], |x, y| [x as f32 / 3.0, y as f32, 1e-20]));
+    images.push(Image::from_fn(3, 2, ["R", "G", "B"], |x, y| [x as f32, y as f32, 7.0]).to_f16());
+    for image in images {
+        let image = desc.images.push(ImageDesc { name: "any".into(), image: Arc::new(image) });
+        let kind = TextureKind::Image(ImageTextureDesc { scale: 0.5, ..ImageTextureDesc::new(image) });
+        let texture = desc.spectrum_textures.push(TextureDesc::new(kind));
+        let kind = MaterialKind::Diffuse { reflectance: texture.into() };
+        // Normal maps are read as linear, lights as sRGB, whatever the codes are.
+        desc.materials.push(MaterialDesc { normal_map: Some(image), ..kind.into() });
+        desc.lights.push(LightDesc::from(LightKind::Projection { image, power: None, fov: 45.0 }));
+    }
+    let text = check(&desc);
+    assert!(text.contains(r#""string encoding" "gamma 1.7""#), "{text}");
+}
+
+#[test]
+fn large_meshes_are_files_that_instances_share() {
+    let positions: Arc<[Vec3]> = (0..300).map(|i| Vec3::new(i as f32 / 3.0, (i * i) as f32, -0.0)).collect();
+    let indices = (0..298).map(|i| [i, i + 1, i + 2]).collect();
+    let mesh = MeshDesc { indices, positions: positions.clone(), normals: positions, ..MeshDesc::default() };
+    let mut desc = SceneDesc::default();
+    for x in 0..3 {
+        let world_from_object = TransformDesc::translation(f64::from(x) / 3.0, 0.0, 0.0);
+        desc.shapes.push(ShapeDesc { world_from_object, ..ShapeKind::Triangles(mesh.clone()).into() });
+    }
+    let text = check(&desc);
+    assert_eq!(text.matches("files/mesh-1.ply").count(), 3);
+    assert!(!text.contains("mesh-2"));
+}
+
+#[test]
+fn names_become_unique() {
+    let mut desc = SceneDesc::default();
+    for name in ["", "red", "red", "material-0"] {
+        let kind = MaterialKind::Diffuse { reflectance: SpectrumDesc::rgb(0.5, 0.25, 0.125).into() };
+        let material = desc.materials.push(MaterialDesc { name: name.into(), ..kind.into() });
+        desc.shapes.push(ShapeDesc { material: Some(material), ..sphere() });
+    }
+    for _ in 0..2 {
+        desc.objects.push(ObjectDesc::default());
+    }
+    let (exported, again) = round_trip(&desc);
+    let names: Vec<_> = again.materials.iter().map(|(_, material)| material.name.as_str()).collect();
+    assert_eq!(names, ["material-0-2", "red", "red-2", "material-0"], "{}", exported.text);
+}
+
+#[test]
+fn what_the_format_cannot_express_is_an_error() {
+    let mut desc = SceneDesc::default();
+    let rough = |remap| RoughnessDesc { remap, ..RoughnessDesc::isotropic(0.3) };
+    let conductor = ConductorDesc { roughness: rough(true), ..ConductorDesc::default() };
+    let coated = CoatedConductorDesc { conductor, roughness: rough(false), ..CoatedConductorDesc::default() };
+    desc.materials.push(MaterialKind::CoatedConductor(coated).into());
+    assert!(problem(&desc).contains("`remaproughness` differs"), "{}", problem(&desc));
+
+    let mut desc = SceneDesc::default();
+    for end in [1.0, 2.0] {
+        let moved = TransformDesc::translation(1.0, 0.0, 0.0);
+        let moving = TransformDesc { end: moved.end, times: [0.0, end], ..TransformDesc::default() };
+        desc.shapes.push(ShapeDesc { world_from_object: moving, ..sphere() });
+    }
+    assert!(problem(&desc).contains("from 0 to 1 and from 0 to 2"), "{}", problem(&desc));
+
+    let mut desc = SceneDesc::default();
+    desc.shapes.push(ShapeDesc { alpha: Some(f32::NAN.into()), ..sphere() });
+    assert!(problem(&desc).contains("`alpha` has a value that is not finite"), "{}", problem(&desc));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_ends_the_export() {
+    let mut desc = SceneDesc::default();
+    for size in [2, 3] {
+        let image = Arc::new(Image::from_fn(size, size, ["R", "G", "B"], |_, _| [1.0; 3]));
+        let image = desc.images.push(ImageDesc { name: "any".into(), image });
+        desc.lights.push(LightKind::Projection { image, power: None, fov: 45.0 }.into());
+    }
+    let mut calls = 0;
+    let result = export(&desc, "files", &mut |_, _| {
+        calls += 1;
+        Err(std::io::Error::other("the disk is full"))
+    });
+    assert_eq!(result.unwrap_err().to_string(), "cannot write image-1.exr: the disk is full");
+    assert_eq!(calls, 1);
+}

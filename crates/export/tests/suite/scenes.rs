@@ -1,0 +1,108 @@
+//! Scenes of files are the same after they were written.
+//!
+//! Those of others are looked for in `$ALHAZEN_DATA` or in `../shared/data` beside the workspace.
+
+use std::path::{Path, PathBuf};
+
+use import::{Files, import};
+
+use crate::plain::lines;
+use crate::round_trip;
+
+fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path, extensions));
+        } else if path.extension().is_some_and(|found| extensions.iter().any(|wanted| found == *wanted)) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn data(folder: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("ALHAZEN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    let path = root.join(folder);
+    if path.is_dir() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is not there (set ALHAZEN_DATA)", path.display());
+    None
+}
+
+/// Scenes that are not the same after they were written, and what differs first.
+fn check(scenes: &[PathBuf]) {
+    let mut wrong = Vec::new();
+    for path in scenes {
+        let imported = import(path, &Files);
+        // A part of a scene, which the scene includes, has no `WorldBegin`.
+        if imported.has_errors() {
+            continue;
+        }
+        let (exported, again) = round_trip(&imported.desc);
+        let (before, after) = (lines(&imported.desc), lines(&again));
+        let difference = before.iter().zip(&after).find(|(before, after)| before != after);
+        if let Some((before, after)) = difference {
+            wrong.push(format!("{}:\n{before:.3000}\n{after:.3000}", path.display()));
+        } else if before.len() != after.len() {
+            wrong.push(format!("{}: {} things become {}", path.display(), before.len(), after.len()));
+        }
+        // What was written once is written the same again.
+        assert_eq!(round_trip(&again).0.text, exported.text, "{}", path.display());
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), scenes.len(), wrong.join("\n"));
+}
+
+#[test]
+fn own_scenes_are_the_same() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let scenes = files(&folder, &["pbrt"]);
+    assert!(scenes.len() > 40);
+    check(&scenes);
+}
+
+#[test]
+fn conformance_scenes_are_the_same() {
+    let Some(folder) = data("pbrt-v4-conformance") else { return };
+    check(&files(&folder, &["pbrt"]));
+}
+
+#[test]
+fn larger_scenes_are_the_same() {
+    for folder in ["pbrt-bitterli", "pbrt-v4-scenes"] {
+        let Some(folder) = data(folder) else { continue };
+        check(&files(&folder, &["pbrt"]));
+    }
+}
+
+#[test]
+fn bare_meshes_are_the_same() {
+    let Some(folder) = data("meshes") else { return };
+    check(&files(&folder, &["ply", "obj"]));
+}
+
+#[test]
+fn volumes_and_measured_materials_are_the_same() {
+    let text = |path: &Path| {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let directive = match path.extension().unwrap().to_str().unwrap() {
+            "nvdb" => "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\"",
+            _ => "Material \"measured\"",
+        };
+        (name.clone(), format!("WorldBegin {directive} \"string filename\" \"{name}\" Shape \"sphere\""))
+    };
+    for (folder, extension) in [("volumes", "nvdb"), ("measured/bsdf", "bsdf")] {
+        let Some(folder) = data(folder) else { continue };
+        for path in files(&folder, &[extension]) {
+            let (name, scene) = text(&path);
+            let assets = import::MemoryAssets::default().with(name, std::fs::read(&path).unwrap());
+            let desc = crate::read(&assets.with("scene.pbrt", scene));
+            let (_, again) = round_trip(&desc);
+            assert_eq!(lines(&desc), lines(&again), "{}", path.display());
+        }
+    }
+}
