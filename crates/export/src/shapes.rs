@@ -120,7 +120,7 @@ fn write(to: &mut Statement, kind: &ShapeKind, desc: &SceneDesc, names: &Names, 
             }
             to.optional_float_parameter("displacement", displacement.as_ref(), names);
             if displacement.is_some() {
-                to.float("edgelength", *edge_length, 1.0);
+                to.float("displacement.edgelength", *edge_length, 1.0);
             }
         }
         ShapeKind::Curve(desc) => curve(to, desc),

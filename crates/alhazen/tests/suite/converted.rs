@@ -49,7 +49,8 @@ fn own_scenes_render_to_the_same_bits() {
 #[test]
 fn conformance_scenes_render_to_the_same_bits() {
     let Some(folder) = data("pbrt-v4-conformance") else { return };
-    let is_scene = |path: &Path| path.parent() == Some(&folder) && path.extension().is_some_and(|e| e == "pbrt");
+    let is_scene =
+        |path: &Path| path.parent() == Some(&folder) && path.extension().is_some_and(|e| e == "pbrt");
     let scenes: Vec<_> = files_below(&folder).into_iter().filter(|path| is_scene(path)).collect();
     assert!(scenes.len() > 100);
     check(scenes);

@@ -22,7 +22,19 @@ pub(super) fn bytes(image: &Image, as_codes: bool) -> Result<Vec<u8>, ImageError
             let image = Image::new(image.width(), image.height(), image.channels(), pixels)?;
             encode(&image, Format::Png, &options)
         }
+        // OpenEXR orders channels by name, so that opacity would become the first one.
+        _ if image.channels() == CHANNELS[1] => encode(&with_colors(image), Format::Exr, &options),
         Pixels::U8(..) => encode(&image.to_f32(), Format::Exr, &options),
         Pixels::F16(_) | Pixels::F32(_) => encode(image, Format::Exr, &options),
     }
+}
+
+/// A grey image with opacity as one of red, green, blue and opacity.
+fn with_colors(image: &Image) -> Image {
+    let mut colored = Image::from_fn(image.width(), image.height(), ["R", "G", "B", "A"], |x, y| {
+        let [grey, opacity] = [0, 1].map(|c| image.channel(x, y, c));
+        [grey, grey, grey, opacity]
+    });
+    colored.metadata = image.metadata.clone();
+    colored
 }

@@ -12,7 +12,7 @@ use description::{
 };
 
 /// A line for each thing in a scene: its debug output, or the hash of that if it is long.
-pub fn lines(desc: &SceneDesc) -> Vec<String> {
+fn lines(desc: &SceneDesc) -> Vec<String> {
     let desc = &plain(desc);
     let mut lines = vec![
         line("options", &desc.options.value),
@@ -41,6 +41,19 @@ pub fn lines(desc: &SceneDesc) -> Vec<String> {
     }
     lines.extend(arena("instance", &desc.instances));
     lines
+}
+
+/// The first thing that differs between two scenes, as it is in both.
+pub fn difference(before: &SceneDesc, after: &SceneDesc) -> Option<String> {
+    let [before, after] = [before, after].map(lines);
+    let pair = before.iter().zip(&after).find(|(before, after)| before != after);
+    match pair {
+        Some((before, after)) => Some(format!("{before:.3000}\n{after:.3000}")),
+        None if before.len() != after.len() => {
+            Some(format!("{} things become {}", before.len(), after.len()))
+        }
+        None => None,
+    }
 }
 
 fn line(what: &str, value: &impl Debug) -> String {
@@ -86,8 +99,11 @@ fn shapes(desc: &SceneDesc, shapes: &Arena<ShapeDesc>) -> Vec<String> {
 fn picture(images: &Arena<ImageDesc>, handle: Handle<ImageDesc>) -> Handle<ImageDesc> {
     let image = &images[handle].image;
     let mut hasher = DefaultHasher::new();
-    (image.width(), image.height(), image.channels(), image.is_color()).hash(&mut hasher);
-    image.values().for_each(|value| value.to_bits().hash(&mut hasher));
+    for (x, y) in (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y))) {
+        let opacity = image.alpha_index().map(|c| image.channel(x, y, c).to_bits());
+        (image.rgb(x, y).map(f32::to_bits), image.channel(x, y, 0).to_bits(), opacity).hash(&mut hasher);
+    }
+    (image.width(), image.height()).hash(&mut hasher);
     line("space", &image.metadata.chromaticities).hash(&mut hasher);
     Handle::new(hasher.finish() as u32)
 }

@@ -11,12 +11,12 @@ use description::{
 use image::{ColorEncoding, Image, Pixels};
 use math::Vec3;
 
-use crate::plain::lines;
+use crate::plain::difference;
 use crate::round_trip;
 
 fn check(desc: &SceneDesc) -> String {
     let (exported, again) = round_trip(desc);
-    assert_eq!(lines(desc), lines(&again), "{}", exported.text);
+    assert_eq!(difference(desc, &again), None, "{}", exported.text);
     exported.text
 }
 

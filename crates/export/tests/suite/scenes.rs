@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use import::{Files, import};
 
-use crate::plain::lines;
+use crate::plain::difference;
 use crate::round_trip;
 
 fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
@@ -44,12 +44,8 @@ fn check(scenes: &[PathBuf]) {
             continue;
         }
         let (exported, again) = round_trip(&imported.desc);
-        let (before, after) = (lines(&imported.desc), lines(&again));
-        let difference = before.iter().zip(&after).find(|(before, after)| before != after);
-        if let Some((before, after)) = difference {
-            wrong.push(format!("{}:\n{before:.3000}\n{after:.3000}", path.display()));
-        } else if before.len() != after.len() {
-            wrong.push(format!("{}: {} things become {}", path.display(), before.len(), after.len()));
+        if let Some(difference) = difference(&imported.desc, &again) {
+            wrong.push(format!("{}:\n{difference}", path.display()));
         }
         // What was written once is written the same again.
         assert_eq!(round_trip(&again).0.text, exported.text, "{}", path.display());
@@ -102,7 +98,7 @@ fn volumes_and_measured_materials_are_the_same() {
             let assets = import::MemoryAssets::default().with(name, std::fs::read(&path).unwrap());
             let desc = crate::read(&assets.with("scene.pbrt", scene));
             let (_, again) = round_trip(&desc);
-            assert_eq!(lines(&desc), lines(&again), "{}", path.display());
+            assert_eq!(difference(&desc, &again), None, "{}", path.display());
         }
     }
 }
