@@ -37,6 +37,13 @@ impl Text {
         4 * (self.spaces.len() - 1)
     }
 
+    /// Begins a paragraph: an empty line, unless there is one.
+    pub(crate) fn paragraph(&mut self) {
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.line("");
+        }
+    }
+
     /// A line in the current block.
     pub(crate) fn line(&mut self, line: &str) {
         if !line.is_empty() {

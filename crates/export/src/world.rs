@@ -67,7 +67,9 @@ impl World<'_, '_> {
             self.instances(&object.instances);
             self.text.end("ObjectEnd");
         }
+        self.text.paragraph();
         self.shapes(&desc.shapes);
+        self.text.paragraph();
         self.instances(&desc.instances);
     }
 

@@ -40,7 +40,8 @@ impl<'f> Files<'f> {
         self.failure.map_or(Ok(()), Err)
     }
 
-    /// Writes a file of a kind; returns its path from the scene. Nothing is written after a failure.
+    /// Writes a file of a kind; returns its path from the scene. After a failure nothing is
+    /// written.
     pub(crate) fn add(&mut self, kind: &'static str, extension: &str, bytes: &[u8]) -> String {
         let count = self.counts.entry(kind).or_default();
         *count += 1;
