@@ -346,7 +346,7 @@ pub enum Scene {
     Check(Check),
     /// Write a scene as pbrt-v4, which renders to the same picture.
     ///
-    /// Meshes, images and tables are written to a folder beside it, which has the output's name with
+    /// Meshes, images and tables are written to a folder beside it, of the output's name with
     /// .assets for .pbrt. The output and files in that folder are replaced if they exist, each when
     /// it is complete, the output last; other files in the folder stay.
     Convert(ConvertScene),
