@@ -126,11 +126,10 @@ fn bricks(voxels: &VoxelsDesc) -> BTreeMap<Place, Brick<'_>> {
         }
         let values = &voxels.values[512 * brick as usize..][..512];
         let mut summary = Summary::NONE;
-        for voxel in 0..512 {
+        for (voxel, &value) in values.iter().enumerate() {
             let index = [voxel & 7, voxel >> 3 & 7, voxel >> 6];
             let index: [i32; 3] = std::array::from_fn(|axis| origin[axis] + index[axis] as i32);
             if (0..3).all(|axis| (first[axis]..=last[axis]).contains(&index[axis])) {
-                let value = values[voxel];
                 let one = Summary { count: 1, first: index, last: index, least: value, greatest: value };
                 summary.add(&one);
             }
