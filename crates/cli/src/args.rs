@@ -88,8 +88,8 @@ impl Command {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct Render {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
-    /// input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY or OBJ; `-` reads
+    /// pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
     /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .tif. Can be given several times. [default: the name in
@@ -299,8 +299,8 @@ pub struct Merge {
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 #[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
 pub struct Compare {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
-    /// input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY or OBJ; `-` reads
+    /// pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// The algorithms, see the list below, separated by commas. Each may have settings of its own:
     /// path,path:maxdepth=8.
@@ -356,8 +356,8 @@ pub enum Scene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
-    /// input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY or OBJ; `-` reads
+    /// pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]

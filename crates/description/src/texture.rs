@@ -143,6 +143,13 @@ pub enum TextureKind<V> {
     },
     /// Waves in the wind. Numbers only.
     Windy,
+    /// 1 where a number is at least `edge`, else 0. Numbers only.
+    Step {
+        /// The number.
+        texture: FloatParameter,
+        /// The least number that gives 1.
+        edge: f32,
+    },
     /// Marble. Spectra only.
     Marble {
         /// Octaves.
@@ -265,6 +272,11 @@ pub enum MappingDesc {
         scale: [f32; 2],
         /// Added to them.
         delta: [f32; 2],
+    },
+    /// `u · columns[0] + v · columns[1] + columns[2]` of the surface's own parameters.
+    Affine {
+        /// The columns of the matrix.
+        columns: [[f32; 2]; 3],
     },
     /// Polar angles about the origin of texture space.
     Spherical,

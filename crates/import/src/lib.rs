@@ -6,6 +6,7 @@
 
 mod assets;
 mod foreign;
+mod gltf;
 mod ies;
 mod images;
 mod imported;
@@ -24,10 +25,14 @@ pub use imported::Imported;
 pub use mesh::{Mesh, MeshError, read_obj, read_ply};
 pub use suggest::closest;
 
-/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), or a
-/// PLY or OBJ file, which becomes a scene of one object with a camera and light that show it.
+/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), a
+/// glTF file, after whose name `#` and settings may follow (`walk.glb#time=0.5`), or a PLY or OBJ
+/// file, which becomes a scene of one object with a camera and light that show it.
 pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {
     let path = path.as_ref();
+    if gltf::is_named_by(path, assets) {
+        return gltf::read(path, assets);
+    }
     match mesh::Format::from_path(path) {
         Some(format) => mesh::scene::read(path, format, assets),
         None => pbrt::read(path, assets),

@@ -56,7 +56,8 @@ impl Scene {
     }
 }
 
-/// Loads a scene: a pbrt-v4 file, or a mesh (.ply, .obj) in a neutral studio.
+/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), or a mesh (.ply, .obj) in a neutral
+/// studio.
 ///
 /// Raises SceneError, whose text lists every error of the scene with its file, line and column.
 #[pyfunction]

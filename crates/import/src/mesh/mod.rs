@@ -5,7 +5,7 @@ mod obj;
 mod ply;
 mod polygon;
 pub(crate) mod scene;
-mod studio;
+pub(crate) mod studio;
 
 use std::fmt;
 use std::path::Path;

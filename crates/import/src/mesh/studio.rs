@@ -33,16 +33,32 @@ const RESOLUTION: u32 = 128;
 /// Radius of the ground, in radii of the mesh: beyond all shadows.
 const GROUND_RADIUS: f64 = 6.0;
 
+/// How something is looked at: right, up and forwards, as unit vectors.
+pub(crate) type Axes = [DVec3; 3];
+
 /// Adds camera, ground and light for shapes between two corners of a box; y is up.
-pub(super) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
+pub(crate) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     if desc.shapes.iter().any(|(_, shape)| shape.material.is_none()) {
         let clay = desc.materials.push(diffuse(CLAY));
         for (_, shape) in desc.shapes.iter_mut() {
             shape.material.get_or_insert(clay);
         }
     }
-    let (center, radius) = ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6));
-    // From the front, a little from the side and from above.
+    let axes = add_camera(desc, low, high);
+    desc.film.resolution = [640, 480];
+    desc.integrator = IntegratorDesc::Path(PathDesc::default()).into();
+    desc.sampler.kind.set_samples_per_pixel(64);
+    add_ground(desc, low, high);
+    add_light(desc, &axes);
+}
+
+fn center_and_radius(low: DVec3, high: DVec3) -> (DVec3, f64) {
+    ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6))
+}
+
+/// Adds a camera that sees all of a box, from the front, a little from the side and from above.
+pub(crate) fn add_camera(desc: &mut SceneDesc, low: DVec3, high: DVec3) -> Axes {
+    let (center, radius) = center_and_radius(low, high);
     let direction = -DVec3::new(0.4, 0.35, 1.0).normalize();
     let right = direction.cross(DVec3::Y).normalize();
     let up = right.cross(direction);
@@ -60,11 +76,12 @@ pub(super) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
         ..CameraDesc::default()
     }
     .into();
-    desc.film.resolution = [640, 480];
-    desc.integrator = IntegratorDesc::Path(PathDesc::default()).into();
-    desc.sampler.kind.set_samples_per_pixel(64);
-    add_ground(desc, DVec3::new(center.x, low.y, center.z), radius);
-    let key = (0.3 * -direction + 0.75 * up - 0.75 * right).normalize();
+    [right, up, direction]
+}
+
+/// Adds the environment, whose key light is behind the viewer, above and to the left.
+pub(crate) fn add_light(desc: &mut SceneDesc, [right, up, direction]: &Axes) {
+    let key = (0.3 * -*direction + 0.75 * *up - 0.75 * *right).normalize();
     let image = Arc::new(environment(key.as_vec3().into()));
     let radiance = InfiniteRadiance::Image(desc.images.push(ImageDesc { name: "studio".into(), image }));
     desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
@@ -75,7 +92,9 @@ fn diffuse(reflectance: f32) -> MaterialDesc {
 }
 
 /// A disk under the mesh, lower by a little so that flat undersides do not lie in it.
-fn add_ground(desc: &mut SceneDesc, under: DVec3, radius: f64) {
+pub(crate) fn add_ground(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
+    let (center, radius) = center_and_radius(low, high);
+    let under = DVec3::new(center.x, low.y, center.z);
     let place = DMat4::from_translation(under - 1e-3 * radius * DVec3::Y);
     let z_up = DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     let disk = ShapeKind::Disk {

@@ -358,9 +358,9 @@ impl<'a> Interpreter<'a> {
         match read_unpacked(self.assets, path) {
             Ok(text) if u32::try_from(text.len()).is_ok() => {
                 if let Some(what) = foreign::recognise(&shown, &text) {
-                    let message = format!("`{shown}` is {what}, which alhazen does not read");
+                    let message = format!("`{shown}` is {what}, not one of pbrt-v4");
                     let diagnostic = Diagnostic::error("foreign-format", message, span);
-                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, PLY or OBJ files"));
+                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, glTF, PLY or OBJ files"));
                     return None;
                 }
                 let file = self.sources.add(shown, text);

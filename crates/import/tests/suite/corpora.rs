@@ -23,7 +23,7 @@ pub(crate) fn data(folder: &str) -> Option<PathBuf> {
     None
 }
 
-fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+pub(crate) fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("the entry is there").path();

@@ -2,6 +2,7 @@
 
 mod corpora;
 mod directives;
+mod gltf;
 mod hostile;
 mod meshes;
 mod messages;

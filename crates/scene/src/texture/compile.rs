@@ -333,6 +333,11 @@ impl GraphBuilder<'_> {
                 let code = Code::Marble(self.marbles.intern(&mut textures.marbles, marble, hash));
                 self.graph.node(code, &[])
             }
+            TextureKind::Step { texture, edge } => {
+                let texture = self.operand(texture, (), "tex", desc);
+                let edge = self.finite(*edge, "edge", desc);
+                self.graph.step(texture, edge)
+            }
             TextureKind::Ptex { .. } => {
                 let message = "texture `ptex` is not drawn yet; drawn as the constant 0.5";
                 self.diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
@@ -415,6 +420,7 @@ impl GraphBuilder<'_> {
     fn mapping<V>(&mut self, desc: &MappingDesc, texture: &Stated<TextureDesc<V>>) -> u32 {
         let mapping = match *desc {
             MappingDesc::Uv { scale, delta } => Mapping2d::Uv { scale: scale.into(), delta: delta.into() },
+            MappingDesc::Affine { columns } => Mapping2d::Affine { columns: columns.map(Vec2::from) },
             MappingDesc::Spherical => {
                 Mapping2d::Spherical { texture_from_render: self.texture_from_render(texture) }
             }

@@ -111,6 +111,14 @@ impl Graph {
         }
     }
 
+    /// 1 where the number `texture` is at least `edge`, else 0.
+    pub fn step(&mut self, texture: NodeId, edge: f32) -> NodeId {
+        match self.value(texture) {
+            Some(value) => self.number(f32::from(u8::from(value >= edge))),
+            None => self.node(Code::Step(edge), &[texture]),
+        }
+    }
+
     /// (1 − `amount`)·first + `amount`·second.
     pub fn mix(&mut self, [first, second]: [NodeId; 2], amount: NodeId) -> NodeId {
         match (self.value(first), self.value(second), self.value(amount)) {
@@ -126,7 +134,7 @@ impl Graph {
         let mut padded = [NodeId(0); 4];
         padded[..operands.len()].copy_from_slice(operands);
         let payload = match code {
-            Code::Number(value) => value.to_bits(),
+            Code::Number(value) | Code::Step(value) => value.to_bits(),
             Code::Spectrum(index)
             | Code::FloatImage(index)
             | Code::SpectrumImage(index)

@@ -5,6 +5,7 @@
 //!
 //! ```text
 //! uv            (s, t) = (scale_u·u + delta_u, scale_v·v + delta_v)
+//! affine        (s, t) = u·c₀ + v·c₁ + c₂
 //! spherical     s = θ/π = acos(z/r)/π         ∇s = (xz/ρ, yz/ρ, −ρ)/(π·r²)
 //!               t = φ/2π, φ ∈ [0, 2π)         ∇t = (−y, x, 0)/(2π·ρ²)
 //! cylindrical   s = (π + atan2(y, x))/2π      ∇s = (−y, x, 0)/(2π·ρ²)
@@ -57,6 +58,11 @@ pub enum Mapping2d {
         /// Offsets, added after scaling.
         delta: Vec2,
     },
+    /// A linear function of the surface's own parameters.
+    Affine {
+        /// What u, v and 1 are multiplied by.
+        columns: [Vec2; 3],
+    },
     /// Polar angles about the origin of texture space.
     Spherical {
         /// From render to texture space.
@@ -91,6 +97,15 @@ impl Mapping2d {
                 dstdy: scale * Vec2::new(ctx.footprint.dudy, ctx.footprint.dvdy),
             };
         }
+        if let Self::Affine { columns } = self {
+            let [u, v, delta] = columns.map(Vec2::broadcast);
+            let along = |du: R, dv: R| u * du + v * dv;
+            return TexCoord2d {
+                st: along(ctx.uv.x, ctx.uv.y) + delta,
+                dstdx: along(ctx.footprint.dudx, ctx.footprint.dvdx),
+                dstdy: along(ctx.footprint.dudy, ctx.footprint.dvdy),
+            };
+        }
         if R::LANES == 1 {
             let TexCoord2d { st, dstdx, dstdy } = self.map_one(&ctx.lane(0));
             let [st, dstdx, dstdy] = [st, dstdx, dstdy].each(Vec2::broadcast);
@@ -111,7 +126,7 @@ impl Mapping2d {
     #[inline(never)]
     fn map_one(&self, ctx: &TextureContext) -> TexCoord2d {
         match self {
-            Self::Uv { .. } => unreachable!("invariant: these are mapped in lanes"),
+            Self::Uv { .. } | Self::Affine { .. } => unreachable!("invariant: these are mapped in lanes"),
             Self::Spherical { texture_from_render } => {
                 let at = Mapping3d { texture_from_render: *texture_from_render }.map(ctx);
                 let p = at.p;

@@ -48,6 +48,7 @@ impl Textures {
             | Code::Cubes(_)
             | Code::Facing(_)
             | Code::Scale
+            | Code::Step(_)
             | Code::Mix
             | Code::Bilerp(_) => unreachable!("invariant: these are not made of noise"),
         }

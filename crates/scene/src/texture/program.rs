@@ -53,6 +53,8 @@ pub enum Code {
     Windy(u32),
     /// The reflectance of an entry of [`Textures::marbles`].
     Marble(u32),
+    /// 1 where the number that operand 0 is is at least this one, else 0.
+    Step(f32),
     /// The product of operands 0 and 1, of which 1 is a number.
     Scale,
     /// (1 − a)·operand 0 + a·operand 1, where the number a is operand 2. For a = 0 and a = 1 the
@@ -79,6 +81,7 @@ impl Code {
             | Self::Wrinkled(_)
             | Self::Windy(_)
             | Self::Marble(_) => 0,
+            Self::Step(_) => 1,
             Self::Scale => 2,
             Self::Mix => 3,
             Self::Bilerp(_) => 4,
@@ -100,6 +103,7 @@ impl Code {
             | Self::Spectrum(_)
             | Self::Dots(_)
             | Self::Facing(_)
+            | Self::Step(_)
             | Self::Scale
             | Self::Mix
             | Self::Bilerp(_) => false,
@@ -314,6 +318,9 @@ impl Textures {
                 }
                 Code::Spectrum(_) | Code::SpectrumImage(_) | Code::Marble(_) => {
                     V::spectral(self, operation.code, ctx, lambda)
+                }
+                Code::Step(edge) => {
+                    V::splat(R::select(slots[a].number().ge(R::splat(edge)), R::one(), R::zero()))
                 }
                 Code::Scale => slots[a] * slots[b].number(),
                 Code::Mix => mix([slots[a], slots[b]], slots[c].number()),

@@ -339,6 +339,7 @@ fn filters_of_constant_images_are_constant() {
         MappingDesc::Spherical,
         MappingDesc::Cylindrical,
         MappingDesc::Planar { axes, delta: [0.1, 0.2] },
+        MappingDesc::Affine { columns: [[0.8, -0.6], [0.6, 0.8], [0.1, 0.2]] },
     ] {
         for filter in FILTERS {
             let t = float_image(Image::from_fn(13, 8, ["Y"], |_, _| [0.625]), |desc| {

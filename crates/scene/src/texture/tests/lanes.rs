@@ -42,7 +42,8 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
         [x as f32 / 15.0, y as f32 / 7.0, (x * y % 5) as f32 / 4.0]
     });
     let image = push_image(&mut scene, image.to_u8(ColorEncoding::Srgb));
-    let mappings = [MappingDesc::default(), MappingDesc::Spherical];
+    let turned = MappingDesc::Affine { columns: [[0.8, -0.6], [1.2, 1.6], [0.1, 0.2]] };
+    let mappings = [MappingDesc::default(), MappingDesc::Spherical, turned];
     for (filter, mapping) in FILTERS.into_iter().flat_map(|f| mappings.map(|m| (f, m))) {
         let mut desc = ImageTextureDesc::new(image);
         (desc.filter, desc.mapping, desc.scale) = (filter, mapping, 0.9);
@@ -55,6 +56,7 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
         TextureKind::Fbm { octaves, roughness },
         TextureKind::Wrinkled { octaves, roughness },
         TextureKind::Windy,
+        TextureKind::Step { texture: Handle::new(0).into(), edge: 0.5 },
     ] {
         let mut desc = FloatTextureDesc::new(kind);
         desc.world_from_texture = DMat4::from_rotation_x(0.4) * DMat4::from_scale(DVec3::new(0.3, 0.7, 0.2));

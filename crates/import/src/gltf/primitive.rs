@@ -1,0 +1,228 @@
+//! Primitives of meshes: their vertices, triangles and morph targets.
+
+use math::{Point2, Vec3};
+
+use super::accessor::Accessor;
+use super::buffer::Buffers;
+use super::document::Document;
+use super::json::{Place, Result};
+
+/// The triangles of a primitive. Arrays are empty, or as long as `positions`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Primitive {
+    pub triangles: Vec<[u32; 3]>,
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    /// Directions of increasing u, and the sign of the handedness.
+    pub tangents: Vec<[f32; 4]>,
+    /// With v down, as in the file.
+    pub uvs: Vec<Point2>,
+    /// The joints that move each vertex, with their weights.
+    pub influences: Vec<[(u32, f32); 4]>,
+    /// What is added to positions and normals with the weight of each target.
+    pub targets: Vec<Target>,
+}
+
+/// A morph target.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Target {
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    pub tangents: Vec<Vec3>,
+}
+
+/// Numbers of modes that draw points, lines and triangles.
+const POINTS: usize = 0;
+const LINES: [usize; 3] = [1, 2, 3];
+const TRIANGLES: usize = 4;
+const STRIP: usize = 5;
+const FAN: usize = 6;
+
+/// The primitives of a mesh, without their vertices.
+pub(super) fn places<'a>(document: &Document<'a>, mesh: usize) -> Result<Vec<Place<'a>>> {
+    let Some(place) = document.item("meshes", mesh) else { return Ok(Vec::new()) };
+    let primitives = place.array("primitives")?;
+    if primitives.is_empty() {
+        return Err(place.invalid("a mesh has at least one primitive"));
+    }
+    Ok(primitives)
+}
+
+/// The names of kinds of primitives that are not drawn.
+pub(super) fn not_drawn(place: &Place) -> Result<Option<&'static str>> {
+    match place.integer("mode")?.unwrap_or(TRIANGLES) {
+        POINTS => Ok(Some("points")),
+        mode if LINES.contains(&mode) => Ok(Some("lines")),
+        TRIANGLES | STRIP | FAN => Ok(None),
+        mode => Err(place.invalid_member("mode", format!("{mode} is not a kind of primitive"))),
+    }
+}
+
+/// Reads primitives of a text.
+pub(super) struct Reader<'r, 'a> {
+    pub document: &'r Document<'a>,
+    pub buffers: &'r Buffers,
+}
+
+impl Reader<'_, '_> {
+    /// A primitive with the texture coordinates of a set.
+    pub fn primitive(&self, place: &Place, set: usize) -> Result<Primitive> {
+        let attributes =
+            place.object("attributes")?.ok_or_else(|| place.invalid("`attributes` is missing"))?;
+        check_names(&attributes)?;
+        let Some(accessor) = Accessor::of(self.document, &attributes, "POSITION")? else {
+            return Err(attributes.invalid("`POSITION` is missing"));
+        };
+        if place.extension("KHR_draco_mesh_compression")?.is_some() && !accessor.has_data() {
+            let message = "the primitive is packed by KHR_draco_mesh_compression, which is not read";
+            return Err(place.invalid(message));
+        }
+        let positions =
+            points(accessor.vectors(self.buffers).map_err(|fault| within(&attributes, "POSITION", fault))?);
+        let count = positions.len();
+        let mut primitive = Primitive {
+            normals: points(self.attribute(&attributes, "NORMAL", count)?),
+            tangents: self.attribute(&attributes, "TANGENT", count)?,
+            uvs: self.coordinates(&attributes, set, count)?,
+            influences: self.influences(&attributes, count)?,
+            positions,
+            ..Primitive::default()
+        };
+        // Flat normals have no tangents of their own.
+        if primitive.normals.is_empty() {
+            primitive.tangents.clear();
+        }
+        for target in place.array("targets")? {
+            check_names(&target)?;
+            primitive.targets.push(Target {
+                positions: points(self.attribute(&target, "POSITION", count)?),
+                normals: points(self.attribute(&target, "NORMAL", count)?),
+                tangents: points(self.attribute(&target, "TANGENT", count)?),
+            });
+        }
+        primitive.triangles = self.triangles(place, count)?;
+        Ok(primitive)
+    }
+
+    fn attribute<const N: usize>(
+        &self,
+        attributes: &Place,
+        name: &str,
+        count: usize,
+    ) -> Result<Vec<[f32; N]>> {
+        let Some(accessor) = Accessor::of(self.document, attributes, name)? else { return Ok(Vec::new()) };
+        if accessor.count != count {
+            let message = format!("there are {} for {count} vertices", accessor.count);
+            return Err(attributes.invalid_member(name, message));
+        }
+        accessor.vectors(self.buffers).map_err(|fault| within(attributes, name, fault))
+    }
+
+    fn coordinates(&self, attributes: &Place, set: usize, count: usize) -> Result<Vec<Point2>> {
+        let uvs = self.attribute(attributes, &format!("TEXCOORD_{set}"), count)?;
+        Ok(uvs.into_iter().map(|[u, v]| Point2::new(u, v)).collect())
+    }
+
+    fn influences(&self, attributes: &Place, count: usize) -> Result<Vec<[(u32, f32); 4]>> {
+        let Some(accessor) = Accessor::of(self.document, attributes, "JOINTS_0")? else {
+            return Ok(Vec::new());
+        };
+        let joints =
+            accessor.integers::<4>(self.buffers).map_err(|fault| within(attributes, "JOINTS_0", fault))?;
+        let weights: Vec<[f32; 4]> = self.attribute(attributes, "WEIGHTS_0", count)?;
+        if joints.len() != weights.len() || weights.len() != count {
+            let message = "`JOINTS_0` and `WEIGHTS_0` are there for all vertices, or for none";
+            return Err(attributes.invalid(message));
+        }
+        let pair =
+            |(joints, weights): (&[u32; 4], &[f32; 4])| std::array::from_fn(|i| (joints[i], weights[i]));
+        Ok(joints.iter().zip(&weights).map(pair).collect())
+    }
+
+    fn triangles(&self, place: &Place, count: usize) -> Result<Vec<[u32; 3]>> {
+        let indices: Vec<u32> = match Accessor::of(self.document, place, "indices")? {
+            Some(accessor) => {
+                let indices =
+                    accessor.integers::<1>(self.buffers).map_err(|fault| within(place, "indices", fault))?;
+                indices.into_iter().map(|[index]| index).collect()
+            }
+            None => {
+                self.buffers.spend(place, 16 * count as u64)?;
+                (0..count as u32).collect()
+            }
+        };
+        if let Some(index) = indices.iter().find(|&&index| index as usize >= count) {
+            let message = format!("there is no vertex {index} of {count}");
+            return Err(place.invalid_member("indices", message));
+        }
+        let mut triangles: Vec<[u32; 3]> = match place.integer("mode")?.unwrap_or(TRIANGLES) {
+            STRIP => {
+                let turned = |(i, v): (usize, &[u32])| {
+                    if i % 2 == 0 { [v[0], v[1], v[2]] } else { [v[0], v[2], v[1]] }
+                };
+                indices.windows(3).enumerate().map(turned).collect()
+            }
+            FAN => {
+                let (first, rest) =
+                    indices.split_first().map_or((0, &[][..]), |(&first, rest)| (first, rest));
+                rest.windows(2).map(|v| [v[0], v[1], first]).collect()
+            }
+            _ => indices.as_chunks().0.to_vec(),
+        };
+        // Strips join their parts by triangles without an area.
+        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        Ok(triangles)
+    }
+}
+
+/// The fault of an accessor, as that of the attribute which refers to it.
+fn within(attributes: &Place, name: &str, fault: super::json::Fault) -> super::json::Fault {
+    let message = format!("{} (of {})", fault.message, fault.pointer);
+    super::json::Fault { pointer: attributes.pointer_to(name), message, ..fault }
+}
+
+fn points(vectors: Vec<[f32; 3]>) -> Vec<Vec3> {
+    vectors.into_iter().map(|[x, y, z]| Vec3::new(x, y, z)).collect()
+}
+
+/// Refuses attributes that are neither of the format nor of an application.
+fn check_names(attributes: &Place) -> Result<()> {
+    let names = attributes.value.as_object().into_iter().flat_map(|object| object.keys());
+    for name in names {
+        let numbered = ["TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"].into_iter();
+        let is_numbered = numbered
+            .filter_map(|start| name.strip_prefix(start))
+            .any(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()));
+        if !(is_numbered
+            || name.starts_with('_')
+            || matches!(name.as_str(), "POSITION" | "NORMAL" | "TANGENT"))
+        {
+            return Err(attributes.invalid_member(name, "this is not the name of an attribute"));
+        }
+    }
+    Ok(())
+}
+
+impl Primitive {
+    /// The same with the morph targets added by their weights.
+    pub fn morphed(&self, weights: &[f64]) -> Self {
+        let mut primitive = Self { targets: Vec::new(), ..self.clone() };
+        for (target, &weight) in self.targets.iter().zip(weights) {
+            if weight == 0.0 {
+                continue;
+            }
+            let weight = weight as f32;
+            for (v, d) in primitive.positions.iter_mut().zip(&target.positions) {
+                *v = *v + *d * weight;
+            }
+            for (v, d) in primitive.normals.iter_mut().zip(&target.normals) {
+                *v = *v + *d * weight;
+            }
+            for (v, d) in primitive.tangents.iter_mut().zip(&target.tangents) {
+                let d = *d * weight;
+                *v = [v[0] + d.x, v[1] + d.y, v[2] + d.z, v[3]];
+            }
+        }
+        primitive
+    }
+}

@@ -1,0 +1,378 @@
+//! The parts of a file put together as a scene.
+
+use std::collections::BTreeMap;
+
+use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
+use math::{DMat4, DQuat, DVec3};
+
+use super::accessor::Accessor;
+use super::buffer::Buffers;
+use super::document::Document;
+use super::json::{Place, Result};
+use super::light::Light;
+use super::log::Log;
+use super::material::Material;
+use super::node::{Nodes, Trs};
+use super::pictures::Pictures;
+use super::primitive::{self, Primitive, Reader};
+use super::shape::{Look, Vertices};
+use super::skin::Skin;
+use super::surface::{Builder, Coordinates, Surface};
+
+/// Nodes at a time, and where they are in the world.
+pub(super) struct Pose {
+    pub nodes: Nodes,
+    pub world: Vec<DMat4>,
+}
+
+/// What is drawn of a file.
+pub(super) struct Drawn<'a> {
+    pub document: Document<'a>,
+    pub buffers: &'a Buffers,
+    /// Its materials, then the one of surfaces that have none.
+    pub materials: &'a [Option<Material>],
+    pub lights: &'a [Option<Light>],
+    pub skins: &'a [Option<Skin>],
+    /// The chosen variant of materials.
+    pub variant: Option<usize>,
+    /// The nodes as the shutter opens and closes.
+    pub poses: [Pose; 2],
+    /// The nodes of the scene.
+    pub nodes: Vec<usize>,
+}
+
+/// Shapes that are drawn together, at one or more places.
+#[derive(Default)]
+struct Group {
+    mesh: usize,
+    weights: [Vec<f64>; 2],
+    placements: Vec<TransformDesc>,
+}
+
+/// A scene while it is built.
+pub(super) struct Assembly<'s, 'a> {
+    pub drawn: &'s Drawn<'a>,
+    pub desc: &'s mut SceneDesc,
+    pub pictures: &'s mut Pictures,
+    pub log: &'s mut Log,
+    /// Two corners of the box around all surfaces.
+    pub bounds: [DVec3; 2],
+    surfaces: BTreeMap<usize, [Surface; 2]>,
+}
+
+impl<'a> Drawn<'a> {
+    /// The index of the material of a primitive.
+    pub fn material(&self, place: &Place) -> Result<usize> {
+        let count = self.document.count("materials");
+        if let (Some(variant), Some(extension)) = (self.variant, place.extension("KHR_materials_variants")?) {
+            for mapping in extension.array("mappings")? {
+                let variants = mapping.array("variants")?;
+                let variants = variants.iter().map(Place::as_integer).collect::<Result<Vec<_>>>()?;
+                if variants.contains(&variant)
+                    && let Some(material) = mapping.index("material", count, "materials")?
+                {
+                    return Ok(material);
+                }
+            }
+        }
+        Ok(self.document.index(place, "material", "materials")?.unwrap_or(count))
+    }
+
+    /// The meshes that are drawn, each once.
+    pub fn meshes(&self) -> Vec<usize> {
+        if self.document.count("nodes") == 0 {
+            return (0..self.document.count("meshes")).collect();
+        }
+        let mut meshes: Vec<_> =
+            self.nodes.iter().filter_map(|&node| self.poses[0].nodes.nodes[node].mesh).collect();
+        meshes.sort_unstable();
+        meshes.dedup();
+        meshes
+    }
+
+    /// Where a node is while the shutter is open.
+    pub fn motion(&self, node: usize) -> TransformDesc {
+        let [start, end] = [&self.poses[0], &self.poses[1]].map(|pose| pose.world[node]);
+        TransformDesc { start, end, ..TransformDesc::default() }
+    }
+
+    /// The weights of the morph targets of a node's mesh.
+    fn weights(&self, node: usize, mesh: usize) -> Result<[Vec<f64>; 2]> {
+        let place = self.document.item("meshes", mesh);
+        let own = place.map_or(Ok(Vec::new()), |place| {
+            place.array("weights")?.iter().map(Place::as_number).collect::<Result<Vec<_>>>()
+        })?;
+        Ok([&self.poses[0], &self.poses[1]]
+            .map(|pose| pose.nodes.nodes[node].weights.clone().unwrap_or_else(|| own.clone())))
+    }
+}
+
+impl<'s, 'a> Assembly<'s, 'a> {
+    pub fn new(
+        drawn: &'s Drawn<'a>,
+        desc: &'s mut SceneDesc,
+        pictures: &'s mut Pictures,
+        log: &'s mut Log,
+    ) -> Self {
+        let bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        Self { drawn, desc, pictures, log, bounds, surfaces: BTreeMap::new() }
+    }
+
+    /// Adds everything that is drawn but the camera.
+    pub fn add_all(&mut self) {
+        let mut groups = BTreeMap::new();
+        if self.drawn.document.count("nodes") == 0 {
+            for mesh in self.drawn.meshes() {
+                groups.insert(
+                    (mesh, String::new()),
+                    Group { mesh, placements: vec![TransformDesc::default()], ..Group::default() },
+                );
+            }
+        }
+        for &index in &self.drawn.nodes {
+            if self.log.is_full() {
+                return;
+            }
+            if let Err(fault) = self.node(index, &mut groups) {
+                self.log.fault(fault);
+            }
+        }
+        for group in groups.into_values() {
+            if let Err(fault) = self.group(group) {
+                self.log.fault(fault);
+            }
+        }
+    }
+
+    /// Adds the light of a node, its mesh if a skin moves it, and its mesh to the groups if not.
+    fn node(&mut self, index: usize, groups: &mut BTreeMap<(usize, String), Group>) -> Result<()> {
+        let drawn = self.drawn;
+        let node = &drawn.poses[0].nodes.nodes[index];
+        let motion = drawn.motion(index);
+        if let Some(light) = node.light.and_then(|light| drawn.lights[light].as_ref()) {
+            if light.has_range {
+                self.log.warn(
+                    "not-drawn",
+                    format!("{}/range", light.pointer),
+                    "the light of a lamp does not end at a range",
+                );
+            }
+            let desc = light.desc(motion).filter(|_| is_placed(&motion));
+            desc.map(|desc| self.desc.lights.push(desc));
+        }
+        let Some(mesh) = node.mesh else { return Ok(()) };
+        let weights = drawn.weights(index, mesh)?;
+        if let Some(skin) = node.skin.and_then(|skin| drawn.skins[skin].as_ref()) {
+            return self.skinned(mesh, &weights, skin);
+        }
+        let pointer = format!("/nodes/{index}");
+        let place = drawn.document.item("nodes", index).unwrap_or(Place::empty(pointer.clone()));
+        let mut placements = vec![motion];
+        if let Some(extension) = place.extension("EXT_mesh_gpu_instancing")? {
+            let copies = self.copies(&extension)?;
+            let at = |copy: &DMat4| TransformDesc {
+                start: motion.start * *copy,
+                end: motion.end * *copy,
+                ..motion
+            };
+            placements = copies.iter().map(at).collect();
+        }
+        let all = placements.len();
+        placements.retain(is_placed);
+        if placements.len() < all {
+            self.log.warn("not-drawn", &pointer, "what is scaled to nothing is not drawn");
+        }
+        if placements.is_empty() {
+            return Ok(());
+        }
+        let key = (mesh, format!("{weights:?}"));
+        let group = groups.entry(key).or_insert_with(|| Group { mesh, weights, placements: Vec::new() });
+        group.placements.extend(placements);
+        Ok(())
+    }
+
+    /// The transforms of the copies of a mesh.
+    fn copies(&self, extension: &Place) -> Result<Vec<DMat4>> {
+        let (document, buffers) = (&self.drawn.document, self.drawn.buffers);
+        let attributes =
+            extension.object("attributes")?.ok_or_else(|| extension.invalid("`attributes` is missing"))?;
+        let three = |name: &str| match Accessor::of(document, &attributes, name)? {
+            Some(accessor) => accessor.vectors::<3>(buffers).map(Some),
+            None => Ok(None),
+        };
+        let (translations, scales) = (three("TRANSLATION")?, three("SCALE")?);
+        let rotations = match Accessor::of(document, &attributes, "ROTATION")? {
+            Some(accessor) => Some(accessor.vectors::<4>(buffers)?),
+            None => None,
+        };
+        let counts = [
+            translations.as_ref().map(Vec::len),
+            scales.as_ref().map(Vec::len),
+            rotations.as_ref().map(Vec::len),
+        ];
+        let count = counts.into_iter().flatten().next().unwrap_or(0);
+        if counts.into_iter().flatten().any(|other| other != count) {
+            return Err(attributes.invalid("all attributes have as many elements"));
+        }
+        self.drawn.buffers.spend(extension, 300 * count as u64)?;
+        let vector = |values: &Option<Vec<[f32; 3]>>, index: usize, default: DVec3| {
+            values.as_ref().map_or(default, |values| DVec3::from(values[index].map(f64::from)))
+        };
+        let copy = |index: usize| {
+            let rotation = rotations.as_ref().map_or(DQuat::IDENTITY, |values| {
+                let rotation = DQuat::from_array(values[index].map(f64::from));
+                if rotation.length_squared() > 1e-12 { rotation.normalize() } else { DQuat::IDENTITY }
+            });
+            let translation = vector(&translations, index, DVec3::ZERO);
+            Trs { translation, rotation, scale: vector(&scales, index, DVec3::ONE) }.matrix()
+        };
+        Ok((0..count).map(copy).collect())
+    }
+
+    /// Adds a mesh at its places: as shapes if there is one, else as instances of an object.
+    fn group(&mut self, group: Group) -> Result<()> {
+        let [start, end] = &group.weights;
+        let shapes = self.mesh(group.mesh, &mut |primitive| {
+            let moved = (start != end).then(|| primitive.morphed(end));
+            Some(Vertices { start: primitive.morphed(start), end: moved })
+        })?;
+        for placement in &group.placements {
+            for shape in &shapes {
+                self.enclose(shape, placement);
+            }
+        }
+        match group.placements.as_slice() {
+            [placement] => {
+                for shape in shapes {
+                    self.desc.shapes.push(ShapeDesc { world_from_object: *placement, ..shape });
+                }
+            }
+            placements => {
+                let mut object = ObjectDesc::default();
+                for shape in shapes {
+                    object.shapes.push(shape);
+                }
+                if object.shapes.is_empty() {
+                    return Ok(());
+                }
+                let object = self.desc.objects.push(object);
+                for &world_from_object in placements {
+                    self.desc.instances.push(InstanceDesc { object, world_from_object });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a mesh that follows a skin, at the place of its joints.
+    fn skinned(&mut self, mesh: usize, weights: &[Vec<f64>; 2], skin: &Skin) -> Result<()> {
+        let drawn = self.drawn;
+        let [start, end] = [&drawn.poses[0], &drawn.poses[1]];
+        let shapes = self.mesh(mesh, &mut |primitive| {
+            let posed = |weights: &[f64], world| skin.posed(&primitive.morphed(weights), world);
+            let (first, last) = (posed(&weights[0], &start.world)?, posed(&weights[1], &end.world)?);
+            let moves = first.positions != last.positions;
+            Some(Vertices { start: first, end: moves.then_some(last) })
+        })?;
+        for shape in shapes {
+            self.enclose(&shape, &TransformDesc::default());
+            self.desc.shapes.push(shape);
+        }
+        Ok(())
+    }
+
+    /// The shapes of a mesh, of whose primitives `pose` gives the vertices.
+    fn mesh(
+        &mut self,
+        mesh: usize,
+        pose: &mut dyn FnMut(&Primitive) -> Option<Vertices>,
+    ) -> Result<Vec<ShapeDesc>> {
+        let drawn = self.drawn;
+        let mut shapes = Vec::new();
+        for place in primitive::places(&drawn.document, mesh)? {
+            if let Some(kind) = primitive::not_drawn(&place)? {
+                self.log.warn("not-drawn", &place.pointer, format!("{kind} are not drawn"));
+                continue;
+            }
+            let index = drawn.material(&place)?;
+            let Some(material) = drawn.materials.get(index).and_then(Option::as_ref) else { continue };
+            let reader = Reader { document: &drawn.document, buffers: drawn.buffers };
+            let set = Coordinates::of(material).set;
+            let primitive = match reader.primitive(&place, set) {
+                Ok(primitive) => primitive,
+                Err(fault) => {
+                    self.log.fault(fault);
+                    continue;
+                }
+            };
+            self.not_honoured(&place, material, &primitive, set);
+            let Some(vertices) = pose(&primitive) else {
+                self.log.fault(
+                    place.invalid_member(
+                        "attributes/JOINTS_0",
+                        "there are joints that the skin does not have",
+                    ),
+                );
+                continue;
+            };
+            let surfaces = self.surfaces(index, material);
+            let look = Look { material, surfaces: [&surfaces[0], &surfaces[1]] };
+            shapes.extend(look.shapes(&vertices, self.desc));
+        }
+        Ok(shapes)
+    }
+
+    /// The surfaces of a material; both are the same where it has no normal map.
+    fn surfaces(&mut self, index: usize, material: &Material) -> [Surface; 2] {
+        if let Some(known) = self.surfaces.get(&index) {
+            return known.clone();
+        }
+        let mut builder = Builder { desc: self.desc, pictures: self.pictures, log: self.log };
+        let surface = builder.surface(material, false);
+        let mirrored = match material.normals {
+            Some(_) => Surface { area_light: surface.area_light, ..builder.surface(material, true) },
+            None => surface.clone(),
+        };
+        self.surfaces.insert(index, [surface.clone(), mirrored.clone()]);
+        [surface, mirrored]
+    }
+
+    /// Says what of a primitive is not drawn.
+    fn not_honoured(&mut self, place: &Place, material: &Material, primitive: &Primitive, set: usize) {
+        let Some(attributes) = place.get("attributes") else { return };
+        for name in ["JOINTS_1", "COLOR_0"] {
+            if let Some(attribute) = attributes.get(name) {
+                let message = match name {
+                    "COLOR_0" => "colours of vertices are not drawn",
+                    _ => "more than four joints of a vertex are not followed",
+                };
+                self.log.warn("not-drawn", attribute.pointer, message);
+            }
+        }
+        if primitive.uvs.is_empty() && !material.textures().is_empty() {
+            let message = format!("there is no `TEXCOORD_{set}` for the textures of the material");
+            self.log.warn("not-drawn", attributes.pointer, message);
+        }
+    }
+
+    /// Grows the box around all surfaces.
+    fn enclose(&mut self, shape: &ShapeDesc, placement: &TransformDesc) {
+        let ShapeKind::Triangles(mesh) = &shape.kind else { return };
+        let corners = mesh.indices.iter().flatten();
+        let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        for &vertex in corners {
+            let point = mesh.positions[vertex as usize].as_dvec3();
+            (low, high) = (low.min(point), high.max(point));
+        }
+        for corner in 0..8 {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            let point = placement.start.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
+            self.bounds = [self.bounds[0].min(point), self.bounds[1].max(point)];
+        }
+    }
+}
+
+/// Whether a transform has an inverse.
+fn is_placed(placement: &TransformDesc) -> bool {
+    [placement.start, placement.end].iter().all(|m| m.is_finite() && m.inverse().is_finite())
+}

@@ -1,0 +1,140 @@
+//! Primitives as shapes of a scene.
+
+use std::sync::Arc;
+
+use description::{MeshDesc, MeshKey, SceneDesc, ShapeDesc, ShapeKind};
+use math::{DVec2, Point2, Vec3};
+
+use super::emission::Emitting;
+use super::material::Material;
+use super::primitive::Primitive;
+use super::surface::{Coordinates, Surface};
+
+/// The vertices of a primitive, at the start and, where they move, at the end of the shutter's
+/// time.
+pub(super) struct Vertices {
+    pub start: Primitive,
+    pub end: Option<Primitive>,
+}
+
+/// What shapes are made with.
+pub(super) struct Look<'a> {
+    pub material: &'a Material,
+    /// The surface, and that where texture coordinates are mirrored.
+    pub surfaces: [&'a Surface; 2],
+}
+
+impl Look<'_> {
+    /// The shapes of a primitive: one for each of the parts that emit or do not, and that have
+    /// mirrored texture coordinates or not.
+    pub fn shapes(&self, vertices: &Vertices, desc: &SceneDesc) -> Vec<ShapeDesc> {
+        let primitive = &vertices.start;
+        let uvs = mapped(&primitive.uvs, &self.surfaces[0].coordinates);
+        let emission = self.surfaces[0].area_light.and_then(|light| desc.area_lights[light].image);
+        let emitting =
+            emission.filter(|_| !uvs.is_empty()).map(|image| Emitting::of(&desc.images[image].image));
+        let mut parts = [const { Vec::new() }; 4];
+        for triangle in &primitive.triangles {
+            let corners = (!uvs.is_empty()).then(|| triangle.map(|vertex| uvs[vertex as usize]));
+            let is_mirrored = self.material.normals.is_some() && is_mirrored(primitive, triangle, corners);
+            let is_dark = match (&emitting, corners) {
+                (Some(emitting), Some(corners)) => !emitting.is_met(corners),
+                _ => false,
+            };
+            parts[usize::from(is_mirrored) + 2 * usize::from(is_dark)].push(*triangle);
+        }
+        let shared = self.mesh(vertices, uvs);
+        let parts = parts.into_iter().enumerate().filter(|(_, triangles)| !triangles.is_empty());
+        parts
+            .map(|(part, triangles)| {
+                let surface = self.surfaces[part % 2];
+                let mesh = MeshDesc { indices: triangles.into(), ..shared.clone() };
+                ShapeDesc {
+                    material: Some(surface.material),
+                    area_light: surface.area_light.filter(|_| part < 2),
+                    alpha: surface.alpha.clone(),
+                    medium_interface: surface.media,
+                    ..ShapeDesc::from(ShapeKind::Triangles(mesh))
+                }
+            })
+            .collect()
+    }
+
+    /// The vertices as a mesh without triangles.
+    fn mesh(&self, vertices: &Vertices, uvs: Vec<Point2>) -> MeshDesc {
+        let primitive = &vertices.start;
+        let later = vertices.end.as_ref().map(|end| MeshKey {
+            positions: end.positions.as_slice().into(),
+            normals: end.normals.as_slice().into(),
+        });
+        MeshDesc {
+            indices: Arc::default(),
+            positions: primitive.positions.as_slice().into(),
+            normals: primitive.normals.as_slice().into(),
+            tangents: self.tangents(primitive, &uvs).into(),
+            uvs: uvs.into(),
+            face_indices: Arc::default(),
+            later: later.into_iter().collect(),
+        }
+    }
+
+    /// The tangents that shading needs besides the directions of increasing u.
+    fn tangents(&self, primitive: &Primitive, uvs: &[Point2]) -> Vec<Vec3> {
+        let angle = self.surfaces[0].tangent_rotation;
+        let is_used = self.material.normals.is_some() || self.material.anisotropy.is_some();
+        if !is_used || primitive.normals.is_empty() || (angle == 0.0 && primitive.tangents.is_empty()) {
+            return Vec::new();
+        }
+        let tangents = match primitive.tangents.is_empty() {
+            false => primitive.tangents.iter().map(|&[x, y, z, sign]| (Vec3::new(x, y, z), sign)).collect(),
+            true => along_u(primitive, uvs),
+        };
+        let (sin, cos) = angle.sin_cos();
+        let turned = |((tangent, sign), normal): ((Vec3, f32), &Vec3)| {
+            let normal = normal.normalize_or(Vec3::Z);
+            tangent * cos + normal.cross(tangent) * (sin * sign.signum())
+        };
+        tangents.into_iter().zip(&primitive.normals).map(turned).collect()
+    }
+}
+
+/// Texture coordinates of the file as those of a mesh.
+fn mapped(uvs: &[Point2], coordinates: &Coordinates) -> Vec<Point2> {
+    let map = |uv: &Point2| {
+        let uv = coordinates.transform.transform_point2(DVec2::new(uv.x.into(), 1.0 - f64::from(uv.y)));
+        Point2::from(uv.as_vec2())
+    };
+    uvs.iter().map(map).collect()
+}
+
+/// Whether the texture coordinates of a triangle go round it the other way than its corners.
+fn is_mirrored(primitive: &Primitive, triangle: &[u32; 3], corners: Option<[Point2; 3]>) -> bool {
+    if let Some([_, _, _, sign]) = primitive.tangents.get(triangle[0] as usize) {
+        return *sign < 0.0;
+    }
+    corners.is_some_and(|[a, b, c]| area(a, b, c) < 0.0)
+}
+
+/// Twice the area of a triangle, negative if it is clockwise.
+fn area(a: Point2, b: Point2, c: Point2) -> f32 {
+    (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
+}
+
+/// Directions of increasing u at the vertices, means of those of the triangles around them.
+fn along_u(primitive: &Primitive, uvs: &[Point2]) -> Vec<(Vec3, f32)> {
+    let mut sums = vec![(Vec3::ZERO, 0.0); primitive.positions.len()];
+    if uvs.is_empty() {
+        return sums;
+    }
+    for triangle in &primitive.triangles {
+        let [p, q, r] = triangle.map(|vertex| primitive.positions[vertex as usize]);
+        let [a, b, c] = triangle.map(|vertex| uvs[vertex as usize]);
+        let area = area(a, b, c);
+        let direction = ((q - p) * (c.y - a.y) - (r - p) * (b.y - a.y)) * area.signum();
+        for &vertex in triangle {
+            let (sum, sign) = &mut sums[vertex as usize];
+            (*sum, *sign) = (*sum + direction, *sign + area);
+        }
+    }
+    sums
+}

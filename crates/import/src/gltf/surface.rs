@@ -1,0 +1,520 @@
+//! Materials of the file as principled surfaces of a scene: OpenPBR, with opacity, emission and the
+//! medium inside. `docs/formats/gltf.md` has the table of what becomes what.
+
+use description::{
+    AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageTextureDesc, MappingDesc,
+    MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, SceneDesc,
+    SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
+};
+use math::DAffine2;
+
+use super::log::Log;
+use super::material::{AlphaMode, Color, Material, Number};
+use super::pictures::{Edit, Encoding, Pictures, stretched};
+use super::texture::TextureRef;
+
+/// A surface of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    pub material: Handle<MaterialDesc>,
+    pub area_light: Option<Handle<AreaLightDesc>>,
+    pub alpha: Option<FloatParameter>,
+    pub media: Option<MediumInterface>,
+    /// The coordinates that meshes have.
+    pub coordinates: Coordinates,
+    /// By how much tangents are turned, counter-clockwise.
+    pub tangent_rotation: f32,
+}
+
+/// Which texture coordinates of a file those of a mesh are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coordinates {
+    pub set: usize,
+    /// From those of the file with v up.
+    pub transform: DAffine2,
+}
+
+impl Coordinates {
+    /// Normal maps and emission are looked up at the coordinates of the mesh; other textures have
+    /// mappings from there.
+    pub fn of(material: &Material) -> Self {
+        let normals = material.normals.as_ref().map(|(texture, _)| texture);
+        let emission = if material.is_unlit { &material.base } else { &material.emissive };
+        let placed = normals.or(emission.texture.as_ref()).filter(|texture| is_regular(texture));
+        if let Some(texture) = placed {
+            return Self { set: texture.set, transform: texture.transform };
+        }
+        let set = material.base.texture.as_ref().or(material.textures().first().map(|&(texture, _)| texture));
+        Self { set: set.map_or(0, |texture| texture.set), transform: DAffine2::IDENTITY }
+    }
+}
+
+fn is_regular(texture: &TextureRef) -> bool {
+    texture.transform.inverse().is_finite()
+}
+
+/// Which of the images of a material are mirrored: normals where texture coordinates are.
+pub(super) struct Builder<'a> {
+    pub desc: &'a mut SceneDesc,
+    pub pictures: &'a mut Pictures,
+    pub log: &'a mut Log,
+}
+
+/// Roughness below this is drawn smooth in a thin sheet of glass.
+const NEARLY_SMOOTH: f32 = 0.05;
+
+impl Builder<'_> {
+    /// A surface. Where texture coordinates are mirrored, so is green of normal maps.
+    pub fn surface(&mut self, material: &Material, is_mirrored: bool) -> Surface {
+        let coordinates = Coordinates::of(material);
+        let mut part = Part { builder: self, material, coordinates };
+        let alpha = part.alpha();
+        let area_light = part.area_light();
+        let (kind, tangent_rotation) = part.kind();
+        let media = part.media();
+        let normal_map = part.normal_map(is_mirrored);
+        let mut placed = MaterialDesc { name: material.name.clone(), normal_map, ..MaterialDesc::from(kind) };
+        if let Some((share, color)) = &material.diffuse_transmission
+            && share.factor > 0.0
+        {
+            let amount = part.number(share, ImageChannel::Alpha);
+            let transmittance = part.color(color, [1.0; 3]);
+            let through =
+                MaterialKind::DiffuseTransmission { reflectance: 0.0.into(), transmittance, scale: 1.0 };
+            let through = MaterialDesc { normal_map, ..MaterialDesc::from(through) };
+            let materials = [self.desc.materials.push(placed), self.desc.materials.push(through)];
+            placed = MaterialDesc::from(MaterialKind::Mix { materials, amount });
+            placed.name.clone_from(&material.name);
+        }
+        let material = self.desc.materials.push(placed);
+        Surface { material, area_light, alpha, media, coordinates, tangent_rotation }
+    }
+}
+
+/// The parts of one surface.
+struct Part<'b, 'a, 'm> {
+    builder: &'b mut Builder<'a>,
+    material: &'m Material,
+    coordinates: Coordinates,
+}
+
+impl Part<'_, '_, '_> {
+    fn warn(&mut self, pointer: &str, message: impl Into<String>) {
+        self.builder.log.warn("not-drawn", pointer, message);
+    }
+
+    /// An image as a texture; `None` if it cannot be decoded.
+    fn image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<ImageTextureDesc> {
+        let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
+        if texture.wraps_unevenly {
+            self.warn(
+                &texture.pointer,
+                "a texture that is clamped in one direction only is repeated in both",
+            );
+        }
+        if texture.set != self.coordinates.set {
+            let message =
+                "a material with textures at several sets of texture coordinates has one set for all";
+            self.warn(&texture.pointer, message);
+        }
+        let from_mesh = texture.transform * self.coordinates.transform.inverse();
+        let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
+        let mapping = if x.y == 0.0 && y.x == 0.0 {
+            MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
+        } else {
+            MappingDesc::Affine { columns: [x, y, delta].map(|v| v.as_vec2().to_array()) }
+        };
+        let desc = ImageTextureDesc::new(image);
+        Some(ImageTextureDesc { mapping, filter: texture.filter, wrap: texture.wrap, ..desc })
+    }
+
+    /// A texture of numbers of a channel times a factor.
+    fn channel(
+        &mut self,
+        texture: &TextureRef,
+        encoding: Encoding,
+        edit: Edit,
+        (channel, factor): (ImageChannel, f32),
+    ) -> Option<ImageTextureDesc> {
+        let image = self.builder.pictures.image(texture, encoding)?;
+        if channel == ImageChannel::Alpha && image.alpha_index().is_none() {
+            return None;
+        }
+        let desc = self.image(texture, encoding, edit)?;
+        Some(ImageTextureDesc { channel: Some(channel), scale: factor, ..desc })
+    }
+
+    fn float(&mut self, image: Option<ImageTextureDesc>, otherwise: f32) -> FloatParameter {
+        match image {
+            Some(image) => {
+                self.builder.desc.float_textures.push(TextureDesc::new(TextureKind::Image(image))).into()
+            }
+            None => otherwise.into(),
+        }
+    }
+
+    fn number(&mut self, number: &Number, channel: ImageChannel) -> FloatParameter {
+        let image = number.texture.as_ref().filter(|_| number.factor > 0.0);
+        let image = image
+            .and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, (channel, number.factor)));
+        self.float(image, number.factor)
+    }
+
+    /// A colour that is divided by `unit`.
+    fn color(&mut self, color: &Color, unit: [f32; 3]) -> SpectrumParameter {
+        let factor: [f32; 3] = std::array::from_fn(|c| color.factor[c] / unit[c]);
+        let [r, g, b] = factor;
+        let texture = color.texture.as_ref().filter(|_| factor != [0.0; 3]);
+        let is_grey = r == g && g == b;
+        let edit = if is_grey { Edit::None } else { Edit::Tint(factor) };
+        match texture.and_then(|texture| self.image(texture, Encoding::Color, edit)) {
+            Some(image) => self.spectrum(ImageTextureDesc { scale: if is_grey { r } else { 1.0 }, ..image }),
+            None => SpectrumDesc::rgb(r, g, b).into(),
+        }
+    }
+
+    fn spectrum(&mut self, image: ImageTextureDesc) -> SpectrumParameter {
+        self.builder.desc.spectrum_textures.push(TextureDesc::new(TextureKind::Image(image))).into()
+    }
+
+    fn alpha(&mut self) -> Option<FloatParameter> {
+        let material = self.material;
+        if material.alpha_mode == AlphaMode::Opaque {
+            return None;
+        }
+        let image = material.base.texture.as_ref().and_then(|texture| {
+            self.channel(texture, Encoding::Color, Edit::None, (ImageChannel::Alpha, material.opacity))
+        });
+        let opacity = self.float(image, material.opacity);
+        Some(match (material.alpha_mode, opacity) {
+            (AlphaMode::Mask(cutoff), FloatParameter::Value(opacity)) => {
+                FloatParameter::Value(if opacity >= cutoff { 1.0 } else { 0.0 })
+            }
+            (AlphaMode::Mask(edge), texture) => {
+                let step = TextureKind::Step { texture, edge };
+                self.builder.desc.float_textures.push(TextureDesc::new(step)).into()
+            }
+            (_, opacity) => opacity,
+        })
+    }
+
+    fn normal_map(&mut self, is_mirrored: bool) -> Option<Handle<description::ImageDesc>> {
+        let (texture, scale) = self.material.normals.as_ref()?;
+        let is_color = self.builder.pictures.image(texture, Encoding::Data)?.is_color();
+        let edit = match (*scale, is_mirrored) {
+            (1.0, false) if is_color => Edit::None,
+            (scale, is_mirrored) => Edit::Normals([scale, if is_mirrored { -scale } else { scale }]),
+        };
+        self.builder.pictures.add(texture, Encoding::Data, edit, &mut self.builder.desc.images)
+    }
+
+    /// What the surface emits, in cd/m²; an unlit one emits its colour.
+    fn area_light(&mut self) -> Option<Handle<AreaLightDesc>> {
+        let material = self.material;
+        let color = if material.is_unlit { &material.base } else { &material.emissive };
+        let scale = color.factor.into_iter().fold(0.0, f32::max);
+        if scale <= 0.0 {
+            return None;
+        }
+        let tint = color.factor.map(|v| v / scale);
+        let mut light = AreaLightDesc::new(SpectrumDesc::rgb(tint[0], tint[1], tint[2]));
+        (light.scale, light.two_sided) = (scale, material.is_two_sided);
+        if let Some(texture) = &color.texture {
+            let image = self.builder.pictures.image(texture, Encoding::Color)?;
+            let edit = if tint == [1.0; 3] && image.is_color() { Edit::None } else { Edit::Tint(tint) };
+            let placed = Coordinates { set: texture.set, transform: texture.transform };
+            if placed != self.coordinates {
+                let message =
+                    "emission at other texture coordinates than those of the normal map is drawn at the same";
+                self.warn(&texture.pointer, message);
+            }
+            light.image =
+                self.builder.pictures.add(texture, Encoding::Color, edit, &mut self.builder.desc.images);
+        }
+        Some(self.builder.desc.area_lights.push(light))
+    }
+
+    /// Whether light passes, and whether it passes through a body.
+    fn is_transparent(&self) -> bool {
+        self.material.transmission.factor > 0.0
+    }
+
+    fn is_thick(&self) -> bool {
+        self.material.volume.as_ref().is_some_and(|volume| volume.is_thick)
+    }
+
+    fn media(&mut self) -> Option<MediumInterface> {
+        let material = self.material;
+        let volume = material.volume.as_ref().filter(|_| self.is_thick() && self.is_transparent())?;
+        if volume.color == [1.0; 3] || volume.distance.is_infinite() {
+            return None;
+        }
+        // What is left after a distance d is exp(−σ d).
+        let [r, g, b] = volume.color.map(|v| -v.max(1e-4).ln() / volume.distance);
+        let coefficients =
+            CoefficientsDesc::Given { sigma_a: SpectrumDesc::rgb(r, g, b), sigma_s: 0.0.into(), scale: 1.0 };
+        let medium = MediumDesc {
+            name: material.name.clone(),
+            kind: MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 },
+            world_from_medium: TransformDesc::default(),
+            g: 0.0,
+        };
+        let inside = Some(self.builder.desc.media.push(medium));
+        Some(MediumInterface { inside, outside: None })
+    }
+
+    /// The material without what shapes have, and the rotation of its tangents.
+    fn kind(&mut self) -> (MaterialKind, f32) {
+        let material = self.material;
+        if material.is_unlit {
+            return (MaterialKind::Diffuse { reflectance: 0.0.into() }, 0.0);
+        }
+        let mut surface = Principled(Box::default());
+        let base = self.color(&material.base, [1.0; 3]);
+        surface.color("base_color", base);
+        surface.number("specular_ior", self.ior(material.ior));
+        let mut rotation = 0.0;
+        match &material.specular_glossiness {
+            Some(_) => self.specular_glossiness(&mut surface),
+            None => {
+                rotation = self.metallic_roughness(&mut surface);
+                self.specular(&mut surface);
+            }
+        }
+        self.clearcoat(&mut surface);
+        self.sheen(&mut surface);
+        self.iridescence(&mut surface);
+        self.transmission(&mut surface);
+        (MaterialKind::OpenPbr(surface.0), rotation)
+    }
+
+    fn ior(&mut self, ior: f32) -> FloatParameter {
+        // 0 stands for a surface that reflects all light; 3 reflects a quarter.
+        let known = if ior == 0.0 { 3.0 } else { ior.clamp(1.0, 3.0) };
+        if known != ior {
+            let pointer = self.material.pointer.clone();
+            self.warn(&pointer, format!("the index of refraction {ior} is drawn as {known}"));
+        }
+        known.into()
+    }
+
+    /// Roughness and metalness; the rotation of anisotropic highlights.
+    fn metallic_roughness(&mut self, surface: &mut Principled) -> f32 {
+        use ImageChannel::{Blue, Green};
+        let material = self.material;
+        let texture = material.metallic_roughness.clone();
+        let metalness = self.number(&Number { factor: material.metallic, texture: texture.clone() }, Blue);
+        surface.number("base_metalness", metalness);
+        let Some(anisotropy) = material.anisotropy.as_ref().filter(|anisotropy| anisotropy.strength > 0.0)
+        else {
+            let roughness = self.number(&Number { factor: material.roughness, texture }, Green);
+            surface.number("specular_roughness", roughness);
+            return 0.0;
+        };
+        let (strength, roughness) = (anisotropy.strength, material.roughness);
+        let constant = stretched(strength, roughness);
+        for (result, name) in ["specular_roughness", "specular_roughness_anisotropy"].into_iter().enumerate()
+        {
+            // Where both vary, roughness follows its own image, and anisotropy that of the strength.
+            let (texture, edit) = match (&texture, &anisotropy.texture) {
+                (Some(texture), None) => (Some(texture), Edit::ByRoughness(result, roughness, strength)),
+                (Some(texture), Some(_)) if result == 0 => {
+                    (Some(texture), Edit::ByRoughness(result, roughness, strength))
+                }
+                (_, Some(texture)) => (Some(texture), Edit::ByStrength(result, strength, roughness)),
+                (None, None) => (None, Edit::None),
+            };
+            let image = texture
+                .and_then(|texture| self.channel(texture, Encoding::Data, edit, (ImageChannel::Red, 1.0)));
+            let number = self.float(image, constant[result]);
+            surface.number(name, number);
+        }
+        let direction = anisotropy.texture.as_ref().map_or(Some(0.0), |texture| self.direction(texture));
+        if direction.is_none() {
+            let pointer = anisotropy.texture.as_ref().map_or("", |texture| &texture.pointer).to_owned();
+            self.warn(&pointer, "directions of anisotropy that vary over a surface are drawn as one");
+        }
+        let rotation = anisotropy.rotation + direction.unwrap_or(0.0);
+        if rotation.abs() > 1e-3 && material.normals.is_some() {
+            self.warn(&material.pointer, "anisotropy is not rotated on surfaces with a normal map");
+            return 0.0;
+        }
+        rotation
+    }
+
+    /// The angle of the directions of an image, if they are all about the same.
+    fn direction(&self, texture: &TextureRef) -> Option<f32> {
+        let image = self.builder.pictures.image(texture, Encoding::Data)?;
+        let (mut sum, count) = ([0.0; 2], f64::from(image.width()) * f64::from(image.height()));
+        for (x, y) in (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y))) {
+            let [r, g, _] = image.rgb(x, y);
+            let (dx, dy) = (f64::from(2.0 * r - 1.0), f64::from(2.0 * g - 1.0));
+            let length = dx.hypot(dy).max(1e-6);
+            sum = [sum[0] + dx / length, sum[1] + dy / length];
+        }
+        (sum[0].hypot(sum[1]) > 0.99 * count).then(|| sum[1].atan2(sum[0]) as f32)
+    }
+
+    fn specular(&mut self, surface: &mut Principled) {
+        let material = self.material;
+        let (weight, color) = (&material.specular, &material.specular_color);
+        let most = color.factor.into_iter().fold(1.0, f32::max);
+        let weight = Number { factor: weight.factor * most, texture: weight.texture.clone() };
+        // Both are of the dielectric part only; a whole metal has neither.
+        if material.metallic < 1.0 || material.metallic_roughness.is_some() {
+            let number = self.number(&weight, ImageChannel::Alpha);
+            surface.number("specular_weight", number);
+            let color = self.color(color, [most; 3]);
+            surface.color("specular_color", color);
+        }
+    }
+
+    fn specular_glossiness(&mut self, surface: &mut Principled) {
+        let Some(described) = self.material.specular_glossiness.clone() else { return };
+        /// Reflectance of an index of 1.5.
+        const UNIT: f32 = 0.04;
+        surface.number("base_metalness", 0.0.into());
+        let most = described.specular.into_iter().fold(0.0, f32::max);
+        let [r, g, b] = described.specular.map(|v| if most > 0.0 { v / most } else { 1.0 });
+        let rough = 1.0 - described.glossiness;
+        let Some(texture) = described.texture.as_ref() else {
+            surface.number("specular_weight", (most / UNIT).into());
+            surface.color("specular_color", SpectrumDesc::rgb(r, g, b).into());
+            surface.number("specular_roughness", rough.into());
+            return;
+        };
+        let tint = described.specular;
+        let weight =
+            self.channel(texture, Encoding::Color, Edit::Largest(tint), (ImageChannel::Red, 1.0 / UNIT));
+        let weight = self.float(weight, most / UNIT);
+        surface.number("specular_weight", weight);
+        let color = match self.image(texture, Encoding::Color, Edit::Hue(tint)) {
+            Some(image) => self.spectrum(image),
+            None => SpectrumDesc::rgb(r, g, b).into(),
+        };
+        surface.color("specular_color", color);
+        let glossiness = (ImageChannel::Alpha, described.glossiness);
+        let image = self.channel(texture, Encoding::Color, Edit::None, glossiness);
+        let image = image.map(|image| ImageTextureDesc { invert: true, ..image });
+        let roughness = self.float(image, rough);
+        surface.number("specular_roughness", roughness);
+    }
+
+    fn clearcoat(&mut self, surface: &mut Principled) {
+        let Some(coat) = self.material.clearcoat.clone().filter(|coat| coat.weight.factor > 0.0) else {
+            return;
+        };
+        let weight = self.number(&coat.weight, ImageChannel::Red);
+        let roughness = self.number(&coat.roughness, ImageChannel::Green);
+        surface.number("coat_weight", weight);
+        surface.number("coat_roughness", roughness);
+        surface.number("coat_ior", 1.5.into());
+        // The extension's coat does not darken what is under it.
+        surface.number("coat_darkening", 0.0.into());
+        let base = self.material.normals.as_ref().map(|(texture, _)| texture.image);
+        if base != coat.normals.as_ref().map(|texture| texture.image) {
+            let pointer = self.material.pointer.clone();
+            self.warn(&pointer, "a clear coat has the normals of the surface under it");
+        }
+    }
+
+    fn sheen(&mut self, surface: &mut Principled) {
+        let sheen = &self.material.sheen;
+        let most = sheen.factor.into_iter().fold(0.0, f32::max);
+        if most <= 0.0 {
+            return;
+        }
+        let (weight, color) = match &sheen.texture {
+            Some(texture) => {
+                let weight = (ImageChannel::Red, 1.0);
+                let weight = self.channel(texture, Encoding::Color, Edit::Largest(sheen.factor), weight);
+                (weight, self.image(texture, Encoding::Color, Edit::Hue(sheen.factor)))
+            }
+            None => (None, None),
+        };
+        let weight = self.float(weight, most);
+        surface.number("fuzz_weight", weight);
+        let [r, g, b] = sheen.factor.map(|v| v / most);
+        let color = color.map_or(SpectrumDesc::rgb(r, g, b).into(), |image| self.spectrum(image));
+        surface.color("fuzz_color", color);
+        let roughness = self.number(&self.material.sheen_roughness, ImageChannel::Alpha);
+        surface.number("fuzz_roughness", roughness);
+    }
+
+    fn iridescence(&mut self, surface: &mut Principled) {
+        let Some(film) = self.material.iridescence.as_ref().filter(|film| film.weight.factor > 0.0) else {
+            return;
+        };
+        let weight = self.number(&film.weight, ImageChannel::Red);
+        surface.number("thin_film_weight", weight);
+        let ior = self.ior(film.ior);
+        surface.number("thin_film_ior", ior);
+        // Nanometres in the file, micrometres here.
+        let [thinnest, thickest] = film.thickness.map(|thickness| thickness / 1000.0);
+        let amount = (ImageChannel::Green, 1.0);
+        let image = film.thickness_texture.as_ref();
+        let image = image.and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, amount));
+        let thickness = match image {
+            Some(image) => {
+                let amount = self.float(Some(image), 1.0);
+                let mix = TextureKind::Mix { textures: [thinnest.into(), thickest.into()], amount };
+                self.builder.desc.float_textures.push(TextureDesc::new(mix)).into()
+            }
+            None => thickest.into(),
+        };
+        surface.number("thin_film_thickness", thickness);
+    }
+
+    fn transmission(&mut self, surface: &mut Principled) {
+        if !self.is_transparent() {
+            return;
+        }
+        let material = self.material;
+        let weight = self.number(&material.transmission, ImageChannel::Red);
+        surface.number("transmission_weight", weight);
+        let tint = self.color(&material.base, [1.0; 3]);
+        surface.color("transmission_color", tint);
+        if material.dispersion > 0.0 {
+            // An Abbe number of 20/dispersion, as the scale of one of 20 where that is a share.
+            surface.number("transmission_dispersion_scale", material.dispersion.min(1.0).into());
+            surface.number(
+                "transmission_dispersion_abbe_number",
+                (20.0 / material.dispersion.max(1.0)).max(1.0).into(),
+            );
+        }
+        if self.is_thick() {
+            return;
+        }
+        if material.roughness > NEARLY_SMOOTH {
+            self.warn(&material.pointer, "rough glass without a thickness is drawn as the surface of a body");
+            return;
+        }
+        // A thin sheet does not bend light: a coat reflects, over a base of the index of air.
+        surface.number("specular_ior", 1.0.into());
+        surface.number("specular_roughness", 0.0.into());
+        let is_all = material.transmission.factor == 1.0 && material.transmission.texture.is_none();
+        // The lower side of the sheet reflects, too, unless it is that of an opaque base.
+        surface.number("specular_weight", if is_all { 1.0 } else { 0.0 }.into());
+        if material.clearcoat.is_none() {
+            surface.number("coat_weight", 1.0.into());
+            let ior = self.ior(material.ior);
+            surface.number("coat_ior", ior);
+            surface.number("coat_darkening", 0.0.into());
+        }
+    }
+}
+
+/// A principled surface whose parameters are set by name.
+struct Principled(Box<OpenPbrDesc>);
+
+impl Principled {
+    fn number(&mut self, name: &str, value: FloatParameter) {
+        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+        self.0.numbers[index.expect("invariant: a name of OpenPBR")] = value;
+    }
+
+    fn color(&mut self, name: &str, value: SpectrumParameter) {
+        let index = OpenPbrDesc::COLORS.iter().position(|(known, _)| *known == name);
+        self.0.colors[index.expect("invariant: a name of OpenPBR")] = value;
+    }
+}

@@ -1,0 +1,351 @@
+//! Materials and their extensions as principled surfaces.
+
+use super::File;
+use description::{
+    CoefficientsDesc, FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, MediumKind,
+    OpenPbrDesc, Parameter, SceneDesc, Severity, SpectrumDesc, SpectrumParameter, TextureFilter, TextureKind,
+    WrapMode,
+};
+use serde_json::{Value, json};
+
+fn surface(desc: &SceneDesc) -> &OpenPbrDesc {
+    let (_, shape) = desc.shapes.iter().next().expect("a shape");
+    match &desc.materials[shape.material.expect("a material")].kind {
+        MaterialKind::OpenPbr(surface) => surface,
+        kind => panic!("{kind:?}"),
+    }
+}
+
+fn parameter<'a>(desc: &'a SceneDesc, name: &str) -> &'a FloatParameter {
+    let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+    &surface(desc).numbers[index.expect("a name")]
+}
+
+fn number(desc: &SceneDesc, name: &str) -> f32 {
+    *parameter(desc, name).value().expect("a constant")
+}
+
+fn color(desc: &SceneDesc, name: &str) -> [f32; 3] {
+    let index = OpenPbrDesc::COLORS.iter().position(|(known, _)| *known == name);
+    match &surface(desc).colors[index.expect("a name")] {
+        SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) => *rgb,
+        SpectrumParameter::Value(SpectrumDesc::Constant(value)) => [*value; 3],
+        other => panic!("{other:?}"),
+    }
+}
+
+fn texture<'a>(desc: &'a SceneDesc, parameter: &FloatParameter) -> &'a ImageTextureDesc {
+    match parameter {
+        Parameter::Texture(handle) => match &desc.float_textures[*handle].kind {
+            TextureKind::Image(image) => image,
+            kind => panic!("{kind:?}"),
+        },
+        Parameter::Value(value) => panic!("{value}"),
+    }
+}
+
+/// A material with an extension and smooth, white plastic.
+fn extended(name: &str, extension: Value) -> Value {
+    json!({
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+        "extensions": {name: extension},
+    })
+}
+
+#[test]
+fn metal_and_plastic() {
+    let desc = File::quad(json!({"pbrMetallicRoughness": {
+        "baseColorFactor": [0.2, 0.4, 0.6, 1], "metallicFactor": 0.25, "roughnessFactor": 0.5,
+    }}))
+    .scene();
+    assert_eq!(color(&desc, "base_color"), [0.2, 0.4, 0.6]);
+    assert_eq!(number(&desc, "base_metalness"), 0.25);
+    assert_eq!(number(&desc, "specular_roughness"), 0.5);
+    assert_eq!(number(&desc, "specular_ior"), 1.5);
+    // The material of surfaces without one.
+    let mut file = File::quad(json!({}));
+    file.json["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("material");
+    let desc = file.scene();
+    assert_eq!((number(&desc, "base_metalness"), number(&desc, "specular_roughness")), (1.0, 1.0));
+}
+
+#[test]
+fn textures_have_channels_factors_and_encodings() {
+    let file = File::quad(json!({
+        "pbrMetallicRoughness": {
+            "baseColorTexture": {"index": 0},
+            "metallicRoughnessTexture": {"index": 0},
+            "metallicFactor": 0.5,
+        },
+    }))
+    .textured(&[[255, 188, 0, 255], [0, 0, 0, 51]]);
+    let desc = file.scene();
+    let metalness = texture(&desc, parameter(&desc, "base_metalness"));
+    assert_eq!((metalness.channel, metalness.scale), (Some(ImageChannel::Blue), 0.5));
+    let roughness = texture(&desc, parameter(&desc, "specular_roughness"));
+    assert_eq!((roughness.channel, roughness.scale), (Some(ImageChannel::Green), 1.0));
+    // Numbers are as they are, colours are sRGB.
+    let green = desc.images[roughness.image].image.rgb(0, 0)[1];
+    assert!((green - 188.0 / 255.0).abs() < 1e-6, "{green}");
+    let Parameter::Texture(base) = &surface(&desc).colors[0] else { panic!("no texture") };
+    let TextureKind::Image(base) = &desc.spectrum_textures[*base].kind else { panic!("no image") };
+    let green = desc.images[base.image].image.rgb(0, 0)[1];
+    assert!((green - 0.5029).abs() < 1e-3, "{green}");
+}
+
+#[test]
+fn a_factor_of_a_color_tints_its_texture() {
+    let file = File::quad(json!({"pbrMetallicRoughness": {
+        "baseColorTexture": {"index": 0}, "baseColorFactor": [0.5, 1, 0.25, 1],
+    }}))
+    .textured(&[[255, 255, 255, 255]]);
+    let desc = file.scene();
+    let Parameter::Texture(base) = &surface(&desc).colors[0] else { panic!("no texture") };
+    let TextureKind::Image(base) = &desc.spectrum_textures[*base].kind else { panic!("no image") };
+    assert_eq!(desc.images[base.image].image.rgb(0, 0), [0.5, 1.0, 0.25]);
+}
+
+#[test]
+fn samplers_and_transforms_place_textures() {
+    let mut file = File::quad(json!({"pbrMetallicRoughness": {
+        "metallicRoughnessTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
+            "offset": [0.1, 0.2], "scale": [2, 4],
+        }}},
+    }}))
+    .textured(&[[255; 4], [0; 4]]);
+    let mapping =
+        |file: &File| texture(&file.scene(), parameter(&file.scene(), "specular_roughness")).mapping;
+    // (u, v) with v up is (u, 1 − v) in the file.
+    let MappingDesc::Uv { scale, delta } = mapping(&file) else { panic!("turned") };
+    assert_eq!(scale, [2.0, 4.0]);
+    assert!((delta[0] - 0.1).abs() < 1e-6 && (delta[1] - (1.0 - 4.2)).abs() < 1e-6, "{delta:?}");
+    let info = &mut file.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"];
+    info["extensions"]["KHR_texture_transform"] = json!({"rotation": std::f64::consts::FRAC_PI_2});
+    // A quarter turn counter-clockwise where v is down: (u, v) becomes (v, −u).
+    let MappingDesc::Affine { columns } = mapping(&file) else { panic!("not turned") };
+    for (found, expected) in columns.as_flattened().iter().zip([0.0, 1.0, -1.0, 0.0, 1.0, 1.0]) {
+        assert!((found - expected).abs() < 1e-6, "{columns:?}");
+    }
+    // What is mirrored becomes an image of twice the width, in which the right half is the mirror.
+    let info = &mut file.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"];
+    info.as_object_mut().unwrap().remove("extensions");
+    file.json["samplers"] = json!([{"wrapS": 33648, "magFilter": 9728}]);
+    file.json["textures"][0]["sampler"] = json!(0);
+    let desc = file.scene();
+    let roughness = texture(&desc, parameter(&desc, "specular_roughness"));
+    assert_eq!(roughness.mapping, MappingDesc::Uv { scale: [0.5, 1.0], delta: [0.0, 0.0] });
+    assert_eq!(roughness.filter, TextureFilter::Point);
+    let picture = &desc.images[roughness.image].image;
+    assert_eq!((0..4).map(|x| picture.rgb(x, 0)[0]).collect::<Vec<_>>(), [1.0, 0.0, 0.0, 1.0]);
+    file.json["samplers"] = json!([{"wrapS": 33071, "wrapT": 33071}]);
+    let desc = file.scene();
+    assert_eq!(texture(&desc, parameter(&desc, "specular_roughness")).wrap, WrapMode::Clamp);
+}
+
+#[test]
+fn opacity_cuts_out_or_blends() {
+    let alpha = |mode: &str| {
+        let file = File::quad(json!({
+            "alphaMode": mode,
+            "alphaCutoff": 0.25,
+            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]},
+        }));
+        let desc = file.textured(&[[255, 255, 255, 128]]).scene();
+        let shape = desc.shapes.iter().next().expect("a shape").1.value.clone();
+        (desc, shape.alpha)
+    };
+    assert_eq!(alpha("OPAQUE").1, None);
+    let (desc, blended) = alpha("BLEND");
+    let opacity = texture(&desc, blended.as_ref().expect("an alpha"));
+    assert_eq!((opacity.channel, opacity.scale), (Some(ImageChannel::Alpha), 0.5));
+    let (desc, Some(Parameter::Texture(masked))) = alpha("MASK") else { panic!("no texture") };
+    let TextureKind::Step { texture: opacity, edge } = &desc.float_textures[masked].kind else {
+        panic!("no step")
+    };
+    assert_eq!((texture(&desc, opacity).scale, *edge), (0.5, 0.25));
+}
+
+#[test]
+fn normal_maps_are_scaled_and_mirrored_with_their_coordinates() {
+    let mut file =
+        File::quad(json!({"normalTexture": {"index": 0, "scale": 0.5}})).textured(&[[255, 255, 128, 255]]);
+    let normal = |file: &File, shape: usize| {
+        let desc = file.scene();
+        let shape = desc.shapes.iter().nth(shape).expect("a shape").1;
+        let map = desc.materials[shape.material.expect("a material")].normal_map.expect("a normal map");
+        desc.images[map].image.rgb(0, 0)
+    };
+    assert_eq!(normal(&file, 0)[..2], [0.75, 0.75]);
+    // Half of the quadrilateral has its texture the other way round.
+    file.json["materials"][0]["normalTexture"]["scale"] = json!(1);
+    let uvs = file.floats("VEC2", &[1., 1., 0., 1., 0., 0., 1., 0.]);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(uvs);
+    assert_eq!(normal(&file, 0)[..2], [1.0, 0.0]);
+}
+
+#[test]
+fn clear_coats() {
+    let desc = File::quad(extended(
+        "KHR_materials_clearcoat",
+        json!({"clearcoatFactor": 0.75, "clearcoatRoughnessFactor": 0.25}),
+    ))
+    .scene();
+    for (name, value) in
+        [("coat_weight", 0.75), ("coat_roughness", 0.25), ("coat_ior", 1.5), ("coat_darkening", 0.0)]
+    {
+        assert_eq!(number(&desc, name), value, "{name}");
+    }
+}
+
+#[test]
+fn sheen_becomes_fuzz() {
+    let desc = File::quad(extended(
+        "KHR_materials_sheen",
+        json!({"sheenColorFactor": [0.2, 0.4, 0.8], "sheenRoughnessFactor": 0.3}),
+    ))
+    .scene();
+    assert_eq!((number(&desc, "fuzz_weight"), number(&desc, "fuzz_roughness")), (0.8, 0.3));
+    assert_eq!(color(&desc, "fuzz_color"), [0.25, 0.5, 1.0]);
+}
+
+#[test]
+fn iridescence_becomes_a_thin_film() {
+    let iridescence =
+        json!({"iridescenceFactor": 1, "iridescenceIor": 1.8, "iridescenceThicknessMaximum": 600});
+    let mut file = File::quad(extended("KHR_materials_iridescence", iridescence)).textured(&[[0; 4]]);
+    let desc = file.scene();
+    for (name, value) in [("thin_film_weight", 1.0), ("thin_film_ior", 1.8), ("thin_film_thickness", 0.6)] {
+        assert_eq!(number(&desc, name), value, "{name}");
+    }
+    file.json["materials"][0]["extensions"]["KHR_materials_iridescence"]["iridescenceThicknessTexture"] =
+        json!({"index": 0});
+    let desc = file.scene();
+    let Parameter::Texture(handle) = parameter(&desc, "thin_film_thickness") else { panic!("no texture") };
+    let TextureKind::Mix { textures, amount } = &desc.float_textures[*handle].kind else { panic!("no mix") };
+    assert_eq!(textures.each_ref().map(|texture| *texture.value().expect("a constant")), [0.1, 0.6]);
+    assert_eq!(texture(&desc, amount).channel, Some(ImageChannel::Green));
+}
+
+#[test]
+fn indices_specular_and_dispersion() {
+    let desc = File::quad(extended("KHR_materials_ior", json!({"ior": 1.33}))).scene();
+    assert_eq!(number(&desc, "specular_ior"), 1.33);
+    let desc = File::quad(extended(
+        "KHR_materials_specular",
+        json!({"specularFactor": 0.5, "specularColorFactor": [2, 1, 0.5]}),
+    ))
+    .scene();
+    assert_eq!((number(&desc, "specular_weight"), color(&desc, "specular_color")), (1.0, [1.0, 0.5, 0.25]));
+    for (dispersion, scale, abbe) in [(0.5, 0.5, 20.0), (4.0, 1.0, 5.0)] {
+        let mut material = extended("KHR_materials_dispersion", json!({"dispersion": dispersion}));
+        material["extensions"]["KHR_materials_transmission"] = json!({"transmissionFactor": 1});
+        material["extensions"]["KHR_materials_volume"] = json!({"thicknessFactor": 1});
+        let desc = File::quad(material).scene();
+        assert_eq!(number(&desc, "transmission_dispersion_scale"), scale);
+        assert_eq!(number(&desc, "transmission_dispersion_abbe_number"), abbe);
+    }
+}
+
+#[test]
+fn volumes_absorb_and_thin_glass_does_not_bend() {
+    let mut material = extended("KHR_materials_transmission", json!({"transmissionFactor": 1}));
+    let desc = File::quad(material.clone()).scene();
+    for (name, value) in
+        [("specular_ior", 1.0), ("coat_weight", 1.0), ("coat_ior", 1.5), ("transmission_weight", 1.0)]
+    {
+        assert_eq!(number(&desc, name), value, "{name}");
+    }
+    assert!(desc.media.is_empty());
+    material["extensions"]["KHR_materials_volume"] =
+        json!({"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 0.25]});
+    let desc = File::quad(material).scene();
+    assert_eq!((number(&desc, "specular_ior"), number(&desc, "coat_weight")), (1.5, 0.0));
+    let (_, shape) = desc.shapes.iter().next().expect("a shape");
+    let inside = shape.medium_interface.expect("media").inside.expect("a medium");
+    let MediumKind::Homogeneous { coefficients, .. } = &desc.media[inside].kind else { panic!("a grid") };
+    let CoefficientsDesc::Given { sigma_a: SpectrumDesc::Rgb { rgb, .. }, .. } = coefficients else {
+        panic!("{coefficients:?}")
+    };
+    // Beer's law: after a distance of 2 the colour is left.
+    for (sigma, left) in rgb.iter().zip([1.0_f32, 0.5, 0.25]) {
+        assert!(((-2.0 * sigma).exp() - left).abs() < 1e-6, "{rgb:?}");
+    }
+    assert!(matches!(desc.integrator.value, description::IntegratorDesc::VolPath(_)));
+}
+
+#[test]
+fn anisotropy_keeps_both_widths_of_highlights() {
+    let mut material = extended("KHR_materials_anisotropy", json!({"anisotropyStrength": 0.6}));
+    material["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.5);
+    let desc = File::quad(material).scene();
+    let (roughness, anisotropy) =
+        (number(&desc, "specular_roughness"), number(&desc, "specular_roughness_anisotropy"));
+    // α of OpenPBR along and across, and of the extension.
+    let along = roughness * roughness * (2.0 / (1.0 + (1.0 - anisotropy) * (1.0 - anisotropy))).sqrt();
+    assert!((along - (0.25 + 0.75 * 0.36)).abs() < 1e-5, "{along}");
+    assert!((along * (1.0 - anisotropy) - 0.25).abs() < 1e-5, "{anisotropy}");
+}
+
+#[test]
+fn specular_and_glossiness_are_converted() {
+    let desc = File::quad(extended(
+        "KHR_materials_pbrSpecularGlossiness",
+        json!({"diffuseFactor": [0.1, 0.2, 0.3, 1], "specularFactor": [0.5, 0.25, 0.5], "glossinessFactor": 0.75}),
+    ))
+    .scene();
+    assert_eq!(color(&desc, "base_color"), [0.1, 0.2, 0.3]);
+    assert_eq!((number(&desc, "base_metalness"), number(&desc, "specular_roughness")), (0.0, 0.25));
+    assert_eq!((number(&desc, "specular_weight"), color(&desc, "specular_color")), (12.5, [1.0, 0.5, 1.0]));
+}
+
+#[test]
+fn diffuse_transmission_is_mixed_in() {
+    let desc = File::quad(extended(
+        "KHR_materials_diffuse_transmission",
+        json!({"diffuseTransmissionFactor": 0.25, "diffuseTransmissionColorFactor": [1, 0.5, 0.5]}),
+    ))
+    .scene();
+    let (_, shape) = desc.shapes.iter().next().expect("a shape");
+    let MaterialKind::Mix { materials, amount } = &desc.materials[shape.material.expect("a material")].kind
+    else {
+        panic!("no mix")
+    };
+    assert_eq!(amount.value(), Some(&0.25));
+    assert!(matches!(desc.materials[materials[1]].kind, MaterialKind::DiffuseTransmission { .. }));
+}
+
+#[test]
+fn variants_are_chosen_by_name_or_number() {
+    let mut file = File::quad(json!({}));
+    file.json["materials"] = json!([{"name": "plain"}, {"name": "fancy"}]);
+    file.json["extensions"] =
+        json!({"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}});
+    file.json["meshes"][0]["primitives"][0]["extensions"] =
+        json!({"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [1]}]}});
+    for (path, name) in [("a.glb", "plain"), ("a.glb#variant=night", "fancy"), ("a.glb#variant=0", "plain")] {
+        let desc = file.scene_of(path);
+        let (_, shape) = desc.shapes.iter().next().expect("a shape");
+        assert_eq!(desc.materials[shape.material.expect("a material")].name, name, "{path}");
+    }
+    assert!(file.read_as("a.glb#variant=dusk").has_errors());
+}
+
+#[test]
+fn what_is_out_of_range_is_refused_at_its_place() {
+    for (material, pointer) in [
+        (
+            json!({"pbrMetallicRoughness": {"metallicFactor": 2}}),
+            "/materials/0/pbrMetallicRoughness/metallicFactor",
+        ),
+        (json!({"emissiveTexture": {"index": 3}}), "/materials/0/emissiveTexture/index"),
+        (json!({"alphaMode": "GLASS"}), "/materials/0/alphaMode"),
+        (
+            extended("KHR_materials_volume", json!({"attenuationDistance": 0})),
+            "/materials/0/extensions/KHR_materials_volume/attenuationDistance",
+        ),
+    ] {
+        let errors = File::quad(material).messages(Severity::Error);
+        assert_eq!(errors.len(), 1, "{errors:?}");
+        assert!(errors[0].starts_with(pointer), "{errors:?}");
+    }
+}
