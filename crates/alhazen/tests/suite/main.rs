@@ -9,6 +9,7 @@ mod converted;
 mod documents;
 mod engines;
 mod furnaces;
+mod gltf;
 mod malformed;
 mod minray;
 mod mitsuba;

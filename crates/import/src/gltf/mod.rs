@@ -9,6 +9,7 @@ mod accessor;
 mod animation;
 mod buffer;
 mod camera;
+mod colors;
 mod container;
 mod document;
 mod emission;

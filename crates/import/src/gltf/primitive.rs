@@ -17,6 +17,8 @@ pub(super) struct Primitive {
     pub tangents: Vec<[f32; 4]>,
     /// With v down, as in the file.
     pub uvs: Vec<Point2>,
+    /// Linear colours.
+    pub colors: Vec<[f32; 3]>,
     /// The joints that move each vertex, with their weights.
     pub influences: Vec<[(u32, f32); 4]>,
     /// What is added to positions and normals with the weight of each target.
@@ -84,6 +86,7 @@ impl Reader<'_, '_> {
             normals: points(self.attribute(&attributes, "NORMAL", count)?),
             tangents: self.attribute(&attributes, "TANGENT", count)?,
             uvs: self.coordinates(&attributes, set, count)?,
+            colors: self.colors(&attributes, count)?,
             influences: self.influences(&attributes, count)?,
             positions,
             ..Primitive::default()
@@ -121,6 +124,17 @@ impl Reader<'_, '_> {
     fn coordinates(&self, attributes: &Place, set: usize, count: usize) -> Result<Vec<Point2>> {
         let uvs = self.attribute(attributes, &format!("TEXCOORD_{set}"), count)?;
         Ok(uvs.into_iter().map(|[u, v]| Point2::new(u, v)).collect())
+    }
+
+    fn colors(&self, attributes: &Place, count: usize) -> Result<Vec<[f32; 3]>> {
+        match Accessor::of(self.document, attributes, "COLOR_0")? {
+            Some(accessor) if accessor.width == 4 => {
+                let colors = self.attribute(attributes, "COLOR_0", count)?;
+                Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+            }
+            Some(_) => self.attribute(attributes, "COLOR_0", count),
+            None => Ok(Vec::new()),
+        }
     }
 
     fn influences(&self, attributes: &Place, count: usize) -> Result<Vec<[(u32, f32); 4]>> {
@@ -213,10 +227,10 @@ impl Primitive {
             }
             let weight = weight as f32;
             for (v, d) in primitive.positions.iter_mut().zip(&target.positions) {
-                *v = *v + *d * weight;
+                *v += *d * weight;
             }
             for (v, d) in primitive.normals.iter_mut().zip(&target.normals) {
-                *v = *v + *d * weight;
+                *v += *d * weight;
             }
             for (v, d) in primitive.tangents.iter_mut().zip(&target.tangents) {
                 let d = *d * weight;

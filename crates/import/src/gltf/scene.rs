@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
+use description::{ImageDesc, InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
 use math::{DMat4, DQuat, DVec3};
 
 use super::accessor::Accessor;
 use super::buffer::Buffers;
+use super::colors;
 use super::document::Document;
 use super::json::{Place, Result};
 use super::light::Light;
@@ -315,39 +316,59 @@ impl<'s, 'a> Assembly<'s, 'a> {
                 );
                 continue;
             };
-            let surfaces = self.surfaces(index, material);
-            let look = Look { material, surfaces: [&surfaces[0], &surfaces[1]] };
-            shapes.extend(look.shapes(&vertices, self.desc));
+            shapes.extend(self.shapes(&place, (index, material), vertices));
         }
         Ok(shapes)
     }
 
-    /// The surfaces of a material; both are the same where it has no normal map.
+    /// The shapes of a primitive, whose vertices may have colours.
+    fn shapes(
+        &mut self,
+        place: &Place,
+        (index, material): (usize, &Material),
+        mut vertices: Vertices,
+    ) -> Vec<ShapeDesc> {
+        let colors = &vertices.start.colors;
+        let Some(&first) = colors.iter().find(|color| **color != [1.0; 3]) else {
+            let surfaces = self.surfaces(index, material);
+            return look(material, &surfaces).shapes(&vertices, self.desc);
+        };
+        let mut image = None;
+        let mut tinted = material.clone();
+        if colors.iter().all(|color| *color == first) {
+            tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * first[i]);
+        } else if material.textures().is_empty() {
+            let (start, picture) = colors::unwrapped(&vertices.start, material.base.factor);
+            vertices.end = vertices.end.map(|end| colors::unwrapped(&end, [1.0; 3]).0);
+            vertices.start = start;
+            let name = place.pointer_to("attributes/COLOR_0");
+            image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
+        } else {
+            let message = "colours of vertices are not drawn on surfaces with textures";
+            self.log.warn("not-drawn", format!("{}/attributes/COLOR_0", place.pointer), message);
+        }
+        let mut builder = Builder { desc: self.desc, pictures: self.pictures, log: self.log };
+        let surfaces = builder.both(&tinted, image);
+        look(&tinted, &surfaces).shapes(&vertices, self.desc)
+    }
+
+    /// The surfaces of a material.
     fn surfaces(&mut self, index: usize, material: &Material) -> [Surface; 2] {
         if let Some(known) = self.surfaces.get(&index) {
             return known.clone();
         }
         let mut builder = Builder { desc: self.desc, pictures: self.pictures, log: self.log };
-        let surface = builder.surface(material, false);
-        let mirrored = match material.normals {
-            Some(_) => Surface { area_light: surface.area_light, ..builder.surface(material, true) },
-            None => surface.clone(),
-        };
-        self.surfaces.insert(index, [surface.clone(), mirrored.clone()]);
-        [surface, mirrored]
+        let surfaces = builder.both(material, None);
+        self.surfaces.insert(index, surfaces.clone());
+        surfaces
     }
 
     /// Says what of a primitive is not drawn.
     fn not_honoured(&mut self, place: &Place, material: &Material, primitive: &Primitive, set: usize) {
         let Some(attributes) = place.get("attributes") else { return };
-        for name in ["JOINTS_1", "COLOR_0"] {
-            if let Some(attribute) = attributes.get(name) {
-                let message = match name {
-                    "COLOR_0" => "colours of vertices are not drawn",
-                    _ => "more than four joints of a vertex are not followed",
-                };
-                self.log.warn("not-drawn", attribute.pointer, message);
-            }
+        if let Some(attribute) = attributes.get("JOINTS_1") {
+            let message = "more than four joints of a vertex are not followed";
+            self.log.warn("not-drawn", attribute.pointer, message);
         }
         if primitive.uvs.is_empty() && !material.textures().is_empty() {
             let message = format!("there is no `TEXCOORD_{set}` for the textures of the material");
@@ -370,6 +391,10 @@ impl<'s, 'a> Assembly<'s, 'a> {
             self.bounds = [self.bounds[0].min(point), self.bounds[1].max(point)];
         }
     }
+}
+
+fn look<'m>(material: &'m Material, [surface, mirrored]: &'m [Surface; 2]) -> Look<'m> {
+    Look { material, surfaces: [surface, mirrored] }
 }
 
 /// Whether a transform has an inverse.

@@ -60,8 +60,8 @@ impl Skin {
             if total == 0.0 {
                 matrix = *matrices.first()?;
             }
-            let point = |v: Vec3| Vec3::from(matrix.transform_point3(v.as_dvec3()).as_vec3());
-            posed.positions[vertex] = point(primitive.positions[vertex]);
+            let point = matrix.transform_point3(primitive.positions[vertex].as_dvec3());
+            posed.positions[vertex] = Vec3::from(point.as_vec3());
             if let Some(normal) = posed.normals.get_mut(vertex) {
                 let turned = math::DMat3::from_mat4(matrix).inverse().transpose() * normal.as_dvec3();
                 *normal = Vec3::from(turned.normalize_or(math::DVec3::Z).as_vec3());

@@ -2,8 +2,8 @@
 //! medium inside. `docs/formats/gltf.md` has the table of what becomes what.
 
 use description::{
-    AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageTextureDesc, MappingDesc,
-    MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, SceneDesc,
+    AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc,
+    MappingDesc, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, SceneDesc,
     SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
 use math::DAffine2;
@@ -53,7 +53,7 @@ fn is_regular(texture: &TextureRef) -> bool {
     texture.transform.inverse().is_finite()
 }
 
-/// Which of the images of a material are mirrored: normals where texture coordinates are.
+/// Makes surfaces of materials.
 pub(super) struct Builder<'a> {
     pub desc: &'a mut SceneDesc,
     pub pictures: &'a mut Pictures,
@@ -64,10 +64,27 @@ pub(super) struct Builder<'a> {
 const NEARLY_SMOOTH: f32 = 0.05;
 
 impl Builder<'_> {
+    /// The surface of a material, and that where texture coordinates are mirrored, which is the
+    /// same unless it has a normal map.
+    pub fn both(&mut self, material: &Material, colors: Option<Handle<ImageDesc>>) -> [Surface; 2] {
+        let surface = self.surface(material, false, colors);
+        let mirrored = match material.normals {
+            Some(_) => Surface { area_light: surface.area_light, ..self.surface(material, true, colors) },
+            None => surface.clone(),
+        };
+        [surface, mirrored]
+    }
+
     /// A surface. Where texture coordinates are mirrored, so is green of normal maps.
-    pub fn surface(&mut self, material: &Material, is_mirrored: bool) -> Surface {
+    /// An image of `colors` takes the place of the base colour.
+    fn surface(
+        &mut self,
+        material: &Material,
+        is_mirrored: bool,
+        colors: Option<Handle<ImageDesc>>,
+    ) -> Surface {
         let coordinates = Coordinates::of(material);
-        let mut part = Part { builder: self, material, coordinates };
+        let mut part = Part { builder: self, material, coordinates, colors };
         let alpha = part.alpha();
         let area_light = part.area_light();
         let (kind, tangent_rotation) = part.kind();
@@ -96,6 +113,7 @@ struct Part<'b, 'a, 'm> {
     builder: &'b mut Builder<'a>,
     material: &'m Material,
     coordinates: Coordinates,
+    colors: Option<Handle<ImageDesc>>,
 }
 
 impl Part<'_, '_, '_> {
@@ -173,6 +191,13 @@ impl Part<'_, '_, '_> {
         }
     }
 
+    fn base(&mut self) -> SpectrumParameter {
+        match self.colors {
+            Some(image) => self.spectrum(ImageTextureDesc::new(image)),
+            None => self.color(&self.material.base, [1.0; 3]),
+        }
+    }
+
     fn spectrum(&mut self, image: ImageTextureDesc) -> SpectrumParameter {
         self.builder.desc.spectrum_textures.push(TextureDesc::new(TextureKind::Image(image))).into()
     }
@@ -198,7 +223,7 @@ impl Part<'_, '_, '_> {
         })
     }
 
-    fn normal_map(&mut self, is_mirrored: bool) -> Option<Handle<description::ImageDesc>> {
+    fn normal_map(&mut self, is_mirrored: bool) -> Option<Handle<ImageDesc>> {
         let (texture, scale) = self.material.normals.as_ref()?;
         let is_color = self.builder.pictures.image(texture, Encoding::Data)?.is_color();
         let edit = match (*scale, is_mirrored) {
@@ -212,6 +237,11 @@ impl Part<'_, '_, '_> {
     fn area_light(&mut self) -> Option<Handle<AreaLightDesc>> {
         let material = self.material;
         let color = if material.is_unlit { &material.base } else { &material.emissive };
+        if let Some(image) = self.colors.filter(|_| material.is_unlit) {
+            let light = AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0));
+            let light = AreaLightDesc { image: Some(image), two_sided: material.is_two_sided, ..light };
+            return Some(self.builder.desc.area_lights.push(light));
+        }
         let scale = color.factor.into_iter().fold(0.0, f32::max);
         if scale <= 0.0 {
             return None;
@@ -270,7 +300,7 @@ impl Part<'_, '_, '_> {
             return (MaterialKind::Diffuse { reflectance: 0.0.into() }, 0.0);
         }
         let mut surface = Principled(Box::default());
-        let base = self.color(&material.base, [1.0; 3]);
+        let base = self.base();
         surface.color("base_color", base);
         surface.number("specular_ior", self.ior(material.ior));
         let mut rotation = 0.0;
@@ -315,7 +345,7 @@ impl Part<'_, '_, '_> {
         let constant = stretched(strength, roughness);
         for (result, name) in ["specular_roughness", "specular_roughness_anisotropy"].into_iter().enumerate()
         {
-            // Where both vary, roughness follows its own image, and anisotropy that of the strength.
+            // Where both vary, roughness follows its own image, anisotropy that of the strength.
             let (texture, edit) = match (&texture, &anisotropy.texture) {
                 (Some(texture), None) => (Some(texture), Edit::ByRoughness(result, roughness, strength)),
                 (Some(texture), Some(_)) if result == 0 => {
@@ -472,7 +502,7 @@ impl Part<'_, '_, '_> {
         let material = self.material;
         let weight = self.number(&material.transmission, ImageChannel::Red);
         surface.number("transmission_weight", weight);
-        let tint = self.color(&material.base, [1.0; 3]);
+        let tint = self.base();
         surface.color("transmission_color", tint);
         if material.dispersion > 0.0 {
             // An Abbe number of 20/dispersion, as the scale of one of 20 where that is a share.

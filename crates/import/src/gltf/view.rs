@@ -14,7 +14,7 @@ use super::selection::Selection;
 use crate::mesh::studio;
 
 /// The radiance of a white surface in the lights of a scene that needs no other exposure.
-const GOOD: [f64; 2] = [0.02, 20.0];
+const GOOD: [f64; 2] = [0.05, 4.0];
 /// The radiance to which others are exposed.
 const EXPOSED: f64 = 0.8;
 /// Most scattering events of a path, without and with transparent surfaces.

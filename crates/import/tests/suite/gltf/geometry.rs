@@ -26,7 +26,7 @@ fn a_mesh_has_its_vertices_with_v_up() {
 #[test]
 fn quantized_interleaved_and_sparse_vertices_are_read() {
     let mut file = File::quad(json!({}));
-    // Positions as normalized shorts and normals as normalized bytes, 12 bytes from vertex to vertex.
+    // Positions as normalized shorts, normals as normalized bytes, 12 bytes for each vertex.
     let mut bytes = Vec::new();
     for [x, y] in [[-32767_i16, -32767], [32767, -32767], [32767, 32767], [-32768, 16384]] {
         bytes.extend([x, y, 0, 0].iter().flat_map(|v| v.to_le_bytes()));
@@ -151,6 +151,28 @@ fn packed_views_are_unpacked() {
 
 const VERTICES: &str = "oAAAAAEzAAAA//8AAAABDAAAAP8AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIC/AACAvwAAAAA=";
 const TRIANGLES: &str = "4fAAAHaHVmd4qYZliWiYAWkAAA==";
+
+#[test]
+fn colors_of_vertices_are_drawn() {
+    let mut file = File::quad(json!({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 1, 1]}}));
+    let colors = file.floats("VEC4", &[1., 0.5, 0.25, 1.].repeat(4));
+    file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+    // The same everywhere: a factor.
+    let desc = file.scene();
+    assert!(desc.spectrum_textures.is_empty());
+    let material = |desc: &SceneDesc| desc.materials[first(desc).material.expect("a material")].kind.clone();
+    let description::MaterialKind::OpenPbr(surface) = material(&desc) else { panic!("no surface") };
+    assert_eq!(surface.colors[0], description::SpectrumDesc::rgb(0.5, 0.5, 0.25).into());
+    // Varying: an image with four texels for each of the two triangles.
+    let colors = file.floats("VEC3", &[1., 0., 0., 0., 1., 0., 0., 0., 1., 1., 1., 1.]);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+    let desc = file.scene();
+    assert_eq!(mesh(first(&desc)).positions.len(), 6);
+    let (_, image) = desc.images.iter().next().expect("an image");
+    assert_eq!((image.image.width(), image.image.height()), (4, 2));
+    assert_eq!([image.image.rgb(0, 0), image.image.rgb(1, 0)], [[0.5, 0., 0.], [0., 1., 0.]]);
+    assert!(file.messages(Severity::Warning).iter().all(|message| !message.contains("colours")));
+}
 
 #[test]
 fn faults_name_their_place() {

@@ -1,0 +1,138 @@
+//! Pictures of glTF scenes against closed forms, and of the samples of other authors.
+
+use std::f32::consts::PI;
+
+use crate::common::{data, files_below};
+use alhazen::import::{Files, MemoryAssets, import};
+use alhazen::integrators::Control;
+use alhazen::{Job, Overrides, render_file};
+
+/// The mean red, green and blue of what an orthographic camera at z = 5 sees of 1/50 × 1/50 units
+/// around the origin. `nodes` place the quadrilateral (±1, ±1, 0), which is mesh 0, 1, … with the
+/// material 0, 1, ….
+fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
+    let vertices = [[-1.0_f32, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let bytes: Vec<u8> = vertices.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
+    let meshes: Vec<_> = (0..materials.len())
+        .map(|index| {
+            format!(
+                r#"{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": 5, "material": {index}}}]}}"#
+            )
+        })
+        .collect();
+    let count = nodes.matches("\"at\"").count();
+    let roots: Vec<_> = (0..=count).map(|root| root.to_string()).collect();
+    let text = format!(
+        r#"{{
+        "asset": {{"version": "2.0"}},
+        "extensions": {{"KHR_lights_punctual": {{"lights": [{lights}]}}}},
+        "buffers": [{{"uri": "a.bin", "byteLength": 48}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 48}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}}],
+        "materials": [{}],
+        "meshes": [{}],
+        "cameras": [{{"type": "orthographic", "orthographic": {{"xmag": 0.01, "ymag": 0.01}}}}],
+        "nodes": [{{"camera": 0, "translation": [0, 0, 5]}}, {}],
+        "scenes": [{{"nodes": [{}]}}]
+        }}"#,
+        materials.join(", "),
+        meshes.join(", "),
+        nodes,
+        roots.join(", ")
+    );
+    let assets = MemoryAssets::default().with("a.gltf", text).with("a.bin", bytes);
+    let small = Overrides { resolution: Some([16, 16]), samples_per_pixel: Some(64), ..Overrides::default() };
+    let image = render_file("a.gltf", &assets, &small, &Control::default()).expect("a picture");
+    let mut sum = [0.0; 3];
+    for (x, y) in (0..16).flat_map(|y| (0..16).map(move |x| (x, y))) {
+        for (sum, value) in sum.iter_mut().zip(image.rgb(x, y)) {
+            *sum += value / 256.0;
+        }
+    }
+    sum
+}
+
+fn close(found: [f32; 3], expected: [f32; 3]) {
+    for (found_one, expected_one) in found.into_iter().zip(expected) {
+        assert!((found_one - expected_one).abs() < 0.02 * expected_one + 1e-4, "{found:?}, not {expected:?}");
+    }
+}
+
+/// A white surface that only scatters diffusely.
+const WHITE: &str = r#"{
+    "pbrMetallicRoughness": {"metallicFactor": 0},
+    "extensions": {"KHR_materials_specular": {"specularFactor": 0}}
+}"#;
+
+#[test]
+fn a_lamp_of_some_candela_gives_its_illuminance() {
+    let point = r#"{"type": "point", "intensity": 10, "color": [1, 0.5, 0.25]}"#;
+    let nodes = r#"{"name": "at", "mesh": 0}, {"name": "at", "translation": [0, 0, 2],
+        "extensions": {"KHR_lights_punctual": {"light": 0}}}"#;
+    // E = I/d², and L = E/π.
+    let radiance = 10.0 / 4.0 / PI;
+    close(seen(&[WHITE], point, nodes), [radiance, radiance / 2.0, radiance / 4.0]);
+    let spot = r#"{"type": "spot", "intensity": 10, "spot": {"outerConeAngle": 0.5}}"#;
+    close(seen(&[WHITE], spot, nodes), [radiance; 3]);
+    let directional = r#"{"type": "directional", "intensity": 3}"#;
+    close(seen(&[WHITE], directional, nodes), [3.0 / PI; 3]);
+}
+
+#[test]
+fn emission_is_its_strength_in_candela_per_square_metre() {
+    let lamp = r#"{
+        "emissiveFactor": [1, 0.5, 0.25], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}
+    }"#;
+    let front = r#"{"name": "at", "mesh": 0}"#;
+    close(seen(&[lamp], "", front), [4.0, 2.0, 1.0]);
+    let back = r#"{"name": "at", "mesh": 0, "rotation": [0, 1, 0, 0]}"#;
+    assert!(seen(&[lamp], "", back)[0] < 0.1, "only the front emits");
+    let unlit = r#"{
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]}, "extensions": {"KHR_materials_unlit": {}}
+    }"#;
+    close(seen(&[unlit], "", front), [0.5, 0.25, 1.0]);
+}
+
+#[test]
+fn volumes_absorb_by_beers_law() {
+    let lamp = r#"{
+        "emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}
+    }"#;
+    // A slab of index 1, 1.5 units thick: half of the light is left after each unit.
+    let glass = r#"{
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+        "extensions": {
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_ior": {"ior": 1},
+            "KHR_materials_volume": {
+                "thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [0.5, 0.5, 0.5]
+            }
+        }
+    }"#;
+    let nodes = r#"{"name": "at", "mesh": 0, "translation": [0, 0, -2]},
+        {"name": "at", "mesh": 1, "translation": [0, 0, 1.5]},
+        {"name": "at", "mesh": 1, "rotation": [0, 1, 0, 0]}"#;
+    close(seen(&[lamp, glass], "", nodes), [2.0 * 0.5_f32.powf(1.5); 3]);
+}
+
+#[test]
+fn samples_render() {
+    let Some(folder) = data("gltf") else { return };
+    let small = Overrides { resolution: Some([24, 16]), samples_per_pixel: Some(4), ..Overrides::default() };
+    let is_scene = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "glb" || e == "gltf");
+    for path in files_below(&folder).into_iter().filter(is_scene) {
+        let mut imported = import(&path, &Files);
+        if imported.has_errors() {
+            continue;
+        }
+        small.apply(&mut imported.desc).expect("changes that every scene can take");
+        let compiled = Job::compile(imported.desc);
+        let mut job = compiled.unwrap_or_else(|errors| panic!("{}: {errors:?}", path.display())).job;
+        job.render(&Control::default()).expect("not cancelled");
+        let values: Vec<f32> = job.picture().expect("a picture").values().collect();
+        assert!(values.iter().all(|value| value.is_finite()), "{}", path.display());
+        assert!(values.iter().any(|&value| value > 0.01), "{} is black", path.display());
+    }
+}
