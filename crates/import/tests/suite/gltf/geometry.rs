@@ -85,7 +85,7 @@ fn strips_and_fans_are_triangles_and_lines_are_not_drawn() {
 fn nodes_place_meshes_and_repeated_ones_are_instances() {
     let mut file = File::quad(json!({}));
     file.json["nodes"] = json!([
-        {"children": [1], "translation": [1, 0, 0], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]},
+        {"children": [1], "translation": [1, 0, 0], "rotation": [0, 0, 1, 1]},
         {"mesh": 0, "scale": [-2, 1, 1]},
     ]);
     let desc = file.scene();
