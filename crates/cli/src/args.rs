@@ -92,7 +92,7 @@ pub struct Render {
     /// pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
-    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .tif. Can be given several times. [default: the name in
+    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .webp, .tif. Can be given several times. [default: the name in
     /// the scene's film, else the scene's with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
@@ -146,7 +146,7 @@ impl Render {
 /// How pictures for displays show the light.
 #[derive(Args, Clone, Debug)]
 pub struct DisplayOptions {
-    /// The view of .png, .jpg, .tga, .bmp and .qoi: standard (sRGB), agx, aces (ACES 2.0),
+    /// The view of .png, .jpg, .tga, .bmp, .qoi and .webp: standard (sRGB), agx, aces (ACES 2.0),
     /// khronos-neutral or filmic. PNG files name it; other formats stay linear.
     #[arg(long, value_name = "NAME", default_value = "standard", value_parser = view)]
     pub view: DisplayView,

@@ -8,7 +8,7 @@ use alhazen::image::{Attribute, Image, Pixels};
 #[test]
 fn pictures_are_written_in_every_format_asked_for() {
     let folder = Folder::with_scene("formats");
-    let names = ["a.exr", "a.png", "a.pfm", "a.jpg", "a.hdr", "a.bmp", "a.tga", "a.qoi", "a.tif"];
+    let names = ["a.exr", "a.png", "a.pfm", "a.jpg", "a.hdr", "a.bmp", "a.tga", "a.qoi", "a.webp", "a.tif"];
     let mut arguments = vec!["render", "scene.pbrt"];
     names.iter().for_each(|name| arguments.extend(["-o", name]));
     let finished = folder.alhazen(&arguments).expect(0);

@@ -92,6 +92,7 @@ fn single_layer(format: Format, [width, height]: [u32; 2], channels: Vec<(String
         Format::Png => Some("DEFLATE"),
         Format::Jpeg => Some("DCT, lossy"),
         Format::Qoi => Some("QOI"),
+        Format::Webp => Some("WebP"),
         _ => None,
     };
     let layer = LayerInfo { name: String::new(), data_window: window, channels, compression, tiles: None };

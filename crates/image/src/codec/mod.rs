@@ -42,14 +42,26 @@ pub enum Format {
     Bmp,
     /// Quite OK Image: 8 bits.
     Qoi,
+    /// WebP: 8 bits; read lossy or not, written lossless.
+    Webp,
     /// Tagged Image File Format: 8 or 16 bits, or floats.
     Tiff,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 9] =
-        [Self::Exr, Self::Png, Self::Jpeg, Self::Hdr, Self::Tga, Self::Pfm, Self::Bmp, Self::Qoi, Self::Tiff];
+    pub const ALL: [Self; 10] = [
+        Self::Exr,
+        Self::Png,
+        Self::Jpeg,
+        Self::Hdr,
+        Self::Tga,
+        Self::Pfm,
+        Self::Bmp,
+        Self::Qoi,
+        Self::Webp,
+        Self::Tiff,
+    ];
 
     /// The extensions of its file names; the first is the usual one.
     pub fn extensions(self) -> &'static [&'static str] {
@@ -62,6 +74,7 @@ impl Format {
             Self::Pfm => &["pfm"],
             Self::Bmp => &["bmp"],
             Self::Qoi => &["qoi"],
+            Self::Webp => &["webp"],
             Self::Tiff => &["tif", "tiff"],
         }
     }
@@ -69,7 +82,7 @@ impl Format {
     /// Whether it holds codes for a display, in the encoding of sRGB, rather than linear values.
     pub fn is_for_display(self) -> bool {
         match self {
-            Self::Png | Self::Jpeg | Self::Tga | Self::Bmp | Self::Qoi => true,
+            Self::Png | Self::Jpeg | Self::Tga | Self::Bmp | Self::Qoi | Self::Webp => true,
             Self::Exr | Self::Hdr | Self::Pfm | Self::Tiff => false,
         }
     }
@@ -98,6 +111,7 @@ impl Format {
             [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace() => Some(Self::Pfm),
             [b'B', b'M', ..] => Some(Self::Bmp),
             [b'q', b'o', b'i', b'f', ..] => Some(Self::Qoi),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::Webp),
             [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Some(Self::Tiff),
             _ => None,
         }

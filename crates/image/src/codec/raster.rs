@@ -1,4 +1,4 @@
-//! PNG, JPEG, Radiance HDR, TGA, BMP, QOI and TIFF, by the `image` crate.
+//! PNG, JPEG, Radiance HDR, TGA, BMP, QOI, WebP and TIFF, by the `image` crate.
 
 use std::io::{BufWriter, Cursor, Seek, Write};
 
@@ -120,7 +120,8 @@ pub fn encode(
     let keeps_alpha = !matches!(format, Format::Hdr | Format::Jpeg);
     let color = color_channels(&channels);
     // Only some formats have grey images, and no float writer of the library does.
-    let grey = color[0] == color[1] && depth != SampleDepth::F32 && !matches!(format, Format::Qoi);
+    let grey =
+        color[0] == color[1] && depth != SampleDepth::F32 && !matches!(format, Format::Qoi | Format::Webp);
     let alpha = alpha_channel(&channels).filter(|_| keeps_alpha);
     let written: Vec<usize> = color[..if grey { 1 } else { 3 }].iter().copied().chain(alpha).collect();
     let buffer = dynamic(picture, &Layout { channels: channels.len(), written, alpha }, depth)?;
@@ -249,6 +250,7 @@ pub(super) fn library_format(format: Format) -> Result<ImageFormat, ImageError> 
         Format::Tga => ImageFormat::Tga,
         Format::Bmp => ImageFormat::Bmp,
         Format::Qoi => ImageFormat::Qoi,
+        Format::Webp => ImageFormat::WebP,
         Format::Tiff => ImageFormat::Tiff,
         Format::Exr | Format::Pfm => {
             return Err(ImageError::Unsupported(format!("{format:?} is not a raster format")));

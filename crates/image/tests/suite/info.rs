@@ -23,6 +23,7 @@ fn every_format_reports_its_size_and_depth() {
         (Format::Pfm, Natural, Sample::Float(32)),
         (Format::Bmp, U8, Sample::Integer(8)),
         (Format::Qoi, U8, Sample::Integer(8)),
+        (Format::Webp, U8, Sample::Integer(8)),
         (Format::Tiff, U16, Sample::Integer(16)),
         (Format::Tiff, F32, Sample::Float(32)),
     ] {

@@ -115,7 +115,7 @@ mod tests {
         let good = glb(&[(b"JSON", b"{}  "), (b"BIN\0", &[0; 4])]);
         for (bytes, message) in [
             (&good[..10], "the file ends within its header of 12 bytes"),
-            (&good[..good.len() - 2], "the header says 40 bytes, but the file has 38"),
+            (&good[..good.len() - 2], "the header says 36 bytes, but the file has 34"),
             (&glb(&[(b"BIN\0", &[0; 4])]), "the first chunk must be text"),
             (&glb(&[(b"JSON", b"{}  "), (b"JSON", b"{}  ")]), "there are two chunks of text"),
             (&glb(&[]), "there is no chunk of text"),

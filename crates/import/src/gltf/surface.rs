@@ -7,6 +7,7 @@ use description::{
     SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
 use math::DAffine2;
+use spectrum::{LAMBDA_MAX, LAMBDA_MIN, RgbAlbedoSpectrum, RgbColorSpace};
 
 use super::log::Log;
 use super::material::{AlphaMode, Color, Material, Number};
@@ -279,10 +280,15 @@ impl Part<'_, '_, '_> {
         if volume.color == [1.0; 3] || volume.distance.is_infinite() {
             return None;
         }
-        // What is left after a distance d is exp(−σ d).
-        let [r, g, b] = volume.color.map(|v| -v.max(1e-4).ln() / volume.distance);
-        let coefficients =
-            CoefficientsDesc::Given { sigma_a: SpectrumDesc::rgb(r, g, b), sigma_s: 0.0.into(), scale: 1.0 };
+        // What is left after the distance d is exp(−σ d), the spectrum of the colour.
+        let left = RgbAlbedoSpectrum::new(RgbColorSpace::srgb(), volume.color);
+        let (first, last) = (LAMBDA_MIN as u16, LAMBDA_MAX as u16);
+        let sigma_a = (first..=last).step_by(5).map(f32::from).map(|lambda| {
+            let left: f32 = left.at(lambda);
+            (lambda, -left.max(1e-4).ln() / volume.distance)
+        });
+        let sigma_a = SpectrumDesc::Samples(sigma_a.collect());
+        let coefficients = CoefficientsDesc::Given { sigma_a, sigma_s: 0.0.into(), scale: 1.0 };
         let medium = MediumDesc {
             name: material.name.clone(),
             kind: MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 },
