@@ -98,7 +98,11 @@ fn fill(
     let lights: Vec<_> =
         light::places(&document)?.iter().map(|place| log.keep(Light::parse(place))).collect();
     let nodes = Nodes::read(&document, log);
-    let roots = node::scene_roots(&document, &nodes, selection.scene)?;
+    let scenes = all(&document, "scenes", log, |place| node::scene_roots(place, &document, &nodes));
+    let roots = match node::scene_index(&document, selection.scene)? {
+        Some(index) => scenes[index].clone().unwrap_or_default(),
+        None => nodes.roots(),
+    };
     let poses = poses(&document, nodes, &animations, selection)?;
     let drawn = Drawn {
         nodes: poses[0].nodes.below(&roots),

@@ -196,21 +196,22 @@ impl Nodes {
     }
 }
 
-/// The roots of a scene: the chosen one, else the text's own, else the first, else all roots.
-pub(super) fn scene_roots(document: &Document, nodes: &Nodes, chosen: Option<usize>) -> Result<Vec<usize>> {
-    let root = document.root();
-    let index = match (chosen, document.index(&root, "scene", "scenes")?) {
-        (Some(chosen), _) if chosen < document.count("scenes") => Some(chosen),
-        (Some(chosen), _) => {
-            let message = format!("there is no scene {chosen}; there are {}", document.count("scenes"));
-            return Err(Fault::new("unknown-choice", "/scenes", message));
+/// The scene that is drawn: the chosen one, else the text's own, else the first; `None` if there is
+/// none.
+pub(super) fn scene_index(document: &Document, chosen: Option<usize>) -> Result<Option<usize>> {
+    let count = document.count("scenes");
+    match (chosen, document.index(&document.root(), "scene", "scenes")?) {
+        (Some(chosen), _) if chosen >= count => {
+            let message = format!("there is no scene {chosen}; there are {count}");
+            Err(Fault::new("unknown-choice", "/scenes", message))
         }
-        (None, Some(index)) => Some(index),
-        (None, None) => (document.count("scenes") > 0).then_some(0),
-    };
-    let Some(scene) = index.and_then(|index| document.item("scenes", index)) else {
-        return Ok(nodes.roots());
-    };
+        (Some(index), _) | (None, Some(index)) => Ok(Some(index)),
+        (None, None) => Ok((count > 0).then_some(0)),
+    }
+}
+
+/// The roots of a scene.
+pub(super) fn scene_roots(scene: &Place, document: &Document, nodes: &Nodes) -> Result<Vec<usize>> {
     let count = document.count("nodes");
     let roots = scene.array("nodes")?;
     let mut seen = std::collections::HashSet::new();

@@ -39,22 +39,19 @@ fn damaged_files_are_refused_or_read() {
     for path in &found {
         let imported = import(path, &Files);
         let name = path.file_name().expect("a name").to_string_lossy();
-        if name.contains("invalid") {
+        // What the validator of the format calls an error, or has no report about.
+        let report = std::fs::read_to_string(path.with_added_extension("report.json")).unwrap_or_default();
+        if name.contains("invalid") && !report.contains("\"numErrors\": 0") {
             assert!(imported.has_errors(), "{} is read:\n{}", path.display(), shown(&imported));
         }
         refused += usize::from(imported.has_errors());
         // Every message names its place.
         for diagnostic in imported.diagnostics.iter().filter(|diagnostic| diagnostic.is_error()) {
-            let is_placed = diagnostic.message.starts_with('/') || diagnostic.code == "invalid-glb";
-            assert!(
-                is_placed
-                    || diagnostic.code == "invalid-json"
-                    || diagnostic.message.contains("`asset`")
-                    || diagnostic.message.contains("JSON object"),
-                "{}: {}",
-                path.display(),
-                diagnostic.message
-            );
+            let is_whole = ["invalid-glb", "invalid-json"].contains(&diagnostic.code);
+            let is_outline = ["`asset` is missing", "the text is not a JSON object"];
+            let message = diagnostic.message.as_str();
+            let is_placed = message.starts_with('/') || is_whole || is_outline.contains(&message);
+            assert!(is_placed, "{}: {message}", path.display());
         }
     }
     eprintln!("{refused} of {} refused in {:?}", found.len(), start.elapsed());
