@@ -92,8 +92,8 @@ pub struct Render {
     /// pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
-    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .webp, .tif. Can be given several times. [default: the name in
-    /// the scene's film, else the scene's with .exr, in the current folder]
+    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .webp, .tif. Can be given several times. [default: the
+    /// name in the scene's film, else the scene's with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// The algorithm; see the list below. [default: the scene's]

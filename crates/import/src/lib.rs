@@ -30,11 +30,9 @@ pub use suggest::closest;
 /// file, which becomes a scene of one object with a camera and light that show it.
 pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {
     let path = path.as_ref();
-    if gltf::is_named_by(path, assets) {
-        return gltf::read(path, assets);
-    }
     match mesh::Format::from_path(path) {
         Some(format) => mesh::scene::read(path, format, assets),
+        None if gltf::is_named_by(path, assets) => gltf::read(path, assets),
         None => pbrt::read(path, assets),
     }
 }
