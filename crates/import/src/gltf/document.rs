@@ -6,7 +6,7 @@ use super::json::{Fault, Place, Result};
 use super::log::Log;
 
 /// The extensions that are read, or that change nothing for a renderer that does not cull.
-pub(super) const EXTENSIONS: [&str; 30] = [
+const EXTENSIONS: [&str; 26] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -33,15 +33,7 @@ pub(super) const EXTENSIONS: [&str; 30] = [
     "KHR_texture_transform",
     "KHR_xmp",
     "KHR_xmp_json_ld",
-    "EXT_lights_ies",
-    "EXT_lights_image_based",
-    "KHR_animation_pointer",
-    "MSFT_lod",
 ];
-
-/// Of those, the ones that are only passed over, with a warning where they are used.
-const NOT_HONOURED: [&str; 4] =
-    ["EXT_lights_ies", "EXT_lights_image_based", "KHR_animation_pointer", "MSFT_lod"];
 
 /// The arrays of the text.
 const ARRAYS: [&str; 14] = [
@@ -102,7 +94,7 @@ impl<'a> Document<'a> {
                     log.fault(item.invalid("this must be an object"));
                 }
                 let name = item.value.as_str().unwrap_or("");
-                if is_name && (!EXTENSIONS.contains(&name) || NOT_HONOURED.contains(&name)) {
+                if is_name && !EXTENSIONS.contains(&name) {
                     let message = format!("the extension `{name}` is not read");
                     log.warn("unknown-extension", item.pointer, message);
                 }
