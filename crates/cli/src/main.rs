@@ -6,12 +6,14 @@ mod checkpoint;
 mod compare;
 mod console;
 mod diagnostics;
+mod doctor;
 mod drive;
 mod failure;
 mod help;
 mod image;
 mod inspect;
 mod interrupt;
+mod limits;
 mod manual;
 mod merge;
 mod numbers;
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),
+        Command::Doctor(arguments) => doctor::doctor(arguments).map(done),
         Command::Completions(arguments) => manual::completions(arguments).map(done),
         Command::Man(arguments) => manual::man(arguments).map(done),
     };

@@ -5,6 +5,7 @@
 mod common;
 mod compare;
 mod console;
+mod doctor;
 mod errors;
 mod image;
 mod interrupt;

@@ -8,8 +8,8 @@ use super::tree::Tree;
 
 const README: &str = "README.md";
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
-/// Where the command line is defined.
-const ARGUMENTS: &str = "crates/cli/src/args.rs";
+/// The files that define the command line.
+const ARGUMENTS: &str = "crates/cli/src/args/";
 /// Options that clap adds by itself.
 const CLAPS_OWN: [&str; 2] = ["help", "version"];
 
@@ -30,7 +30,8 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     let readme = tree.text(README).unwrap_or_default();
-    let defined = defined_options(tree.text(ARGUMENTS).unwrap_or_default());
+    let arguments = tree.texts().filter(|(path, _)| path.starts_with(ARGUMENTS));
+    let defined: BTreeSet<String> = arguments.flat_map(|(_, text)| defined_options(text)).collect();
     let told = told_options(readme);
     for option in told.difference(&defined).filter(|option| !CLAPS_OWN.contains(&option.as_str())) {
         findings.push(Finding::new(README, 0, format!("`--{option}` is not an option of alhazen")));
