@@ -28,6 +28,7 @@ mod header;
 mod job;
 mod overrides;
 mod picture;
+mod schedule;
 mod settings;
 mod sketch;
 
@@ -38,4 +39,5 @@ pub use header::Header;
 pub use job::{CompiledJob, Job, RenderError, render_file};
 pub use overrides::{OverrideError, Overrides};
 pub use picture::{InSrgb, write_picture};
+pub use schedule::PreviewSchedule;
 pub use settings::{Group, PARTS, Part, integrator_names};

@@ -4,13 +4,13 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use alhazen::description::schema::Settings;
 use alhazen::image::DisplaySettings;
 use alhazen::import::{AssetSource, Imported, import};
 use alhazen::integrators::{Control, Limits, PassError, Session};
-use alhazen::{Header, Job, Overrides, system_clock};
+use alhazen::{Header, Job, Overrides, PreviewSchedule, system_clock};
 
 use crate::bar::Bar;
 use crate::checkpoint::Checkpoint;
@@ -21,10 +21,6 @@ use crate::interrupt::{self, Interrupt};
 use crate::output;
 use crate::results::{write_preview, write_results};
 use crate::summary::{Seconds, Summary, peak_memory};
-
-/// The longest time between two previews, and its least ratio to the time of writing the last one.
-const PREVIEW_INTERVAL: Duration = Duration::from_secs(60);
-const PREVIEW_SHARE: u32 = 20;
 
 /// What is printed.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +135,13 @@ impl Task<'_> {
             interrupt.note_written(&self.outputs, 0);
         }
         let bar = Bar::new(is_talkative);
-        let mut preview = Preview::new(self.job.header().clone(), (&self.outputs, &self.display), interrupt);
+        let mut preview = Preview {
+            header: self.job.header().clone(),
+            outputs: &self.outputs,
+            display: &self.display,
+            interrupt,
+            schedule: PreviewSchedule::begin(),
+        };
         let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
             bar.show(&session.progress());
             preview.after_pass(session);
@@ -209,36 +211,24 @@ impl Task<'_> {
     }
 }
 
-/// Writes previews: after the first pass that ends more than half a second after the start, and
-/// then whenever the time of rendering has doubled, or a minute has passed.
+/// Writes the picture to its files while it is rendered.
 struct Preview<'a> {
     header: Header,
     outputs: &'a [PathBuf],
     display: &'a DisplaySettings,
     interrupt: &'a Interrupt,
-    begin: Instant,
-    next: Duration,
+    schedule: PreviewSchedule,
 }
 
-impl<'a> Preview<'a> {
-    fn new(
-        header: Header,
-        (outputs, display): (&'a [PathBuf], &'a DisplaySettings),
-        interrupt: &'a Interrupt,
-    ) -> Self {
-        let next = Duration::from_millis(500);
-        Self { header, outputs, display, interrupt, begin: Instant::now(), next }
-    }
-
+impl Preview<'_> {
     fn after_pass(&mut self, session: &Session) {
-        let elapsed = self.begin.elapsed();
-        if self.outputs.is_empty() || elapsed < self.next {
+        if self.outputs.is_empty() {
             return;
         }
-        write_preview(&self.header.development(session.state()), self.outputs, self.display);
-        self.interrupt.note_written(self.outputs, session.progress().pass);
-        let writing = self.begin.elapsed() - elapsed;
-        self.next = elapsed + writing + elapsed.min(PREVIEW_INTERVAL).max(PREVIEW_SHARE * writing);
+        self.schedule.after_pass(false, || {
+            write_preview(&self.header.development(session.state()), self.outputs, self.display);
+            self.interrupt.note_written(self.outputs, session.progress().pass);
+        });
     }
 }
 

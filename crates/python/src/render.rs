@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use alhazen::description::SceneDesc;
 use alhazen::integrators::{Control, Limits, PassError, Session};
-use alhazen::{Job, Overrides, system_clock};
+use alhazen::{Job, Overrides, PreviewSchedule, system_clock};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
@@ -215,22 +215,20 @@ fn drive(
     }
 }
 
-/// Tells of passes, and shows the picture after half a second, and then whenever the time of
-/// rendering has doubled or a minute has passed.
+/// Tells of passes, and shows the picture now and then.
 struct Reporter {
     events: Sender<Event>,
-    begin: Instant,
-    /// When the next preview is due; none are wanted if there is no time.
-    next: Option<Duration>,
+    /// When previews are shown, if they are wanted.
+    previews: Option<PreviewSchedule>,
 }
 
 impl Reporter {
     fn new(events: Sender<Event>, wants_previews: bool) -> Self {
-        Self { events, begin: Instant::now(), next: wants_previews.then_some(Duration::from_millis(500)) }
+        Self { events, previews: wants_previews.then(PreviewSchedule::begin) }
     }
 
     fn after_pass(&mut self, session: &Session, header: &alhazen::Header) {
-        let (progress, elapsed) = (session.progress(), self.begin.elapsed());
+        let progress = session.progress();
         // The receiver waits until the sender is dropped.
         let _ = self.events.send(Event::Pass(Progress {
             passes: progress.pass,
@@ -238,10 +236,11 @@ impl Reporter {
             seconds: progress.elapsed.as_secs_f64(),
             noise: progress.noise,
         }));
-        if self.next.is_some_and(|next| elapsed >= next) {
-            let picture = Picture::collect(&header.development(session.state()));
-            let _ = self.events.send(Event::Preview(picture));
-            self.next = Some(elapsed + elapsed.min(Duration::from_secs(60)));
+        if let Some(previews) = &mut self.previews {
+            previews.after_pass(false, || {
+                let picture = Picture::collect(&header.development(session.state()));
+                let _ = self.events.send(Event::Preview(picture));
+            });
         }
     }
 }
