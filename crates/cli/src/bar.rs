@@ -50,6 +50,11 @@ impl Bar {
         self.0.set_message(format!(", {samples} samples, {rays} rays/s{noise}"));
     }
 
+    /// Writes to the terminal while the bar is not there.
+    pub fn suspend<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.0.suspend(write)
+    }
+
     /// Removes the bar.
     pub fn finish(&self) {
         self.0.finish_and_clear();

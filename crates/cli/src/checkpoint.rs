@@ -76,7 +76,8 @@ impl Checkpoint {
         self.last.0 == session.state().done.count() && self.last.1.is_ok()
     }
 
-    fn save(&mut self, session: &Session) {
+    /// Saves the render.
+    pub fn save(&mut self, session: &Session) {
         let begin = Instant::now();
         let saved = replace_file_with(&self.path, |file| {
             self.order.write(session, &self.header, BufWriter::new(file)).map(|_| ())

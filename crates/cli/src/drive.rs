@@ -18,6 +18,7 @@ use crate::console::{say, warn};
 use crate::diagnostics;
 use crate::failure::Failure;
 use crate::interrupt::{self, Interrupt};
+use crate::live::Live;
 use crate::output;
 use crate::results::{write_preview, write_results};
 use crate::summary::{Seconds, Summary, peak_memory};
@@ -34,6 +35,14 @@ pub struct Verbosity {
 impl Verbosity {
     fn is_talkative(self) -> bool {
         !self.quiet && !self.json
+    }
+
+    /// Writes warnings to standard error, beside a progress bar.
+    fn warn_of(self, warnings: Vec<String>, bar: &Bar) {
+        for warning in warnings.iter().filter(|_| !self.quiet) {
+            // The render goes on even if the message cannot be written.
+            let _ = bar.suspend(|| warn(format_args!("warning: {warning}")));
+        }
     }
 }
 
@@ -111,6 +120,8 @@ pub struct Task<'a> {
     pub display: DisplaySettings,
     /// Where the render is saved.
     pub checkpoint: Option<Checkpoint>,
+    /// Who watches.
+    pub live: Live,
     /// Notes on the result beside those of the algorithm.
     pub notes: Vec<(&'static str, String)>,
     /// What is printed.
@@ -123,14 +134,16 @@ impl Task<'_> {
         let Compiled { imported, integrator, begin, imported_at, compiled_at } = compiled;
         let is_talkative = self.verbosity.is_talkative();
         interrupt.begin_rendering(is_talkative);
+        self.live.begin(&self.job.session);
         if is_talkative {
             diagnostics::print(&imported.diagnostics, &imported.sources)?;
         }
         let control = Control::new(interrupt.cancel(), system_clock());
-        if !self.outputs.is_empty()
+        if (!self.outputs.is_empty() || self.live.is_watched())
             && self.job.session.state().done.is_empty()
             && let Some(sketch) = self.job.sketch(&control)
         {
+            self.live.show(&sketch);
             write_preview(&sketch, &self.outputs, &self.display);
             interrupt.note_written(&self.outputs, 0);
         }
@@ -144,7 +157,9 @@ impl Task<'_> {
         };
         let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
             bar.show(&session.progress());
-            preview.after_pass(session);
+            preview.after_pass(session, &self.live, self.checkpoint.as_mut());
+            self.live.after_pass(session, &preview.header);
+            self.verbosity.warn_of(self.live.take_warnings(), &bar);
             let checkpoint = self.checkpoint.as_mut();
             interrupt.after_pass(checkpoint.is_some_and(|checkpoint| !checkpoint.after_pass(session)));
         });
@@ -207,6 +222,9 @@ impl Task<'_> {
         } else if let Some(interruption) = summary.interruption() {
             warn(interruption)?;
         }
+        self.live.finish(&picture);
+        self.verbosity.warn_of(self.live.take_warnings(), &bar);
+        self.live.stay(interrupt);
         Ok(if summary.ended_by.is_none() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
     }
 }
@@ -221,13 +239,20 @@ struct Preview<'a> {
 }
 
 impl Preview<'_> {
-    fn after_pass(&mut self, session: &Session) {
-        if self.outputs.is_empty() {
+    /// Writes the picture if that is due or asked for; if it is asked for, the checkpoint too.
+    fn after_pass(&mut self, session: &Session, live: &Live, checkpoint: Option<&mut Checkpoint>) {
+        let is_asked = live.is_save_asked();
+        if self.outputs.is_empty() && !is_asked {
             return;
         }
-        self.schedule.after_pass(false, || {
+        self.schedule.after_pass(is_asked, || {
+            let passes = session.progress().pass;
             write_preview(&self.header.development(session.state()), self.outputs, self.display);
-            self.interrupt.note_written(self.outputs, session.progress().pass);
+            self.interrupt.note_written(self.outputs, passes);
+            if is_asked {
+                checkpoint.into_iter().for_each(|checkpoint| checkpoint.save(session));
+                live.note_saved(passes);
+            }
         });
     }
 }

@@ -44,12 +44,7 @@ impl Interrupt {
         ctrlc::set_handler(move || {
             let first = !handler.interrupted.swap(true, Ordering::SeqCst);
             if first && handler.rendering.load(Ordering::SeqCst) {
-                if !handler.unsaved.load(Ordering::SeqCst) {
-                    handler.cancel.store(true, Ordering::SeqCst);
-                } else if handler.verbose.load(Ordering::SeqCst) {
-                    // The pass is completed even if the message cannot be written.
-                    let _ = warn("\nending after this pass, to save it; Ctrl-C again ends at once");
-                }
+                handler.end_rendering();
             } else {
                 // The program ends even if the message cannot be written.
                 let _ = if as_json { say(handler.to_json()) } else { warn(handler.message()) };
@@ -58,6 +53,29 @@ impl Interrupt {
         })
         .map_err(|error| Failure::Input(format!("cannot listen for Ctrl-C: {error}")))?;
         Ok(interrupt)
+    }
+
+    fn end_rendering(&self) {
+        if !self.unsaved.load(Ordering::SeqCst) {
+            self.cancel.store(true, Ordering::SeqCst);
+        } else if self.verbose.load(Ordering::SeqCst) {
+            // The pass is completed even if the message cannot be written.
+            let _ = warn("\nending after this pass, to save it; Ctrl-C again ends at once");
+        }
+    }
+
+    /// Does what the first Ctrl-C does while a picture is being rendered; returns whether one is.
+    pub fn cancel_rendering(&self) -> bool {
+        let is_rendering = self.rendering.load(Ordering::SeqCst);
+        if is_rendering && !self.interrupted.swap(true, Ordering::SeqCst) {
+            self.end_rendering();
+        }
+        is_rendering
+    }
+
+    /// Whether there was a Ctrl-C, or what counts as one.
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::SeqCst)
     }
 
     /// From now on there is a picture to write.

@@ -14,6 +14,7 @@ mod image;
 mod inspect;
 mod interrupt;
 mod limits;
+mod live;
 mod manual;
 mod merge;
 mod numbers;

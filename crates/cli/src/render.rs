@@ -13,6 +13,7 @@ use crate::checkpoint::Checkpoint;
 use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
 use crate::interrupt::Interrupt;
+use crate::live::Live;
 use crate::output;
 use crate::results::named_after;
 use crate::threads::start_threads;
@@ -31,6 +32,8 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     }
     start_threads(arguments.changes.threads)?;
     let interrupt = Interrupt::listen(arguments.json)?;
+    let live =
+        Live::start(&arguments.live, arguments.output.first().unwrap_or(&arguments.scene), &interrupt)?;
 
     let fingerprint = Fingerprint::new(&Files, &arguments.scene);
     let prepared = match &arguments.checkpoint {
@@ -73,7 +76,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     };
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
     let (scene, notes) = (&arguments.scene, Vec::new());
-    let task = Task { scene, job, passes, limits, outputs, display, checkpoint, notes, verbosity };
+    let task = Task { scene, job, passes, limits, outputs, display, checkpoint, live, notes, verbosity };
     task.run(compiled, &interrupt)
 }
 

@@ -12,6 +12,7 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
 use crate::interrupt::Interrupt;
+use crate::live::Live;
 use crate::output;
 use crate::results::named_after;
 use crate::threads::start_threads;
@@ -23,6 +24,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     output::check_place(&arguments.film).map_err(Failure::Usage)?;
     start_threads(arguments.threads)?;
     let interrupt = Interrupt::listen(arguments.json)?;
+    let live = Live::start(&arguments.live, &outputs[0], &interrupt)?;
     let film = &arguments.film;
     let saved = checkpoint::read(film)?;
     let mut order = saved.order();
@@ -74,7 +76,8 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     let checkpoint = Checkpoint::new(film.clone(), arguments.every, order, job.header().clone(), done);
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
     let checkpoint = Some(checkpoint);
-    let task = Task { scene: &scene, job, passes, limits, outputs, display, checkpoint, notes, verbosity };
+    let scene = &scene;
+    let task = Task { scene, job, passes, limits, outputs, display, checkpoint, live, notes, verbosity };
     task.run(compiled, &interrupt)
 }
 

@@ -74,6 +74,43 @@ pub fn shard(text: &str) -> Result<Shard, String> {
         .ok_or_else(|| "expected INDEX/COUNT, such as 3/8".into())
 }
 
+/// The address of a server.
+pub fn address(text: &str) -> Result<String, String> {
+    let port = text.rsplit_once(':').filter(|(host, _)| !host.is_empty());
+    match port.and_then(|(_, port)| port.parse().ok()) {
+        Some(1_u16..) => Ok(text.to_owned()),
+        _ => Err("expected HOST:PORT, such as 127.0.0.1:14158".into()),
+    }
+}
+
+/// Where a picture is served.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ServeAt {
+    /// Host and port; port 0 is any that is free.
+    pub address: String,
+    /// Whether it is served until Ctrl-C, not only while it is rendered.
+    pub stays: bool,
+}
+
+/// Where a picture is served.
+pub fn serve(text: &str) -> Result<ServeAt, String> {
+    let (address, stays) = text.strip_suffix(",stay").map_or((text, false), |address| (address, true));
+    let port = address.rsplit_once(':').filter(|(host, _)| !host.is_empty());
+    match port.map(|(_, port)| port.parse::<u16>()) {
+        Some(Ok(_)) => Ok(ServeAt { address: address.to_owned(), stays }),
+        _ => Err("expected ADDR:PORT or ADDR:PORT,stay, such as 127.0.0.1:8642".into()),
+    }
+}
+
+/// A token of a server, which is part of an address.
+pub fn token(text: &str) -> Result<String, String> {
+    let is_plain = text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_');
+    match is_plain && text.len() >= 8 {
+        true => Ok(text.to_owned()),
+        false => Err("expected eight or more of A to Z, a to z, 0 to 9, - and _".into()),
+    }
+}
+
 /// Width and height in pixels.
 pub fn resolution(text: &str) -> Result<[i32; 2], String> {
     let numbers =

@@ -9,7 +9,10 @@ use alhazen::{Overrides, Shard};
 use clap::Args;
 
 use super::{EXIT_CODES, render_long_help};
-use crate::values::{crop, film_file, key_value, noise, pixel, resolution, shard, stops, time, view, white};
+use crate::values::{
+    ServeAt, address, crop, film_file, key_value, noise, pixel, resolution, serve, shard, stops, time, token,
+    view, white,
+};
 
 /// Options of `alhazen render`.
 #[derive(Args, Debug)]
@@ -51,6 +54,9 @@ pub struct Render {
     /// How pictures for displays show the light.
     #[command(flatten)]
     pub display: DisplayOptions,
+    /// Who watches the render.
+    #[command(flatten)]
+    pub live: LiveOptions,
     /// Print nothing but errors; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
@@ -90,6 +96,31 @@ impl DisplayOptions {
     pub fn settings(&self) -> DisplaySettings {
         DisplaySettings { view: self.view, exposure: self.exposure, white: self.white_balance }
     }
+}
+
+/// Who watches a render while it runs.
+#[derive(Args, Clone, Debug)]
+pub struct LiveOptions {
+    /// Show the picture with all layers in the image viewer tev while it is rendered. Without an
+    /// address it is the tev of this machine, at 127.0.0.1:14158. A viewer that is not there, or
+    /// does not read, costs a warning only.
+    #[arg(
+        long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true,
+        default_missing_value = "127.0.0.1:14158", value_parser = address
+    )]
+    pub tev: Option<String>,
+    /// Show the picture in a browser while it is rendered, by a server at this address, by default
+    /// 127.0.0.1:8642, which only this machine reaches. The page can also end the render and have
+    /// its files written. The server ends with the render, or with `,stay` at Ctrl-C.
+    #[arg(
+        long, value_name = "ADDR:PORT[,stay]", num_args = 0..=1, require_equals = true,
+        default_missing_value = "127.0.0.1:8642", value_parser = serve
+    )]
+    pub serve: Option<ServeAt>,
+    /// Who opens the page of --serve must know this text, which is part of its address. [default:
+    /// a random one if other machines reach the address, else none]
+    #[arg(long, value_name = "TOKEN", value_parser = token, requires = "serve")]
+    pub serve_token: Option<String>,
 }
 
 /// Limits of a render beside its number of samples per pixel; the first one reached ends it.
@@ -191,6 +222,9 @@ pub struct Resume {
     /// How pictures for displays show the light.
     #[command(flatten)]
     pub display: DisplayOptions,
+    /// Who watches the render.
+    #[command(flatten)]
+    pub live: LiveOptions,
     /// Print nothing but errors; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,

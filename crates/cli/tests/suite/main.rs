@@ -15,3 +15,5 @@ mod meshes;
 mod render;
 mod resume;
 mod scene;
+mod serve;
+mod tev;

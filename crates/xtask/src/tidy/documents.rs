@@ -80,7 +80,9 @@ fn defined_options(source: &str) -> BTreeSet<String> {
     let mut options = BTreeSet::new();
     for (at, opening) in source.match_indices("#[arg(") {
         let (attribute, rest) = source[at + opening.len()..].split_once(")]").unwrap_or_default();
-        let Some(long) = attribute.split(", ").find(|part| part.starts_with("long")) else { continue };
+        let Some(long) = attribute.split(',').map(str::trim).find(|part| part.starts_with("long")) else {
+            continue;
+        };
         let field = || rest.trim_start().strip_prefix("pub ")?.split(':').next();
         let name = long.split('"').nth(1).map(str::to_owned);
         options.extend(name.or_else(|| Some(field()?.replace('_', "-"))));
@@ -117,7 +119,7 @@ mod tests {
     #[test]
     fn options_are_read_from_both_sides() {
         let source = "#[arg(short, long = \"output\", value_name = \"FILE\")]\npub output: Vec<PathBuf>,\n\
-                      #[arg(long, value_parser = range(1..))]\npub spp: u32,\n#[arg(long)]\npub max_time: u32,\n";
+                      #[arg(long, value_parser = range(1..))]\npub spp: u32,\n#[arg(\n    long, default_value_t = 1\n)]\npub max_time: u32,\n";
         let expected: BTreeSet<String> = ["output", "spp", "max-time"].map(String::from).into();
         assert_eq!(defined_options(source), expected);
         let text = "| `--spp N`, `-o` or `--output` |\n|---|---|\ncargo run --release\n`--max-time`\n";
