@@ -250,7 +250,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
         seen[kind] += 1;
     };
     let connect = |s: u32| Strategy::Connect(s as usize);
-    for index in 0..4000 {
+    for index in 0..6000 {
         sampler.start_pixel_sample([index, 0], 0, 0);
         let tracer = &mut Tracer::new(&scene, &view, &control, &mut sampler, stats);
         // The sampler's next numbers choose the light and its ray.

@@ -2,9 +2,9 @@
 
 use alhazen_integrators::build;
 use description::{
-    BdptDesc, IntegratorDesc, LightKind, LightTracingDesc, MaterialKind, MltDesc, PathDesc,
-    PhotonMappingDesc, RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SppmDesc,
-    SubsurfaceScattering, TransformDesc, VcmDesc,
+    BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, LightTracingDesc, MaterialKind, MltDesc,
+    PathDesc, PhotonMappingDesc, RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc, ShapeDesc,
+    SppmDesc, SubsurfaceScattering, TransformDesc, VcmDesc,
 };
 use math::{DMat4, DVec3};
 use scattering::SubsurfaceMethod::{self, Diffusion, RandomWalk};
@@ -71,9 +71,11 @@ fn room(method: SubsurfaceMethod) -> SceneDesc {
     desc
 }
 
-/// A ball with a smooth boundary, alone with a light at a point.
+/// A ball with a smooth boundary, alone with a light at a point, that fills the picture.
 fn ball(method: SubsurfaceMethod) -> SceneDesc {
     let mut desc = view();
+    let (screen, lens) = (ScreenDesc::default(), LensDesc::default());
+    desc.camera.kind = CameraKind::Perspective { screen, lens, fov: 25.0 };
     point(&mut desc, v(1.0, -1.5, 2.0), 3.0);
     let material = Some(desc.materials.push(body(method, 0.0).into()));
     desc.shapes.push(ShapeDesc { material, ..at(sphere(0.6), v(0.0, 0.0, 0.4)) });
@@ -105,14 +107,14 @@ fn means(desc: &SceneDesc, integrator: &IntegratorDesc, pixel_samples: u32) -> M
         let picture = film.develop().unwrap();
         picture.values().map(f64::from).sum::<f64>() / picture.values().count() as f64
     };
-    (0..6).map(mean).collect()
+    (0..16).map(mean).collect()
 }
 
 /// Asserts that the algorithms with light paths have the mean of path tracing; those with photons
 /// blur light.
 fn assert_agreement(desc: &SceneDesc) {
     let path = IntegratorDesc::VolPath(PathDesc { max_depth: DEPTH, ..PathDesc::default() });
-    let expected = means(desc, &path, 200);
+    let expected = means(desc, &path, 300);
     let photons = PhotonMappingDesc {
         max_depth: DEPTH,
         photons: 3000,
@@ -122,9 +124,18 @@ fn assert_agreement(desc: &SceneDesc) {
     };
     let max_depth = DEPTH;
     for (integrator, samples, bias) in [
-        (IntegratorDesc::Bdpt(BdptDesc { max_depth, ..BdptDesc::default() }), 100, 0.0),
-        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth }), 200, 0.0),
-        (IntegratorDesc::Mlt(MltDesc { max_depth, mutations_per_pixel: 100, ..MltDesc::default() }), 1, 0.0),
+        (IntegratorDesc::Bdpt(BdptDesc { max_depth, ..BdptDesc::default() }), 200, 0.0),
+        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth }), 600, 0.0),
+        (
+            IntegratorDesc::Mlt(MltDesc {
+                max_depth,
+                mutations_per_pixel: 600,
+                chains: 100,
+                ..MltDesc::default()
+            }),
+            1,
+            0.0,
+        ),
         (IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(RADIUS), ..VcmDesc::default() }), 50, 0.01),
         (
             IntegratorDesc::Sppm(SppmDesc {
@@ -133,11 +144,11 @@ fn assert_agreement(desc: &SceneDesc) {
                 radius: Some(RADIUS),
                 seed: None,
             }),
-            30,
+            60,
             0.02,
         ),
-        (IntegratorDesc::PhotonMapping(photons), 30, 0.02),
-        (IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 4, ..photons }), 20, 0.02),
+        (IntegratorDesc::PhotonMapping(photons), 40, 0.02),
+        (IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 4, ..photons }), 60, 0.02),
     ] {
         let found = means(desc, &integrator, samples);
         let error = (found.variance_of_mean() + expected.variance_of_mean()).sqrt();
