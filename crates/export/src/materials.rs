@@ -192,7 +192,7 @@ fn layers(to: &mut Statement, layers: &LayersDesc, names: &Names) {
 }
 
 fn openpbr(to: &mut Statement, surface: &OpenPbrDesc, names: &Names) {
-    let OpenPbrDesc { numbers, colors, emission_luminance, emission_color } = surface;
+    let OpenPbrDesc { numbers, colors, emission_luminance, emission_color, thin_walled } = surface;
     for (value, number) in numbers.iter().zip(OpenPbrDesc::NUMBERS) {
         to.float_parameter(number.name, value, number.default, names);
     }
@@ -201,4 +201,5 @@ fn openpbr(to: &mut Statement, surface: &OpenPbrDesc, names: &Names) {
     }
     to.float("emission_luminance", *emission_luminance, 0.0);
     to.white_or("emission_color", emission_color);
+    to.flag("geometry_thin_walled", *thin_walled, false);
 }

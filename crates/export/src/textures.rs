@@ -130,6 +130,11 @@ impl Context<'_, '_> {
                 to.float("roughness", *roughness, 0.5);
             }
             TextureKind::Windy => (),
+            TextureKind::Step { texture, edge } => {
+                self.extensions.insert("texture step".into());
+                to.float_parameter("tex", texture, 1.0, names);
+                to.float("edge", *edge, 0.5);
+            }
             TextureKind::Marble { octaves, roughness, scale, variation } => {
                 to.integer("octaves", *octaves, 8);
                 to.float("roughness", *roughness, 0.5);
@@ -161,6 +166,9 @@ impl Context<'_, '_> {
         to.text("filename", &self.files.image(image, stored));
         encoding(to, stored, ColorEncoding::Srgb);
         mapping(to, place);
+        if matches!(place, MappingDesc::Affine { .. }) {
+            self.extensions.insert("texture mapping affine".into());
+        }
         let channel = channel.map(|channel| match channel {
             ImageChannel::Red => "r",
             ImageChannel::Green => "g",
@@ -205,6 +213,7 @@ fn type_name<V>(kind: &TextureKind<V>) -> &'static str {
         TextureKind::Fbm { .. } => "fbm",
         TextureKind::Wrinkled { .. } => "wrinkled",
         TextureKind::Windy => "windy",
+        TextureKind::Step { .. } => "step",
         TextureKind::Marble { .. } => "marble",
         TextureKind::Ptex { .. } => "ptex",
     }
@@ -239,6 +248,7 @@ fn mapping(to: &mut Statement, mapping: &MappingDesc) {
         MappingDesc::Spherical => ("spherical", [0.0; 2]),
         MappingDesc::Cylindrical => ("cylindrical", [0.0; 2]),
         MappingDesc::Planar { delta, .. } => ("planar", *delta),
+        MappingDesc::Affine { .. } => ("affine", [0.0; 2]),
     };
     to.choice("mapping", name, "uv");
     match mapping {
@@ -250,6 +260,7 @@ fn mapping(to: &mut Statement, mapping: &MappingDesc) {
             to.triple("vector3", "v1", *v1, Vec3::X);
             to.triple("vector3", "v2", *v2, Vec3::Y);
         }
+        MappingDesc::Affine { columns } => to.floats("columns", columns.as_flattened().iter().copied()),
         MappingDesc::Spherical | MappingDesc::Cylindrical => (),
     }
     to.float("udelta", delta[0], 0.0);

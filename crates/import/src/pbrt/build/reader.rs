@@ -111,6 +111,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         let index = self.given.iter().position(|given| given.parameter.name == name)?;
         let given = &mut self.given[index];
         let already = std::mem::replace(&mut given.used, true);
+        given.parameter.adopt(types);
         let parameter = &given.parameter;
         if !types.contains(&parameter.kind) {
             if given.default {

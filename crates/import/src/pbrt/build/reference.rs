@@ -68,7 +68,7 @@ fn lookups(statement: &str, kind: &str, parameters: &str) -> Vec<Row> {
 fn examples(statement: &str, kind: &str) -> (&'static str, [&'static str; 2], &'static [&'static str]) {
     const NONE: [&str; 2] = ["", ""];
     const MAPPING: [&str; 2] = ["string", "mapping"];
-    const MAPPINGS: &[&str] = &["spherical", "cylindrical", "planar"];
+    const MAPPINGS: &[&str] = &["spherical", "cylindrical", "planar", "affine"];
     match (statement.split(' ').next().unwrap_or(""), kind) {
         ("Shape", "bilinearmesh" | "curve") => (r#""point3 P" [0 0 0 1 0 0 0 1 0 1 1 0]"#, NONE, &[]),
         ("Shape", "trianglemesh" | "polygon" | "loopsubdiv" | "spheres") => {

@@ -38,6 +38,7 @@ impl TextureValue for f32 {
         "fbm",
         "wrinkled",
         "windy",
+        "step",
     ];
 
     fn constant(value: f32) -> Self {
@@ -73,6 +74,10 @@ impl TextureValue for f32 {
                 TextureKind::Wrinkled { octaves, roughness }
             }
             "windy" => TextureKind::Windy,
+            "step" => TextureKind::Step {
+                texture: reader.float_parameter("tex", 1.0),
+                edge: reader.float("edge", 0.5),
+            },
             _ => return None,
         })
     }
@@ -268,7 +273,8 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
 /// The mapping to texture coordinates. Parameters of other mappings than the chosen one are errors,
 /// as unknown.
 fn mapping(reader: &mut Reader) -> MappingDesc {
-    let kind = reader.choice("mapping", 0, &[("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3)]);
+    let kinds = [("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3), ("affine", 4)];
+    let kind = reader.choice("mapping", 0, &kinds);
     let delta = |reader: &mut Reader| [reader.float("udelta", 0.0), reader.float("vdelta", 0.0)];
     match kind {
         0 => MappingDesc::Uv {
@@ -277,6 +283,10 @@ fn mapping(reader: &mut Reader) -> MappingDesc {
         },
         1 => MappingDesc::Spherical,
         2 => MappingDesc::Cylindrical,
+        4 => {
+            let [a, b, c, d, e, f] = reader.float_array("columns").unwrap_or([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+            MappingDesc::Affine { columns: [[a, b], [c, d], [e, f]] }
+        }
         _ => MappingDesc::Planar {
             axes: [reader.vector3("v1", Vec3::X), reader.vector3("v2", Vec3::Y)],
             delta: delta(reader),
