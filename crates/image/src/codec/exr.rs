@@ -80,12 +80,21 @@ fn choose_layer(headers: &[Header]) -> Result<usize, ImageError> {
     chosen.map(|(index, _)| index).ok_or_else(|| ImageError::Unsupported("deep EXR".into()))
 }
 
-/// The names of the image's channels, and the index in it of each of the file's.
+/// The names of the image's channels, and the index in it of each of the file's. Files have them by
+/// name; an image has the colours first, and in each layer red, green, blue and alpha in this
+/// order.
 fn channel_order(header: &Header) -> (Vec<String>, Vec<usize>) {
     let in_file: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
-    let rank = |name: &str| ["R", "G", "B", "A"].iter().position(|usual| *usual == name).unwrap_or(4);
+    let rank = |name: &str| {
+        ["R", "G", "B", "A"].iter().position(|usual| usual.eq_ignore_ascii_case(name)).unwrap_or(4)
+    };
+    let place = |name: &str| match name.rsplit_once('.') {
+        Some((layer, channel)) => (true, layer.to_owned(), rank(channel)),
+        None if rank(name) < 4 => (false, String::new(), rank(name)),
+        None => (true, name.to_owned(), 0),
+    };
     let mut order: Vec<usize> = (0..in_file.len()).collect();
-    order.sort_by_key(|&index| rank(&in_file[index]));
+    order.sort_by_cached_key(|&index| place(&in_file[index]));
     let mut slots = vec![0; in_file.len()];
     for (slot, &index) in order.iter().enumerate() {
         slots[index] = slot;
