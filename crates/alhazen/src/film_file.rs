@@ -9,7 +9,7 @@ use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use film::{Film, FilmFile, FilmFileError, FilmHeader, FilmWriter, PassSet, ReadLimits};
+use film::{Development, Film, FilmFile, FilmFileError, FilmHeader, FilmWriter, PassSet, ReadLimits};
 use integrators::{Limits, Session, SessionState};
 use serde_json::{Value, json};
 
@@ -198,6 +198,22 @@ impl SavedRender {
     /// The shards of the merged files, in their order.
     pub fn shards(&self) -> Vec<Shard> {
         self.parts.iter().map(|part| part.shard).collect()
+    }
+
+    /// Writes a film file of all parts.
+    pub fn write<W: Write>(&self, output: W) -> Result<W, FilmFileError> {
+        self.file.write(output)
+    }
+
+    /// The passes that it holds.
+    pub fn done(&self) -> &PassSet {
+        &self.file.header.done
+    }
+
+    /// The picture of all parts with its layers.
+    pub fn development(&self) -> Development<'_> {
+        let second = self.file.films.iter().find(|(name, _)| name == SECOND).map(|(_, film)| film);
+        self.header.named(Development::of_all(&self.file.picture, second), self.file.header.done.count())
     }
 
     /// The header of its pictures.

@@ -23,6 +23,13 @@ impl<'a> Fingerprint<'a> {
         Self { assets, folder, hashes: Mutex::default() }
     }
 
+    /// Hashes a file.
+    pub fn add(&self, path: &Path, content: &[u8]) {
+        let hash = blake3::hash(content);
+        let relative = path.strip_prefix(&self.folder).unwrap_or(path).to_owned();
+        self.hashes.lock().unwrap_or_else(PoisonError::into_inner).insert(relative, hash);
+    }
+
     /// The hash of all files read so far: of their paths and contents, in any order.
     pub fn hash(&self) -> [u8; 32] {
         let hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
@@ -38,9 +45,7 @@ impl<'a> Fingerprint<'a> {
 impl AssetSource for Fingerprint<'_> {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let bytes = self.assets.read(path)?;
-        let hash = blake3::hash(&bytes);
-        let relative = path.strip_prefix(&self.folder).unwrap_or(path).to_owned();
-        self.hashes.lock().unwrap_or_else(PoisonError::into_inner).insert(relative, hash);
+        self.add(path, &bytes);
         Ok(bytes)
     }
 

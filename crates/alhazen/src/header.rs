@@ -64,8 +64,16 @@ impl Header {
     /// [`Self::picture`] with all layers. Rows are computed when they are read, so that a large
     /// picture needs no copy in memory.
     pub fn development<'state>(&self, state: &'state SessionState) -> Development<'state> {
-        let mut development = state.development();
-        self.set(&mut development.metadata, state.done.count());
+        self.named(state.development(), state.done.count())
+    }
+
+    /// A picture with this header.
+    pub(crate) fn named<'film>(
+        &self,
+        mut development: Development<'film>,
+        samples_per_pixel: u32,
+    ) -> Development<'film> {
+        self.set(&mut development.metadata, samples_per_pixel);
         for ((layer, _), names) in ID_LAYERS.into_iter().zip(&self.names) {
             development.set_names(layer, names);
         }

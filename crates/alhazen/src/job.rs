@@ -91,6 +91,16 @@ impl Job {
         self.session.run(passes, &Limits::default(), control, &mut |_| ())
     }
 
+    /// Begins again with an empty film.
+    pub fn restart(&mut self) -> Result<(), ImageError> {
+        let mut film = self.session.state().film.blank()?;
+        if self.session.integrator().splats() {
+            film.reserve_splats()?;
+        }
+        self.session.resume(SessionState::new(film), Vec::new());
+        Ok(())
+    }
+
     /// Resumes a saved render of the same job. The error says why it cannot be of the same job.
     pub fn resume(&mut self, state: SessionState, films: Vec<(String, Film)>) -> Result<(), String> {
         let [ours, theirs] = [&self.session.state().film, &state.film]

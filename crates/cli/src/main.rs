@@ -19,6 +19,7 @@ mod manual;
 mod merge;
 mod numbers;
 mod output;
+mod pack;
 mod render;
 mod results;
 mod resume;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
         Command::Scene(args::Scene::Convert(arguments)) => scene::convert(arguments).map(done),
+        Command::Scene(args::Scene::Pack(arguments)) => pack::pack(arguments).map(done),
         Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),

@@ -62,7 +62,7 @@ fn is_device(_: std::fs::FileType) -> bool {
 }
 
 /// All bytes of a stream; an error if there are more than `limit`.
-fn read_at_most(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
+pub(crate) fn read_at_most(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     stream.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {

@@ -3,7 +3,7 @@
 use description::{Diagnostic, DiagnosticList, Span};
 
 /// Collects diagnostics up to a limit, so that a file of random bytes does not fill memory.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Report(DiagnosticList);
 
 impl Report {

@@ -18,12 +18,12 @@ use crate::values::{
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct Render {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
-    /// input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, or an archive
+    /// (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
-    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .tif. Can be given several times. [default: the name in
-    /// the scene's film, else the scene's with .exr, in the current folder]
+    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .webp, .tif. Can be given several times. [default: the
+    /// name in the scene's film, else the scene's with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// The algorithm; see the list below. [default: the scene's]
@@ -79,7 +79,7 @@ impl Render {
 /// How pictures for displays show the light.
 #[derive(Args, Clone, Debug)]
 pub struct DisplayOptions {
-    /// The view of .png, .jpg, .tga, .bmp and .qoi: standard (sRGB), agx, aces (ACES 2.0),
+    /// The view of .png, .jpg, .tga, .bmp, .qoi and .webp: standard (sRGB), agx, aces (ACES 2.0),
     /// khronos-neutral or filmic. PNG files name it; other formats stay linear.
     #[arg(long, value_name = "NAME", default_value = "standard", value_parser = view)]
     pub view: DisplayView,

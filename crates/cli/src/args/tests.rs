@@ -1,6 +1,7 @@
 //! Tests of the definition of the command line.
 
 use super::*;
+use alhazen::Overrides;
 use clap::CommandFactory;
 
 fn render(arguments: &[&str]) -> Result<Render, String> {

@@ -59,12 +59,12 @@ fn scene_check_does_not_render() {
 #[test]
 fn a_missing_or_foreign_scene_is_wrong_input() {
     let folder = Folder::new("missing");
-    folder.write("a.gltf", "{ \"asset\": { \"version\": \"2.0\" } }");
+    folder.write("a.stl", "solid a");
     folder.write("a.usda", "#usda 1.0");
     folder.write("a.xml", "<scene version=\"3.0.0\"></scene>");
     for (file, problem) in [
         ("none.pbrt", "none.pbrt"),
-        ("a.gltf", "a glTF scene"),
+        ("a.stl", "an STL mesh"),
         ("a.usda", "a USD scene"),
         ("a.xml", "a Mitsuba scene"),
     ] {

@@ -1,4 +1,4 @@
-//! Tests of `alhazen scene convert`.
+//! Tests of `alhazen scene convert` and `alhazen scene pack`.
 
 use crate::common::{Folder, SCENE};
 use serde_json::json;
@@ -81,4 +81,38 @@ fn a_file_that_cannot_be_written_is_an_error_and_leaves_the_old_scene() {
     let finished = folder.alhazen(&["scene", "convert", "mesh.obj", "a.pbrt"]).expect(1);
     assert!(finished.err.contains("a.assets/mesh-1.ply: "), "{finished:?}");
     assert_eq!(std::fs::read_to_string(folder.path().join("a.pbrt")).expect("a file"), "the old scene");
+}
+
+#[test]
+fn an_archive_is_a_scene_with_all_its_files() {
+    let folder = with_mesh("pack");
+    std::fs::create_dir(folder.path().join("room")).expect("a new folder");
+    folder.write("room/scene.pbrt", &format!("{SCENE}Include \"../mesh.pbrt\""));
+    folder.write("mesh.pbrt", "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]");
+    let finished = folder.alhazen(&["scene", "pack", "room/scene.pbrt"]).expect(0);
+    assert!(finished.out.starts_with("scene.zip: 2 files, ") && finished.err.is_empty(), "{finished:?}");
+    let json =
+        folder.alhazen(&["scene", "pack", "room/scene.pbrt", "-o", "b.zip", "--json"]).expect(0).json();
+    assert_eq!(json["files"].as_array().map(Vec::len), Some(2), "{json}");
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect("a file that was written");
+    assert_eq!(bytes("scene.zip"), bytes("b.zip"));
+    let hash = json["blake3"].as_str().expect("a hash");
+    assert!(finished.out.contains(hash), "{finished:?}");
+
+    std::fs::create_dir(folder.path().join("away")).expect("a new folder");
+    std::fs::rename(folder.path().join("b.zip"), folder.path().join("away/c.zip")).expect("a file to move");
+    for (scene, picture) in [("room/scene.pbrt", "a.exr"), ("away/c.zip", "b.exr")] {
+        let small = ["--resolution", "16x12", "--spp", "1", "--quiet", "-o", picture];
+        folder.alhazen(&[&["render", scene], &small[..]].concat()).expect(0);
+    }
+    let values = |name: &str| folder.image(name).values().map(f32::to_bits).collect::<Vec<_>>();
+    assert_eq!(values("a.exr"), values("b.exr"));
+
+    let refused = folder.alhazen(&["scene", "pack", "away/c.zip"]).expect(1);
+    assert!(refused.err.contains("it is an archive already"), "{refused:?}");
+    folder.write("wrong.pbrt", "WorldBegin Shape \"cube\"");
+    let refused = folder.alhazen(&["scene", "pack", "wrong.pbrt"]).expect(1);
+    assert!(refused.err.contains("wrong.pbrt:1"), "{refused:?}");
+    assert!(!folder.files().contains(&"wrong.zip".to_owned()));
+    folder.alhazen(&["scene", "pack", "-"]).expect(2);
 }

@@ -94,6 +94,7 @@ impl Interpreter<'_> {
         self.statements.options.retain(|earlier| earlier.name != known);
         self.statements.options.push(RawParameter {
             kind,
+            is_typed: true,
             name: known.to_owned(),
             values,
             span: name.span.to(end),

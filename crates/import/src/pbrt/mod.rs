@@ -5,6 +5,7 @@
 //! Names may therefore be used before their definition (except for textures in textures).
 
 mod build;
+mod builder;
 mod declarations;
 mod interpreter;
 mod names;
@@ -15,6 +16,8 @@ mod token;
 mod transform;
 
 use std::path::Path;
+
+pub use builder::{Argument, ArgumentValues, Motion, Placement, SceneBuilder};
 
 use crate::Imported;
 use crate::assets::AssetSource;

@@ -43,7 +43,7 @@ impl ParameterType {
         (Self::Texture, "texture"),
     ];
 
-    fn from_name(name: &str) -> Option<Self> {
+    pub(super) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|&(_, known)| known == name).map(|(kind, _)| kind)
     }
 
@@ -86,6 +86,8 @@ impl Values {
 #[derive(Clone, Debug)]
 pub(crate) struct RawParameter {
     pub(crate) kind: ParameterType,
+    /// Whether its type was stated. If not, it [adopts](Self::adopt) one that fits.
+    pub(crate) is_typed: bool,
     pub(crate) name: String,
     pub(crate) values: Values,
     /// The declaration and its values.
@@ -94,6 +96,44 @@ pub(crate) struct RawParameter {
     pub(crate) declaration: Span,
     /// The current colour space.
     pub(crate) color_space: ColorSpaceDesc,
+}
+
+impl RawParameter {
+    /// Becomes one of these types if it is not typed and its values fit one.
+    pub(crate) fn adopt(&mut self, types: &[ParameterType]) {
+        use ParameterType::{Blackbody, Normal, Vector2, Vector3};
+        use ParameterType::{Float, Integer, Point2, Point3, Rgb, Spectrum, String, Texture};
+        if self.is_typed || types.contains(&self.kind) {
+            return;
+        }
+        let first = |candidates: &[ParameterType]| {
+            candidates.iter().copied().find(|candidate| types.contains(candidate))
+        };
+        if let Values::Integers(integers) = &self.values
+            && first(&[Integer]).is_none()
+        {
+            self.values = Values::Floats(integers.iter().map(|&integer| integer as f32).collect());
+        }
+        let fitting = match &mut self.values {
+            Values::Strings(_) => first(&[String, Spectrum, Texture]),
+            Values::Bools(_) => None,
+            Values::Integers(_) => Some(Integer),
+            Values::Floats(values) => match values[..] {
+                [grey] if first(&[Float]).is_none() && first(&[Rgb]).is_some() => {
+                    *values = vec![grey; 3];
+                    Some(Rgb)
+                }
+                // The same value at all wavelengths.
+                [value] if first(&[Float]).is_none() && first(&[Spectrum]).is_some() => {
+                    *values = vec![100.0, value, 1000.0, value];
+                    Some(Spectrum)
+                }
+                [_, _, _] if first(&[Rgb]).is_some() => Some(Rgb),
+                _ => first(&[Float, Spectrum, Point3, Vector3, Normal, Point2, Vector2, Rgb, Blackbody]),
+            },
+        };
+        self.kind = fitting.unwrap_or(self.kind);
+    }
 }
 
 /// Most parameters of one statement; no statement of the format takes a tenth of them.
@@ -164,6 +204,7 @@ pub(crate) fn parameter(
     let (values, end) = values(tokens, kind, name, span, report)?;
     Some(RawParameter {
         kind,
+        is_typed: true,
         name: name.to_owned(),
         values,
         span: span.to(end),

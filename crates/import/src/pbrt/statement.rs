@@ -25,42 +25,42 @@ pub(crate) struct Statement {
     pub(crate) color_space: ColorSpaceDesc,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct CameraStatement {
     pub(crate) statement: Statement,
     pub(crate) camera_from_world: TransformSet,
     pub(crate) medium: Option<Spanned<String>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct TextureStatement {
     pub(crate) statement: Statement,
     pub(crate) name: Spanned<String>,
     pub(crate) world_from_texture: DMat4,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MaterialStatement {
     pub(crate) statement: Statement,
     /// Absent for `Material`.
     pub(crate) name: Option<Spanned<String>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MediumStatement {
     pub(crate) statement: Statement,
     pub(crate) name: Spanned<String>,
     pub(crate) world_from_medium: TransformDesc,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct LightStatement {
     pub(crate) statement: Statement,
     pub(crate) world_from_light: TransformDesc,
     pub(crate) medium: Option<Spanned<String>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ShapeStatement {
     pub(crate) statement: Statement,
     pub(crate) world_from_object: TransformDesc,
@@ -70,14 +70,14 @@ pub(crate) struct ShapeStatement {
     pub(crate) medium_interface: Option<[Spanned<String>; 2]>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ObjectStatement {
     pub(crate) name: Spanned<String>,
     pub(crate) shapes: Vec<ShapeStatement>,
     pub(crate) instances: Vec<InstanceStatement>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct InstanceStatement {
     pub(crate) object: Spanned<String>,
     pub(crate) span: Span,
@@ -85,7 +85,7 @@ pub(crate) struct InstanceStatement {
 }
 
 /// All statements of a scene.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Statements {
     pub(crate) options: Vec<RawParameter>,
     pub(crate) film: Option<Statement>,
