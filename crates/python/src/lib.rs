@@ -4,10 +4,14 @@
 //! released while files are read and rays are traced. Pixels are moved into arrays of numpy, never
 //! copied.
 
+mod builder;
 mod difference;
+mod film;
+mod job;
 mod picture;
 mod render;
 mod scene;
+mod value;
 
 use pyo3::prelude::*;
 
@@ -17,10 +21,19 @@ fn _alhazen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("SceneError", module.py().get_type::<scene::SceneError>())?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<picture::Picture>()?;
+    module.add_class::<builder::SceneBuilder>()?;
+    module.add_class::<value::Reference>()?;
+    module.add_class::<value::Typed>()?;
+    module.add_class::<job::Job>()?;
+    module.add_class::<film::Film>()?;
     module.add_class::<render::Progress>()?;
     module.add_class::<difference::Difference>()?;
     module.add_function(wrap_pyfunction!(scene::load, module)?)?;
+    module.add_function(wrap_pyfunction!(value::rgb, module)?)?;
+    module.add_function(wrap_pyfunction!(value::spectrum, module)?)?;
+    module.add_function(wrap_pyfunction!(value::blackbody, module)?)?;
     module.add_function(wrap_pyfunction!(scene::integrators, module)?)?;
-    module.add_function(wrap_pyfunction!(render::render, module)?)?;
+    module.add_function(wrap_pyfunction!(job::compile, module)?)?;
+    module.add_function(wrap_pyfunction!(job::render, module)?)?;
     module.add_function(wrap_pyfunction!(difference::compare, module)?)
 }

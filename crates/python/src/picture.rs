@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use alhazen::image::{
     self, Attribute, DisplaySettings, DisplayView, DisplayWhite, Format, Image, ImageError, ImageMetadata,
-    PixelSource, Pixels, WriteOptions,
+    PixelSource, Pixels, ReadOptions, SampleDepth, WriteOptions,
 };
 use alhazen::{InSrgb, write_picture};
 use numpy::ndarray::Array3;
@@ -86,6 +86,22 @@ pub struct Collected {
     channels: Vec<String>,
     values: Vec<f32>,
     metadata: ImageMetadata,
+}
+
+impl Collected {
+    /// Puts the channels in an order, where it has all their names.
+    fn reorder(&mut self, channels: Vec<String>) {
+        let index = |name| self.channels.iter().position(|channel| channel == name);
+        let Some(order) = channels.iter().map(index).collect::<Option<Vec<_>>>() else { return };
+        if order.len() != self.channels.len() {
+            return;
+        }
+        for pixel in self.values.chunks_exact_mut(order.len()) {
+            let old = pixel.to_vec();
+            order.iter().zip(pixel).for_each(|(&from, value)| *value = old[from]);
+        }
+        self.channels = channels;
+    }
 }
 
 /// The layer of a channel: what precedes the last dot; colours have none.
@@ -245,19 +261,24 @@ impl Picture {
         self.png(py, "standard", 0.0, None)
     }
 
-    /// For pickle.
+    /// For pickle: an EXR file, which keeps all metadata, and the order of the channels.
     fn __reduce__<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let this = slf.get();
-        let make = slf.get_type().getattr("_from_channels")?;
-        PyTuple::new(
-            py,
-            [make, (this.pixels.clone_ref(py), this.channels.clone()).into_pyobject(py)?.into_any()],
-        )
+        let (make, image) = (slf.get_type().getattr("_from_file")?, slf.get().image(py)?);
+        let options = WriteOptions { depth: SampleDepth::F32 };
+        let bytes = py.detach(|| image::encode(&image, Format::Exr, &options)).map_err(image_error)?;
+        let arguments = (PyBytes::new(py, &bytes), slf.get().channels.clone());
+        PyTuple::new(py, [make, arguments.into_pyobject(py)?.into_any()])
     }
 
     #[staticmethod]
-    fn _from_channels(pixels: Py<PyArray3<f32>>, channels: Vec<String>) -> Self {
-        Self { pixels, channels, metadata: ImageMetadata::default() }
+    fn _from_file(py: Python, data: &[u8], channels: Vec<String>) -> PyResult<Self> {
+        let read = || {
+            let image = image::read(data, "", &ReadOptions::default())?;
+            let mut collected = Self::collect(&image)?;
+            collected.reorder(channels);
+            Ok(collected)
+        };
+        Self::new(py, py.detach(read).map_err(image_error)?)
     }
 }
 

@@ -3,22 +3,20 @@
 //! A thread of its own renders; the calling thread waits for its messages without Python's lock,
 //! and takes the lock now and then to ask for signals and to call back.
 
-use std::path::PathBuf;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::Duration;
 
-use alhazen::description::SceneDesc;
+use alhazen::image::ImageError;
 use alhazen::integrators::{Control, Limits, PassError, Session};
-use alhazen::{Job, Overrides, PreviewSchedule, system_clock};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use alhazen::{Job, PreviewSchedule, system_clock};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict};
 
 use crate::picture::{Collected, Picture, image_error};
-use crate::scene::{Scene, load, scene_error};
 
 /// The time between two looks at signals.
 const POLL: Duration = Duration::from_millis(50);
@@ -48,13 +46,15 @@ impl Progress {
 /// What the rendering thread tells.
 enum Event {
     Pass(Progress),
-    Preview(Result<Collected, alhazen::image::ImageError>),
+    Preview(Result<Collected, ImageError>),
 }
 
 /// What is called while a scene is rendered.
-struct Callbacks {
-    progress: Option<Py<PyAny>>,
-    preview: Option<Py<PyAny>>,
+pub struct Callbacks {
+    /// Called with a [`Progress`] after passes.
+    pub progress: Option<Py<PyAny>>,
+    /// Called with a picture now and then.
+    pub preview: Option<Py<PyAny>>,
 }
 
 impl Callbacks {
@@ -72,99 +72,26 @@ impl Callbacks {
     }
 }
 
-/// Renders a scene, or the scene of a file, to a picture.
-///
-/// spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
-/// of an algorithm, see integrators(). seed: of all random numbers. crop: the part to render, as
-/// fractions (x0, x1, y0, y1) with y down. layers: names of layers beside the colours, such as
-/// "depth". settings: values by name, as in {"integrator.maxdepth": 8}. time: seconds after which
-/// no pass is begun. noise: the relative error at which it ends. threads: their number, by default
-/// one for each core. progress: called with a Progress after passes. preview: called with an Image
-/// now and then.
-///
-/// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
-#[pyfunction]
-#[pyo3(signature = (
-    scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None,
-    time=None, noise=None, threads=None, progress=None, preview=None
-))]
-#[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
-pub fn render(
-    py: Python,
-    scene: &Bound<'_, PyAny>,
-    spp: Option<u32>,
-    resolution: Option<[i32; 2]>,
-    integrator: Option<String>,
-    seed: Option<i32>,
-    crop: Option<[f32; 4]>,
-    layers: Option<Vec<String>>,
-    settings: Option<&Bound<'_, PyDict>>,
-    time: Option<f64>,
-    noise: Option<f64>,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
-    preview: Option<Py<PyAny>>,
-) -> PyResult<Picture> {
-    let loaded;
-    let scene = match scene.cast::<Scene>() {
-        Ok(scene) => scene.get(),
-        Err(_) => {
-            loaded = load(py, scene.extract::<PathBuf>()?)?;
-            &loaded
-        }
-    };
-    let overrides = Overrides {
-        integrator,
-        settings: settings.map(texts).transpose()?.unwrap_or_default(),
-        samples_per_pixel: spp,
-        resolution,
-        crop,
-        seed,
-        layers: layers.unwrap_or_default(),
-        ..Overrides::default()
-    };
-    let time = time.map(Duration::try_from_secs_f64).transpose();
-    let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-    let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))?;
-    let mut desc = scene.imported.desc.clone();
-    overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let job = compile(py, desc, scene, &overrides)?;
-    let callbacks = Callbacks { progress, preview };
-    let picture = py.detach(|| drive(job, &limits, &pool, &callbacks))?;
-    Picture::new(py, picture)
+/// A pool of this number of threads; 0 is one for each core.
+fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))
 }
 
-/// Values of settings as texts.
-fn texts(settings: &Bound<'_, PyDict>) -> PyResult<Vec<(String, String)>> {
-    let text = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-        let text = value.str()?.to_string();
-        let text = if value.is_instance_of::<PyBool>() { text.to_lowercase() } else { text };
-        Ok((key.extract()?, text))
-    };
-    settings.iter().map(text).collect()
-}
-
-fn compile(py: Python, desc: SceneDesc, scene: &Scene, overrides: &Overrides) -> PyResult<Job> {
-    match py.detach(|| Job::compile(desc)) {
-        Ok(compiled) => Ok(compiled.job),
-        Err(errors) => Err(match overrides.blamed(&errors) {
-            Some(error) => PyValueError::new_err(error.to_string()),
-            None => scene_error(&errors, &scene.imported.sources),
-        }),
-    }
-}
-
-/// Renders a job on a thread of its own, and calls back.
-fn drive(
-    mut job: Job,
+/// Renders passes of a job from an empty film on a thread of its own, calls back, and gives the
+/// result of the rendered job. Python's lock is not held.
+pub fn drive<T: Send>(
+    job: &mut Job,
+    passes: Range<u32>,
     limits: &Limits,
-    pool: &rayon::ThreadPool,
+    threads: Option<usize>,
     callbacks: &Callbacks,
-) -> PyResult<Collected> {
+    result: impl FnOnce(&Job) -> Result<T, ImageError> + Send,
+) -> PyResult<T> {
+    let pool = pool(threads.unwrap_or(0))?;
+    job.restart().map_err(image_error)?;
     let cancel = Arc::new(AtomicBool::new(false));
     let control = Control::new(cancel.clone(), system_clock());
-    let passes = 0..job.planned();
     let (sender, receiver) = mpsc::channel();
     let mut interruption = None;
     let outcome = thread::scope(|scope| {
@@ -174,7 +101,7 @@ fn drive(
             pool.install(|| {
                 let mut after_pass = |session: &Session| reporter.after_pass(session, &header);
                 job.session.run(passes, limits, &control, &mut after_pass)?;
-                Ok(Picture::collect(&header.development(job.session.state())))
+                Ok(result(job))
             })
         });
         loop {
@@ -208,7 +135,7 @@ fn drive(
         return Err(error);
     }
     match outcome {
-        Ok(Ok(picture)) => picture.map_err(image_error),
+        Ok(Ok(result)) => result.map_err(image_error),
         Ok(Err(PassError::OutOfMemory(problem))) => Err(PyMemoryError::new_err(problem)),
         Ok(Err(PassError::Cancelled)) => Err(PyRuntimeError::new_err("the render was cancelled")),
         Err(_) => Err(PyRuntimeError::new_err("the renderer failed")),

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::description::schema::Settings;
-use alhazen::description::{Diagnostic, SourceMap};
-use alhazen::import::{Files, Imported, import};
-use alhazen::integrator_names;
+use alhazen::description::{Diagnostic, FileId, SourceMap};
+use alhazen::import::{AssetSource, Files, Imported, MemoryAssets, SceneBuilder, import, is_archive};
+use alhazen::{ConvertError, Fingerprint, PackError, integrator_names, pack, pack_converted};
 use pyo3::create_exception;
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 create_exception!(
     alhazen,
@@ -17,12 +18,40 @@ create_exception!(
     "A scene has errors; the text names all with their places."
 );
 
+/// The name of a scene that is loaded from the bytes of an archive.
+const ARCHIVE: &str = "scene.zip";
+
+/// The name of a scene that was built.
+const BUILT: &str = "<scene>";
+
 /// A scene, as its author described it. It is compiled anew for each render.
 #[pyclass(frozen, module = "alhazen")]
 pub struct Scene {
     /// What was read, without errors.
     pub imported: Imported,
-    path: PathBuf,
+    /// The file that it was loaded from.
+    pub path: PathBuf,
+    /// The hash of all its files.
+    pub hash: [u8; 32],
+    /// The archive, if it was loaded from one in memory.
+    archive: Option<Py<PyBytes>>,
+}
+
+impl Scene {
+    /// The scene of a builder.
+    pub fn built(py: Python, builder: SceneBuilder) -> PyResult<Self> {
+        let path = PathBuf::from(BUILT);
+        let (imported, hash) = py.detach(|| {
+            let fingerprint = Fingerprint::new(&Files, &path);
+            let imported = builder.finish(&fingerprint);
+            fingerprint.add(&path, imported.sources.text(FileId(0)));
+            (imported, fingerprint.hash())
+        });
+        if imported.has_errors() {
+            return Err(scene_error(&imported.diagnostics, &imported.sources));
+        }
+        Ok(Self { imported, path, hash, archive: None })
+    }
 }
 
 #[pymethods]
@@ -45,6 +74,32 @@ impl Scene {
         self.imported.desc.film.resolution
     }
 
+    /// The bytes of one archive with all its files, as `alhazen scene pack` writes it. load() reads
+    /// it, wherever it is. Equal scenes have equal archives.
+    fn pack<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        if let Some(archive) = &self.archive {
+            return Ok(archive.bind(py).clone());
+        }
+        if is_archive(&self.path) {
+            return Ok(PyBytes::new(py, &std::fs::read(&self.path)?));
+        }
+        let mut bytes = Vec::new();
+        let packed = py.detach(|| match self.path.as_os_str() == BUILT {
+            true => pack_converted(&self.imported.desc, &mut bytes),
+            false => pack(&self.path, &Files, &mut bytes).map_err(ConvertError::Pack),
+        });
+        let error = match packed {
+            Ok(_) => return Ok(PyBytes::new(py, &bytes)),
+            Err(ConvertError::Export(error)) => return Err(PyValueError::new_err(error.to_string())),
+            Err(ConvertError::Pack(error)) => error,
+        };
+        Err(match error {
+            PackError::Scene(imported) => scene_error(&imported.diagnostics, &imported.sources),
+            PackError::File(path, error) => PyOSError::new_err(format!("{}: {error}", path.display())),
+            PackError::Output(error) => PyOSError::new_err(error),
+        })
+    }
+
     /// The name of its integrator.
     #[getter]
     fn integrator(&self) -> &'static str {
@@ -56,17 +111,32 @@ impl Scene {
     }
 }
 
-/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), or a mesh (.ply, .obj) in a neutral
-/// studio.
+/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), a mesh (.ply, .obj) in a neutral
+/// studio, or an archive (.zip) of a scene with its files, which may be given as bytes.
 ///
 /// Raises SceneError, whose text lists every error of the scene with its file, line and column.
 #[pyfunction]
-pub fn load(py: Python, path: PathBuf) -> PyResult<Scene> {
-    let imported = py.detach(|| import(&path, &Files));
+pub fn load(py: Python, source: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    let archive = source.cast::<PyBytes>().ok();
+    let path = match archive {
+        Some(_) => PathBuf::from(ARCHIVE),
+        None => source.extract::<PathBuf>()?,
+    };
+    let bytes = archive.map(|bytes| bytes.as_bytes());
+    let (imported, hash) = py.detach(|| match bytes {
+        Some(bytes) => read(&path, &MemoryAssets::default().with(ARCHIVE, bytes)),
+        None => read(&path, &Files),
+    });
     if imported.has_errors() {
         return Err(scene_error(&imported.diagnostics, &imported.sources));
     }
-    Ok(Scene { imported, path })
+    Ok(Scene { imported, path, hash, archive: archive.map(|bytes| bytes.clone().unbind()) })
+}
+
+fn read(path: &Path, assets: &dyn AssetSource) -> (Imported, [u8; 32]) {
+    let fingerprint = Fingerprint::new(assets, path);
+    let imported = import(path, &fingerprint);
+    (imported, fingerprint.hash())
 }
 
 /// The names of all integrators.
@@ -81,7 +151,7 @@ pub fn scene_error(diagnostics: &[Diagnostic], sources: &SourceMap) -> PyErr {
 }
 
 /// A line for each diagnostic: place, severity, code, message and help.
-fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
+pub fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
     let line = |diagnostic: &Diagnostic| {
         let span = diagnostic.span();
         let place = if span.is_none() {

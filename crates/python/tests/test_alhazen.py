@@ -181,6 +181,54 @@ def test_files_and_comparison(scene, tmp_path):
 
 
 def test_pictures_are_pickled(scene):
-    image = alhazen.render(scene, layers=["depth"])
+    image = alhazen.render(scene, layers=["object-id", "normal", "depth"])
     again = pickle.loads(pickle.dumps(image))
-    assert again.layers == image.layers and (again.pixels == image.pixels).all()
+    assert again.channels == image.channels and (again.pixels == image.pixels).all()
+    assert again.metadata == image.metadata
+
+
+def test_files_have_the_channels_of_a_layer_in_order(scene, tmp_path):
+    image = alhazen.render(scene, layers=["object-id", "albedo"])
+    image.write(tmp_path / "a.exr")
+    read = alhazen.Image.open(tmp_path / "a.exr")
+    assert numpy.allclose(read["albedo"], image["albedo"], rtol=1e-3)
+    assert (read["CryptoObject00"] == image["CryptoObject00"]).all()
+
+
+def test_films_merge_to_the_bits_of_the_whole(scene, tmp_path):
+    job = alhazen.compile(scene, spp=8)
+    assert job.passes == 8
+    parts = [job.render_shard(index, 4) for index in (3, 1, 4)]
+    film = pickle.loads(pickle.dumps(parts[0]))
+    for part in parts[1:]:
+        film.merge(part)
+    assert film.passes == 6 and film.missing == ["shard 2/4 (passes 2-3)"]
+    with pytest.raises(ValueError, match="passes"):
+        film.merge(parts[1])
+    with pytest.raises(ValueError):
+        film.merge(alhazen.compile(scene, spp=8, seed=2).render_shard(2, 4))
+    film.write(tmp_path / "a.film")
+    film = alhazen.Film.open(tmp_path / "a.film")
+    film.merge(bytes(job.render_shard(2, 4)))
+    assert not film.missing
+    assert (film.image().pixels == job.render().pixels).all()
+    for index in (0, 5):
+        with pytest.raises(ValueError):
+            job.render_shard(index, 4)
+    with pytest.raises(ValueError, match="empty"):
+        job.render_shard(1, 9)
+
+
+def test_a_job_renders_once_at_a_time(scene):
+    job = alhazen.compile(scene, spp=1 << 20)
+    with pytest.raises(RuntimeError, match="already"):
+        job.render(progress=lambda _: job.render())
+
+
+def test_archives_are_scenes(scene):
+    archive = scene.pack()
+    packed = alhazen.load(archive)
+    assert packed.pack() == archive == scene.pack()
+    assert (alhazen.render(archive).pixels == alhazen.render(scene).pixels).all()
+    with pytest.raises(alhazen.SceneError, match="archive"):
+        alhazen.load(b"PK")

@@ -29,7 +29,8 @@ pub fn python_environment(folder: &Path, packages: &[&str]) -> Result<PathBuf, S
     let (python, programs) = if cfg!(windows) { ("python", "Scripts") } else { ("python3", "bin") };
     let own = folder.join(programs).join(python);
     let complete = folder.join("complete");
-    if !complete.exists() {
+    let installed = std::fs::read_to_string(&complete).unwrap_or_default();
+    if installed != packages.join("\n") {
         eprintln!("installing {} into {}", packages.join(", "), folder.display());
         succeed(Command::new(python).args(["-m", "venv"]).arg(folder))?;
         succeed(Command::new(&own).args(["-m", "pip", "install", "--quiet"]).args(packages))?;

@@ -9,7 +9,7 @@ use super::command::{python_environment, succeed, target};
 /// What builds wheels.
 const BUILD: [&str; 1] = ["maturin==1.16.*"];
 /// What the tests need.
-const TEST: [&str; 2] = ["numpy", "pytest==9.*"];
+const TEST: [&str; 4] = ["numpy", "pytest==9.*", "nbclient", "ipykernel"];
 /// Where the package is.
 const FOLDER: &str = "crates/python";
 

@@ -7,27 +7,54 @@
     image.write("picture.png", view="agx")
 """
 
+from . import settings
 from ._alhazen import (
     Difference,
+    Film,
     Image,
+    Job,
     Progress,
+    Reference,
     Scene,
+    SceneBuilder,
     SceneError,
+    Typed,
     __version__,
+    blackbody,
     compare,
+    compile,
     integrators,
     load,
     render,
+    rgb,
+    spectrum,
 )
+from .notebook import live
+from .transforms import look_at, rotate, scale, translate
 
 __all__ = [
     "Difference",
+    "Film",
     "Image",
+    "Job",
     "Progress",
+    "Reference",
     "Scene",
+    "SceneBuilder",
     "SceneError",
+    "Typed",
+    "blackbody",
     "compare",
+    "compile",
     "integrators",
+    "live",
     "load",
+    "look_at",
     "render",
+    "rgb",
+    "rotate",
+    "scale",
+    "settings",
+    "spectrum",
+    "translate",
 ]

@@ -3,7 +3,9 @@ from os import PathLike
 from typing import Any, final
 
 import numpy
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .settings import Settings
 
 __version__: str
 
@@ -19,6 +21,7 @@ class Scene:
     def resolution(self) -> tuple[int, int]: ...
     @property
     def integrator(self) -> str: ...
+    def pack(self) -> bytes: ...
 
 @final
 class Progress:
@@ -86,18 +89,150 @@ class Difference:
     @property
     def mean(self) -> tuple[float, float, float]: ...
 
-def load(path: str | PathLike[str]) -> Scene: ...
-def integrators() -> list[str]: ...
-def render(
-    scene: Scene | str | PathLike[str],
+@final
+class Reference:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+
+@final
+class Typed:
+    @property
+    def type_name(self) -> str: ...
+    @property
+    def values(self) -> Any: ...
+
+@final
+class SceneBuilder:
+    def __init__(self) -> None: ...
+    def film(self, kind: str | Settings | None = None, /, **parameters: Any) -> None: ...
+    def sampler(self, kind: str | Settings, /, **parameters: Any) -> None: ...
+    def filter(self, kind: str | Settings, /, **parameters: Any) -> None: ...
+    def integrator(self, kind: str | Settings, /, **parameters: Any) -> None: ...
+    def options(self, **options: Any) -> None: ...
+    def camera(
+        self,
+        kind: str | Settings | None = None,
+        /,
+        *,
+        transform: ArrayLike | None = None,
+        medium: Reference | None = None,
+        **parameters: Any,
+    ) -> None: ...
+    def texture(
+        self, values: str, kind: str, /, *, transform: ArrayLike | None = None, **parameters: Any
+    ) -> Reference: ...
+    def material(self, kind: str, /, **parameters: Any) -> Reference: ...
+    def medium(
+        self, kind: str, /, *, transform: ArrayLike | None = None, **parameters: Any
+    ) -> Reference: ...
+    def light(
+        self,
+        kind: str,
+        /,
+        *,
+        transform: ArrayLike | None = None,
+        medium: Reference | None = None,
+        **parameters: Any,
+    ) -> None: ...
+    def shape(
+        self,
+        kind: str,
+        /,
+        *,
+        transform: ArrayLike | None = None,
+        material: Reference | None = None,
+        emission: Any = None,
+        inside: Reference | None = None,
+        outside: Reference | None = None,
+        object: Reference | None = None,
+        reverse_orientation: bool = False,
+        **parameters: Any,
+    ) -> None: ...
+    def object(self) -> Reference: ...
+    def instance(
+        self,
+        object: Reference,
+        /,
+        *,
+        transform: ArrayLike | None = None,
+        into: Reference | None = None,
+    ) -> None: ...
+    def build(self) -> Scene: ...
+
+def rgb(red: float, green: float, blue: float) -> Typed: ...
+def spectrum(values: Any) -> Typed: ...
+def blackbody(kelvin: float) -> Typed: ...
+
+@final
+class Job:
+    @property
+    def path(self) -> PathLike[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def passes(self) -> int: ...
+    def render(
+        self,
+        *,
+        time: float | None = None,
+        noise: float | None = None,
+        threads: int | None = None,
+        progress: Callable[[Progress], object] | None = None,
+        preview: Callable[[Image], object] | None = None,
+    ) -> Image: ...
+    def render_shard(
+        self,
+        index: int,
+        count: int,
+        *,
+        threads: int | None = None,
+        progress: Callable[[Progress], object] | None = None,
+        preview: Callable[[Image], object] | None = None,
+    ) -> Film: ...
+    def blank_film(self) -> Film: ...
+
+@final
+class Film:
+    @staticmethod
+    def open(path: str | PathLike[str]) -> Film: ...
+    @staticmethod
+    def from_bytes(data: bytes) -> Film: ...
+    @property
+    def passes(self) -> int: ...
+    @property
+    def shards(self) -> list[tuple[int, int]]: ...
+    @property
+    def missing(self) -> list[str]: ...
+    def merge(self, other: Film | bytes) -> None: ...
+    def image(self) -> Image: ...
+    def write(self, path: str | PathLike[str]) -> None: ...
+    def __bytes__(self) -> bytes: ...
+
+def load(source: str | PathLike[str] | bytes) -> Scene: ...
+def compile(
+    scene: Scene | str | PathLike[str] | bytes,
     *,
     spp: int | None = None,
     resolution: tuple[int, int] | None = None,
-    integrator: str | None = None,
+    integrator: str | Settings | None = None,
     seed: int | None = None,
     crop: tuple[float, float, float, float] | None = None,
     layers: Sequence[str] | None = None,
-    settings: Mapping[str, Any] | None = None,
+    settings: Mapping[str, Any] | Settings | Sequence[Settings] | None = None,
+) -> Job: ...
+def integrators() -> list[str]: ...
+def render(
+    scene: Scene | str | PathLike[str] | bytes,
+    *,
+    spp: int | None = None,
+    resolution: tuple[int, int] | None = None,
+    integrator: str | Settings | None = None,
+    seed: int | None = None,
+    crop: tuple[float, float, float, float] | None = None,
+    layers: Sequence[str] | None = None,
+    settings: Mapping[str, Any] | Settings | Sequence[Settings] | None = None,
     time: float | None = None,
     noise: float | None = None,
     threads: int | None = None,

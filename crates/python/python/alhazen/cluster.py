@@ -1,0 +1,280 @@
+"""Renders on many machines, as tasks of Ray (https://www.ray.io; `pip install alhazen[cluster]`).
+
+    import alhazen.cluster
+    image = alhazen.cluster.render("scene.pbrt", spp=1024, address="auto")
+
+The passes of a render are split into shards. Each is a task of Ray, and its result a film, whose
+sums are exact: the picture has the same bits as that of one machine, whatever the number of shards,
+their order, and the workers that were lost meanwhile. The scene travels as one archive, once to
+each machine; a worker compiles it once and keeps it for further shards.
+
+From a shell: `python -m alhazen.cluster scene.pbrt -o picture.exr`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import sys
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import ray
+import ray.exceptions
+
+from . import Film, Image, Job, Scene, SceneError, compile, load
+
+__all__ = ["Progress", "render"]
+
+#: How often a task is run again whose worker or machine was lost.
+RETRIES = 32
+
+#: Seconds between two saves of the film, and between two previews at most.
+INTERVAL = 60.0
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a render is."""
+
+    #: Shards done, and all of them.
+    shards: int
+    total: int
+    #: Passes in the picture, each of one sample per pixel.
+    passes: int
+    #: Seconds since the start.
+    seconds: float
+
+
+def render(
+    scene: Scene | str | os.PathLike[str] | bytes,
+    *,
+    address: str | None = None,
+    shards: int | None = None,
+    threads: int | None = None,
+    time: float | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    progress: Callable[[Progress], object] | None = None,
+    preview: Callable[[Image], object] | None = None,
+    **arguments: Any,
+) -> Image:
+    """Renders a scene on the machines of a Ray cluster.
+
+    scene: a scene, the name of its file, or the bytes of an archive. address: of the cluster, such
+    as "auto" or "ray://host:10001"; where Ray is initialised already, that cluster is used; by
+    default one is started on this machine. shards: the number of parts that the passes are split
+    into, by default 16, or 4 for each worker if that is more. threads: of each worker, by default
+    the cores of the smallest machine. time: seconds after which no more shards are waited for.
+    checkpoint: a film file from which the render is continued if it exists, and that is saved every
+    minute. progress: called with a Progress after shards. preview: called with an Image now and
+    then. All other arguments are those of alhazen.compile().
+
+    Ctrl-C ends it with KeyboardInterrupt, after the film was saved; so does an exception of a
+    callback.
+    """
+    archive = scene if isinstance(scene, bytes) else _load(scene).pack()
+    if not ray.is_initialized():
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+        ray.init(address=address, log_to_driver=False, include_dashboard=False if address is None else None)
+    cores = [int(node["Resources"].get("CPU", 0)) for node in ray.nodes() if node["Alive"]]
+    threads = threads or min((count for count in cores if count), default=1)
+    workers = sum(count // threads for count in cores)
+
+    key = hashlib.sha256(archive).hexdigest() + repr(sorted(arguments.items()))
+    task = _Task(ray.put(archive), key, arguments, threads)
+    passes, blank = _result(task.start(_plan))
+    saved = None if checkpoint is None or not Path(checkpoint).exists() else Film.open(checkpoint)
+    if saved is not None:
+        # It is refused if it is of another render.
+        Film.from_bytes(blank).merge(saved)
+    count, done = _shards(saved, passes, shards or max(16, 4 * workers))
+
+    begin = clock.monotonic()
+    run = _Run(saved, checkpoint, count, len(done), begin, progress, preview)
+    pending = [task.start(_render_shard, index, count) for index in range(1, count + 1) if index not in done]
+    try:
+        while pending:
+            left = None if time is None else time - (clock.monotonic() - begin)
+            if left is not None and left <= 0 and run.done:
+                break
+            wait = 0.2 if left is None else min(0.2, max(left, 0.0))
+            ready, pending = ray.wait(pending, num_returns=1, timeout=wait)
+            for each in ready:
+                run.add(_result(each))
+    finally:
+        for each in pending:
+            ray.cancel(each, force=True)
+        run.save()
+    return run.film.image()
+
+
+def _load(scene: Scene | str | os.PathLike[str]) -> Scene:
+    return scene if isinstance(scene, Scene) else load(scene)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What all tasks of a render have in common."""
+
+    archive: ray.ObjectRef
+    key: str
+    arguments: dict[str, Any]
+    threads: int
+
+    def start(self, function: Any, *arguments: int) -> ray.ObjectRef:
+        options = {"num_cpus": self.threads, "max_retries": RETRIES}
+        return function.options(**options).remote(
+            self.archive, self.key, self.arguments, self.threads, *arguments
+        )
+
+
+class _Run:
+    """The film of a render, and what is told of it."""
+
+    def __init__(self, film, checkpoint, total, done, begin, progress, preview) -> None:
+        self.film, self.checkpoint, self.total, self.done = film, checkpoint, total, done
+        self.begin, self.progress, self.preview = begin, progress, preview
+        self.saved_at, self.is_saved = begin, True
+        self.next_preview = 0.5
+
+    def add(self, shard: bytes) -> None:
+        if self.film is None:
+            self.film = Film.from_bytes(shard)
+        else:
+            self.film.merge(shard)
+        self.done += 1
+        self.is_saved = False
+        now = clock.monotonic()
+        if now - self.saved_at >= INTERVAL:
+            self.save()
+        seconds = now - self.begin
+        if self.progress is not None:
+            self.progress(Progress(self.done, self.total, self.film.passes, seconds))
+        if self.preview is not None and (seconds >= self.next_preview or self.done == self.total):
+            self.preview(self.film.image())
+            self.next_preview = seconds + min(seconds, INTERVAL)
+
+    def save(self) -> None:
+        if self.checkpoint is not None and not self.is_saved:
+            self.film.write(self.checkpoint)
+            self.saved_at, self.is_saved = clock.monotonic(), True
+
+
+def _shards(saved: Film | None, passes: int, count: int) -> tuple[int, set[int]]:
+    """The number of shards, and the indices of those that a saved film has."""
+    if saved is None:
+        return min(count, passes), set()
+    missing, (_, count) = saved.missing, saved.shards[0]
+    if any(name.startswith("passes") for name in missing):
+        raise ValueError("the checkpoint has shards that are not complete; `alhazen resume` completes them")
+    # Those that it lacks are named "shard 3/16 (passes 8–11)".
+    lacks = {int(name.split()[1].split("/")[0]) for name in missing}
+    return count, set(range(1, count + 1)) - lacks
+
+
+def _result(reference: ray.ObjectRef) -> Any:
+    """The result of a task; its exception as the task raised it."""
+    try:
+        return ray.get(reference)
+    except ray.exceptions.RayTaskError as error:
+        raise (error.cause if isinstance(error.cause, Exception) else error) from None
+
+
+#: The compiled scene that a worker keeps, by its key.
+_compiled: dict[str, Job] = {}
+
+
+def _job(archive: bytes, key: str, arguments: dict[str, Any]) -> Job:
+    if key not in _compiled:
+        _compiled.clear()
+        _compiled[key] = compile(load(archive), **arguments)
+    return _compiled[key]
+
+
+@ray.remote
+def _plan(archive: bytes, key: str, arguments: dict[str, Any], threads: int) -> tuple[int, bytes]:
+    job = _job(archive, key, arguments)
+    return job.passes, bytes(job.blank_film())
+
+
+@ray.remote
+def _render_shard(
+    archive: bytes, key: str, arguments: dict[str, Any], threads: int, index: int, count: int
+) -> bytes:
+    return bytes(_job(archive, key, arguments).render_shard(index, count, threads=threads))
+
+
+def _resolution(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    return int(width), int(height)
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m alhazen.cluster", description="Render a scene on the machines of a Ray cluster."
+    )
+    parser.add_argument("scene", help="the scene file, or an archive of a scene")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the picture: .exr, .png, …")
+    parser.add_argument("--address", help='the cluster, such as "auto" or "ray://host:10001"')
+    parser.add_argument("--shards", type=int, metavar="N", help="parts that the passes are split into")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads of each worker")
+    parser.add_argument("--time", type=float, metavar="SECONDS", help="end after this time")
+    parser.add_argument("--checkpoint", metavar="FILE.film", help="save the film here, and continue from it")
+    parser.add_argument("--spp", type=int, metavar="N", help="samples per pixel")
+    parser.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the picture")
+    parser.add_argument("--integrator", metavar="NAME", help="the algorithm")
+    parser.add_argument("--seed", type=int, metavar="N", help="seed of all random numbers")
+    parser.add_argument("--aov", metavar="LAYER,LAYER,…", help="layers beside the colours")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="another setting")
+    parser.add_argument("--view", default="standard", help="how pictures for displays show the light")
+    return parser.parse_args()
+
+
+def _main() -> int:
+    options = _arguments()
+    arguments = {
+        name: getattr(options, name)
+        for name in ("spp", "resolution", "integrator", "seed")
+        if getattr(options, name) is not None
+    }
+    if options.aov:
+        arguments["layers"] = options.aov.split(",")
+    if options.set:
+        arguments["settings"] = dict(each.split("=", 1) for each in options.set)
+
+    def show(progress: Progress) -> None:
+        print(f"{progress.shards}/{progress.total} shards, {progress.passes} passes, {progress.seconds:.1f} s")
+
+    def write(image: Image) -> None:
+        image.write(options.output, view=options.view)
+
+    try:
+        image = render(
+            options.scene,
+            address=options.address,
+            shards=options.shards,
+            threads=options.threads,
+            time=options.time,
+            checkpoint=options.checkpoint,
+            progress=show,
+            preview=write,
+            **arguments,
+        )
+        write(image)
+    except (SceneError, ValueError, OSError, ConnectionError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    # Tasks of an imported module keep compiled scenes; those of `__main__` would not.
+    from alhazen.cluster import _main as main
+
+    sys.exit(main())

@@ -1,0 +1,122 @@
+//! Films: renders whose passes can still be merged.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use alhazen::SavedRender;
+use alhazen::film::{FilmFileError, ReadLimits};
+use alhazen::image::replace_file_with;
+use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+
+use crate::picture::{Picture, image_error};
+
+/// The film of a render or of some of its shards, with exact sums: merged in any order, shards give
+/// the bits of the whole. It is what the command line writes with --checkpoint.
+#[pyclass(frozen, module = "alhazen")]
+pub struct Film(Mutex<SavedRender>);
+
+impl Film {
+    /// A film of a saved render.
+    pub fn new(saved: SavedRender) -> Self {
+        Self(Mutex::new(saved))
+    }
+
+    fn saved(&self) -> MutexGuard<'_, SavedRender> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Film {
+    /// Reads a film file.
+    #[staticmethod]
+    fn open(py: Python, path: PathBuf) -> PyResult<Self> {
+        let saved = py.detach(|| {
+            let file = File::open(&path)?;
+            let limits = ReadLimits::for_file(file.metadata()?.len());
+            SavedRender::read(BufReader::new(file), &limits)
+        });
+        Ok(Self::new(saved.map_err(film_error)?))
+    }
+
+    /// A film of the bytes of a film file.
+    #[staticmethod]
+    fn from_bytes(py: Python, data: &[u8]) -> PyResult<Self> {
+        let limits = ReadLimits::for_file(data.len() as u64);
+        let saved = py.detach(|| SavedRender::read(data, &limits));
+        Ok(Self::new(saved.map_err(film_error)?))
+    }
+
+    /// The bytes of its film file.
+    fn __bytes__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.saved().write(Vec::new()));
+        Ok(PyBytes::new(py, &bytes.map_err(film_error)?))
+    }
+
+    /// Writes its film file, which replaces one that is there only when it is whole.
+    fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
+        let written = py
+            .detach(|| replace_file_with(&path, |file| self.saved().write(BufWriter::new(file)).map(|_| ())));
+        written.map_err(film_error)
+    }
+
+    /// Adds another film of the same render, as a Film or as the bytes of a film file. Raises
+    /// ValueError, and leaves this one as it was, if it is of another render or has passes that
+    /// this one has.
+    fn merge(&self, py: Python, other: &Bound<'_, PyAny>) -> PyResult<()> {
+        let bytes = match other.cast::<Self>() {
+            Ok(film) => film.get().__bytes__(py)?,
+            Err(_) => other.extract()?,
+        };
+        let data = bytes.as_bytes();
+        let limits = ReadLimits::for_file(data.len() as u64);
+        py.detach(|| self.saved().merge(data, &limits)).map_err(film_error)
+    }
+
+    /// The number of passes that it has.
+    #[getter]
+    fn passes(&self) -> u32 {
+        self.saved().done().count()
+    }
+
+    /// The shards that it has, as (index, count).
+    #[getter]
+    fn shards(&self) -> Vec<(u32, u32)> {
+        self.saved().shards().iter().map(|shard| (shard.index, shard.count)).collect()
+    }
+
+    /// The shards and passes that it lacks, by name; it is whole if there are none.
+    #[getter]
+    fn missing(&self) -> Vec<String> {
+        self.saved().missing()
+    }
+
+    /// The picture of its passes.
+    fn image(&self, py: Python) -> PyResult<Picture> {
+        let collected = py.detach(|| Picture::collect(&self.saved().development()));
+        Picture::new(py, collected.map_err(image_error)?)
+    }
+
+    /// For pickle.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let make = slf.get_type().getattr("from_bytes")?;
+        PyTuple::new(py, [make, PyTuple::new(py, [slf.get().__bytes__(py)?])?.into_any()])
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<alhazen.Film of {} passes>", self.passes())
+    }
+}
+
+/// The exception for an error of film files.
+pub fn film_error(error: FilmFileError) -> PyErr {
+    match error {
+        FilmFileError::Io(error) => PyOSError::new_err(error),
+        FilmFileError::Limits(text) => PyMemoryError::new_err(text),
+        error => PyValueError::new_err(error.to_string()),
+    }
+}

@@ -1,0 +1,281 @@
+//! Compiled scenes.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, TryLockError};
+use std::time::Duration;
+
+use alhazen::film::ReadLimits;
+use alhazen::integrators::Limits;
+use alhazen::{Overrides, RenderOrder, SavedRender, Shard};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
+
+use crate::film::{Film, film_error};
+use crate::picture::{Picture, image_error};
+use crate::render::{Callbacks, drive};
+use crate::scene::{Scene, lines, load, scene_error};
+use crate::value::Chosen;
+
+/// A scene compiled for rendering with certain settings. What is rendered several times, whole or
+/// in shards, is compiled once.
+#[pyclass(frozen, module = "alhazen")]
+pub struct Job {
+    job: Mutex<alhazen::Job>,
+    order: RenderOrder,
+    #[pyo3(get)]
+    /// What is rendered differently than described.
+    warnings: Vec<String>,
+}
+
+/// Compiles a scene, or the scene of a file.
+///
+/// spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
+/// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
+/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) with
+/// y down. layers: names of layers beside the colours, such as "depth". settings: values by name,
+/// as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+#[pyfunction]
+#[pyo3(signature = (
+    scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None
+))]
+#[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+pub fn compile(
+    py: Python,
+    scene: &Bound<'_, PyAny>,
+    spp: Option<u32>,
+    resolution: Option<[i32; 2]>,
+    integrator: Option<&Bound<'_, PyAny>>,
+    seed: Option<i32>,
+    crop: Option<[f32; 4]>,
+    layers: Option<Vec<String>>,
+    settings: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Job> {
+    let loaded;
+    let scene = match scene.cast::<Scene>() {
+        Ok(scene) => scene.get(),
+        Err(_) => {
+            loaded = load(py, scene)?;
+            &loaded
+        }
+    };
+    let mut overrides = Overrides {
+        samples_per_pixel: spp,
+        resolution,
+        crop,
+        seed,
+        layers: layers.unwrap_or_default(),
+        ..Overrides::default()
+    };
+    if let Some(integrator) = integrator {
+        match Chosen::of(integrator)? {
+            Some(chosen) => choose(&mut overrides, chosen)?,
+            None => overrides.integrator = Some(integrator.extract()?),
+        }
+    }
+    if let Some(settings) = settings {
+        change(&mut overrides, settings)?;
+    }
+    let mut desc = scene.imported.desc.clone();
+    overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let sources = &scene.imported.sources;
+    let compiled =
+        py.detach(|| alhazen::Job::compile(desc)).map_err(|errors| match overrides.blamed(&errors) {
+            Some(error) => PyValueError::new_err(error.to_string()),
+            None => scene_error(&errors, sources),
+        })?;
+    let order = RenderOrder {
+        scene: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()),
+        scene_hash: scene.hash,
+        overrides,
+        passes: compiled.job.planned(),
+        shard: Shard::WHOLE,
+        limits: Limits::default(),
+    };
+    Ok(Job { job: Mutex::new(compiled.job), order, warnings: lines(&compiled.warnings, sources) })
+}
+
+/// Takes settings over: a dictionary, settings of a part, or a sequence of these.
+fn change(overrides: &mut Overrides, settings: &Bound<'_, PyAny>) -> PyResult<()> {
+    if let Ok(values) = settings.cast::<PyDict>() {
+        overrides.settings.extend(texts(values, "")?);
+        return Ok(());
+    }
+    match Chosen::of(settings)? {
+        Some(chosen) => choose(overrides, chosen),
+        None => settings.try_iter()?.try_for_each(|part| change(overrides, &part?)),
+    }
+}
+
+/// Takes the settings of a part over.
+fn choose(overrides: &mut Overrides, chosen: Chosen) -> PyResult<()> {
+    let Chosen { part, name, values } = chosen;
+    match (part.as_str(), name) {
+        ("integrator", Some(name)) => overrides.integrator = Some(name),
+        ("accelerator", Some(name)) => overrides.accelerator = Some(name),
+        (_, Some(name)) => overrides.settings.push((part.clone(), name)),
+        (_, None) => {}
+    }
+    overrides.settings.extend(texts(&values, &format!("{part}."))?);
+    Ok(())
+}
+
+/// Values of settings as texts, under names that begin with a prefix.
+fn texts(settings: &Bound<'_, PyDict>, prefix: &str) -> PyResult<Vec<(String, String)>> {
+    let text = |value: &Bound<'_, PyAny>| -> PyResult<String> {
+        let text = value.str()?.to_string();
+        Ok(if value.is_instance_of::<PyBool>() { text.to_lowercase() } else { text })
+    };
+    let setting = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+        let value = match is_list {
+            true => value.try_iter()?.map(|item| text(&item?)).collect::<PyResult<Vec<_>>>()?.join(","),
+            false => text(&value)?,
+        };
+        Ok((format!("{prefix}{}", key.extract::<String>()?), value))
+    };
+    settings.iter().map(setting).collect()
+}
+
+#[pymethods]
+impl Job {
+    /// The scene file.
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.order.scene.clone()
+    }
+
+    /// The number of passes that are planned, each of one sample per pixel.
+    #[getter]
+    fn passes(&self) -> u32 {
+        self.order.passes
+    }
+
+    /// Renders a picture.
+    ///
+    /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
+    /// threads: their number, by default one for each core. progress: called with a Progress after
+    /// passes. preview: called with an Image now and then.
+    ///
+    /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
+    #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
+    pub fn render(
+        &self,
+        py: Python,
+        time: Option<f64>,
+        noise: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+        preview: Option<Py<PyAny>>,
+    ) -> PyResult<Picture> {
+        let time = time.map(Duration::try_from_secs_f64).transpose();
+        let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
+        let callbacks = Callbacks { progress, preview };
+        let picture = self.with(py, |job| {
+            let passes = 0..self.order.passes;
+            drive(job, passes, &limits, threads, &callbacks, |job| {
+                Picture::collect(&job.header().development(job.session.state()))
+            })
+        })?;
+        Picture::new(py, picture)
+    }
+
+    /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
+    /// one whose picture has the same bits as that of render().
+    ///
+    /// threads, progress, preview: as those of render().
+    #[pyo3(signature = (index, count, *, threads=None, progress=None, preview=None))]
+    fn render_shard(
+        &self,
+        py: Python,
+        index: u32,
+        count: u32,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+        preview: Option<Py<PyAny>>,
+    ) -> PyResult<Film> {
+        if !(1..=count).contains(&index) {
+            return Err(PyValueError::new_err(format!("there is no shard {index} of {count}")));
+        }
+        let order = RenderOrder { shard: Shard { index, count }, ..self.order.clone() };
+        let passes = order.shard.passes(order.passes);
+        if passes.is_empty() {
+            let problem =
+                format!("shard {index} of {count} is empty: there are only {} passes", order.passes);
+            return Err(PyValueError::new_err(problem));
+        }
+        let (limits, callbacks) = (Limits::default(), Callbacks { progress, preview });
+        let bytes = self.with(py, |job| {
+            drive(job, passes, &limits, threads, &callbacks, |job| {
+                Ok(order.write(&job.session, job.header(), Vec::new()))
+            })
+        })?;
+        film_of(py, &bytes.map_err(film_error)?)
+    }
+
+    /// A film of this job without any pass. Only films of the same job merge with it.
+    fn blank_film(&self, py: Python) -> PyResult<Film> {
+        let bytes = self.with(py, |job| {
+            job.restart().map_err(image_error)?;
+            self.order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
+        })?;
+        film_of(py, &bytes)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<alhazen.Job {}, {} passes>", self.order.scene.display(), self.order.passes)
+    }
+}
+
+impl Job {
+    /// Uses the job without Python's lock. It renders once at a time.
+    fn with<T: Send>(
+        &self,
+        py: Python,
+        use_it: impl FnOnce(&mut alhazen::Job) -> PyResult<T> + Send,
+    ) -> PyResult<T> {
+        py.detach(|| match self.job.try_lock() {
+            Ok(mut job) => use_it(&mut job),
+            Err(TryLockError::WouldBlock) => {
+                Err(PyRuntimeError::new_err("the job is being rendered already"))
+            }
+            Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err("the job has failed before")),
+        })
+    }
+}
+
+fn film_of(py: Python, bytes: &[u8]) -> PyResult<Film> {
+    let limits = ReadLimits::for_file(bytes.len() as u64);
+    let saved = py.detach(|| SavedRender::read(bytes, &limits));
+    Ok(Film::new(saved.map_err(film_error)?))
+}
+
+/// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call,
+/// with the arguments of both.
+///
+/// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
+#[pyfunction]
+#[pyo3(signature = (
+    scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None,
+    time=None, noise=None, threads=None, progress=None, preview=None
+))]
+#[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+pub fn render(
+    py: Python,
+    scene: &Bound<'_, PyAny>,
+    spp: Option<u32>,
+    resolution: Option<[i32; 2]>,
+    integrator: Option<&Bound<'_, PyAny>>,
+    seed: Option<i32>,
+    crop: Option<[f32; 4]>,
+    layers: Option<Vec<String>>,
+    settings: Option<&Bound<'_, PyAny>>,
+    time: Option<f64>,
+    noise: Option<f64>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+    preview: Option<Py<PyAny>>,
+) -> PyResult<Picture> {
+    let job = compile(py, scene, spp, resolution, integrator, seed, crop, layers, settings)?;
+    job.render(py, time, noise, threads, progress, preview)
+}

@@ -1,0 +1,206 @@
+//! Values of Python as parameters of a scene.
+
+use std::path::PathBuf;
+
+use alhazen::import::{Argument, ArgumentValues, Motion};
+use alhazen::math::DMat4;
+use numpy::{
+    PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+
+/// A thing of a SceneBuilder that others refer to: a texture, material, medium or object.
+#[pyclass(frozen, module = "alhazen")]
+#[derive(Clone)]
+pub struct Reference {
+    /// What it is, such as "material".
+    #[pyo3(get)]
+    pub kind: &'static str,
+    /// Its name in the scene.
+    #[pyo3(get)]
+    pub name: String,
+}
+
+#[pymethods]
+impl Reference {
+    fn __repr__(&self) -> String {
+        format!("<alhazen.Reference {} {:?}>", self.kind, self.name)
+    }
+}
+
+/// A value of a stated type of the format, such as rgb(0.2, 0.4, 0.1).
+#[pyclass(frozen, get_all, module = "alhazen")]
+pub struct Typed {
+    /// The name of the type.
+    type_name: &'static str,
+    /// The values.
+    values: Py<PyAny>,
+}
+
+#[pymethods]
+impl Typed {
+    fn __repr__(&self) -> String {
+        format!("<alhazen.Typed {}>", self.type_name)
+    }
+}
+
+/// A colour, as linear red, green and blue.
+#[pyfunction]
+pub fn rgb(py: Python, red: f32, green: f32, blue: f32) -> PyResult<Typed> {
+    let values = PyTuple::new(py, [red, green, blue])?;
+    Ok(Typed { type_name: "rgb", values: values.into_any().unbind() })
+}
+
+/// The spectrum of a black body of a temperature in kelvin.
+#[pyfunction]
+pub fn blackbody(py: Python, kelvin: f32) -> Typed {
+    Typed { type_name: "blackbody", values: PyFloat::new(py, kelvin.into()).into_any().unbind() }
+}
+
+/// A spectrum: the name of a measured one, such as "metal-Au-eta", or of a file; or an array of
+/// wavelengths in nanometres and values in turn.
+#[pyfunction]
+pub fn spectrum(values: Py<PyAny>) -> Typed {
+    Typed { type_name: "spectrum", values }
+}
+
+/// All parameters of a call.
+pub fn arguments(parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<Argument>> {
+    let Some(parameters) = parameters else { return Ok(Vec::new()) };
+    let argument = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let name: String = name.extract()?;
+        let (type_name, values) = read(&value)
+            .map_err(|error| PyTypeError::new_err(format!("`{name}`: {}", error.value(value.py()))))?;
+        Ok(Argument { name, type_name: type_name.map(str::to_owned), values })
+    };
+    parameters.iter().filter(|(_, value)| !value.is_none()).map(argument).collect()
+}
+
+/// Settings of a part of a scene: an object of the class `alhazen.settings.Settings`.
+pub struct Chosen<'py> {
+    /// The part, such as `integrator`.
+    pub part: String,
+    /// The chosen member of a set.
+    pub name: Option<String>,
+    /// Values by name.
+    pub values: Bound<'py, PyDict>,
+}
+
+impl<'py> Chosen<'py> {
+    /// `None` if the value is something else.
+    pub fn of(value: &Bound<'py, PyAny>) -> PyResult<Option<Self>> {
+        let is_settings = value.get_type().name()? == "Settings" && value.hasattr("part")?;
+        let get = |name: &str| value.getattr(name);
+        is_settings
+            .then(|| {
+                Ok(Self {
+                    part: get("part")?.extract()?,
+                    name: get("name")?.extract()?,
+                    values: get("values")?.cast_into()?,
+                })
+            })
+            .transpose()
+    }
+}
+
+/// A value, with its type where that is stated.
+pub fn read(value: &Bound<'_, PyAny>) -> PyResult<(Option<&'static str>, ArgumentValues)> {
+    if let Ok(typed) = value.cast::<Typed>() {
+        let typed = typed.get();
+        return Ok((Some(typed.type_name), read(typed.values.bind(value.py()))?.1));
+    }
+    if let Ok(reference) = value.cast::<Reference>() {
+        let reference = reference.get();
+        let type_name = (reference.kind == "texture").then_some("texture");
+        return Ok((type_name, ArgumentValues::Strings(vec![reference.name.clone()])));
+    }
+    let plain = if let Ok(flag) = value.cast::<PyBool>() {
+        ArgumentValues::Bools(vec![flag.is_true()])
+    } else if value.is_instance_of::<PyInt>() {
+        ArgumentValues::Integers(vec![value.extract()?])
+    } else if value.is_instance_of::<PyFloat>() {
+        ArgumentValues::Floats(vec![value.extract()?])
+    } else if value.is_instance_of::<PyString>() || value.hasattr("__fspath__")? {
+        ArgumentValues::Strings(vec![text(value)?])
+    } else if let Some(texts) = texts(value) {
+        ArgumentValues::Strings(texts)
+    } else {
+        array(value)?
+    };
+    Ok((None, plain))
+}
+
+fn text(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(reference) = value.cast::<Reference>() {
+        return Ok(reference.get().name.clone());
+    }
+    let path: PathBuf = value.extract()?;
+    path.into_os_string().into_string().map_err(|_| PyValueError::new_err("a path that is no text"))
+}
+
+/// A list of texts or of references.
+fn texts(value: &Bound<'_, PyAny>) -> Option<Vec<String>> {
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    let items: Vec<_> = is_list.then(|| value.try_iter().ok()?.collect::<PyResult<_>>().ok())??;
+    let texts: Option<Vec<String>> = items.iter().map(|item| text(item).ok()).collect();
+    texts.filter(|texts| !texts.is_empty())
+}
+
+/// The values of an array, or of what numpy makes one of, in the order of rows.
+fn array(value: &Bound<'_, PyAny>) -> PyResult<ArgumentValues> {
+    let numpy = value.py().import("numpy")?;
+    let array = numpy.call_method1("asarray", (value,))?;
+    let kind = array.cast::<PyUntypedArray>()?.dtype().kind();
+    let of = |name: &str| numpy.call_method1("ascontiguousarray", (&array, name));
+    Ok(match kind {
+        b'f' => ArgumentValues::Floats(copied(&of("float32")?)?),
+        b'b' => {
+            ArgumentValues::Bools(copied::<u8>(&of("uint8")?)?.into_iter().map(|flag| flag != 0).collect())
+        }
+        b'i' | b'u' => {
+            let is_wide = array.getattr("size")?.extract::<usize>()? > 0
+                && (array.call_method0("max")?.gt(i32::MAX)? || array.call_method0("min")?.lt(i32::MIN)?);
+            if is_wide {
+                return Err(PyValueError::new_err("integers have 32 bits"));
+            }
+            ArgumentValues::Integers(copied(&of("int32")?)?)
+        }
+        _ => {
+            let problem =
+                format!("expected numbers, texts or truth values, not {}", value.get_type().name()?);
+            return Err(PyTypeError::new_err(problem));
+        }
+    })
+}
+
+fn copied<T: numpy::Element + Copy>(array: &Bound<'_, PyAny>) -> PyResult<Vec<T>> {
+    let array: PyReadonlyArrayDyn<T> = array.cast::<PyArrayDyn<T>>()?.readonly();
+    let values = array.as_slice().map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(values.to_vec())
+}
+
+/// A 4 × 4 matrix that takes column vectors to the world, or two for the start and the end of the
+/// shutter time.
+pub fn motion(transform: Option<&Bound<'_, PyAny>>) -> PyResult<Motion> {
+    let Some(transform) = transform else { return Ok(Motion::default()) };
+    let numpy = transform.py().import("numpy")?;
+    let array = numpy.call_method1("ascontiguousarray", (transform, "float64"))?;
+    let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
+    let values: Vec<f64> = copied(&array)?;
+    let matrix = |values: &[f64]| {
+        let mut all = [0.0; 16];
+        all.copy_from_slice(values);
+        DMat4::from_cols_array(&all).transpose()
+    };
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(PyValueError::new_err("a transform has numbers that are not finite"));
+    }
+    match shape[..] {
+        [4, 4] => Ok(Motion([matrix(&values); 2])),
+        [2, 4, 4] => Ok(Motion([matrix(&values[..16]), matrix(&values[16..])])),
+        _ => Err(PyValueError::new_err(format!("a transform is 4 × 4, or 2 × 4 × 4, not {shape:?}"))),
+    }
+}

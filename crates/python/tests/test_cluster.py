@@ -1,0 +1,146 @@
+"""Tests of renders on a cluster: one of several nodes on this machine, some of whose workers die.
+
+They need Ray, and are skipped without it.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import alhazen
+import numpy
+import pytest
+
+ray = pytest.importorskip("ray", reason="the tests of clusters need `pip install ray`")
+os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
+
+import alhazen.cluster  # noqa: E402
+from ray.cluster_utils import Cluster  # noqa: E402
+
+SCENE = """
+Film "rgb" "integer xresolution" 48 "integer yresolution" 32
+Sampler "independent" "integer pixelsamples" 64
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "infinite" "rgb L" [1 0.5 0.25]
+Include "ball.pbrt"
+"""
+BALL = """
+Translate 0 0 5
+Material "coateddiffuse"
+Shape "sphere"
+"""
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    nodes = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+    nodes.add_node(num_cpus=2)
+    nodes.add_node(num_cpus=2)
+    ray.init(address=nodes.address, log_to_driver=False)
+    yield nodes
+    ray.shutdown()
+    nodes.shutdown()
+
+
+@pytest.fixture
+def scene(tmp_path):
+    (tmp_path / "ball.pbrt").write_text(BALL)
+    path = tmp_path / "scene.pbrt"
+    path.write_text(SCENE)
+    return path
+
+
+def workers() -> list[int]:
+    """The processes that run tasks."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and b"_render_shard" in (entry / "cmdline").read_bytes():
+                found.append(int(entry.name))
+        except OSError:
+            pass
+    return found
+
+
+def test_shards_have_the_bits_of_the_whole(cluster, scene):
+    told = []
+    image = alhazen.cluster.render(scene, shards=7, progress=told.append, layers=["depth"])
+    whole = alhazen.render(scene, layers=["depth"])
+    assert (image.pixels == whole.pixels).all()
+    assert [each.shards for each in told] == list(range(1, 8)) and told[-1].passes == 64
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="finds workers in /proc")
+def test_workers_that_are_killed_are_replaced(cluster, scene):
+    whole = numpy.asarray(alhazen.render(scene, spp=512))
+    done, killed = threading.Event(), []
+
+    def kill():
+        chance = random.Random(1)
+        while not done.is_set() and len(killed) < 4:
+            time.sleep(0.2)
+            if running := workers():
+                killed.append(chance.choice(running))
+                os.kill(killed[-1], signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    try:
+        image = alhazen.cluster.render(scene, spp=512)
+    finally:
+        done.set()
+        killer.join()
+    assert killed
+    assert (numpy.asarray(image) == whole).all()
+
+
+def test_a_render_is_continued_from_its_checkpoint(cluster, scene, tmp_path):
+    path = tmp_path / "a.film"
+
+    def stop(progress):
+        if progress.shards == 3:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        alhazen.cluster.render(scene, shards=16, checkpoint=path, progress=stop)
+    film = alhazen.Film.open(path)
+    assert 0 < film.passes < 64 and len(film.missing) == 13
+    told = []
+    image = alhazen.cluster.render(scene, checkpoint=path, progress=told.append, shards=5)
+    assert [each.shards for each in told] == list(range(4, 17))
+    assert (image.pixels == alhazen.render(scene).pixels).all()
+    # Now there is nothing left to do.
+    assert (alhazen.cluster.render(scene, checkpoint=path).pixels == image.pixels).all()
+    with pytest.raises(ValueError):
+        alhazen.cluster.render(scene, checkpoint=path, spp=65)
+
+
+def test_errors_are_those_of_one_machine(cluster, scene):
+    with pytest.raises(ValueError, match="foo"):
+        alhazen.cluster.render(scene, integrator="foo")
+    scene.write_text("WorldBegin Shape \"spere\"")
+    with pytest.raises(alhazen.SceneError, match="scene.pbrt:1"):
+        alhazen.cluster.render(scene)
+
+
+def test_time_ends_a_render(cluster, scene):
+    image = alhazen.cluster.render(scene, spp=1 << 20, shards=1 << 14, time=0.5)
+    assert 0 < image.metadata["samplesPerPixel"] < 1 << 20
+
+
+def test_the_command_line(scene, tmp_path):
+    output = tmp_path / "a.exr"
+    command = [sys.executable, "-m", "alhazen.cluster", scene, "-o", output, "--threads", "1", "--spp", "4"]
+    result = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert "4/4 shards, 4 passes" in result.stdout
+    assert (alhazen.Image.open(output).pixels == alhazen.render(scene, spp=4).pixels).all()
+    command[3] = tmp_path / "none.pbrt"
+    result = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    assert result.returncode == 1 and "none.pbrt" in result.stderr
