@@ -2,6 +2,7 @@
 
 mod bench;
 mod command;
+mod dist;
 mod python;
 mod rgb_table;
 mod test;
@@ -20,6 +21,8 @@ usage: cargo xtask TASK
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
   wheel      build the Python package, into target/wheels
+  dist [TARGET]
+             archives of the program, and on Debian a package, into target/dist
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -31,6 +34,7 @@ fn main() -> ExitCode {
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
         ["wheel"] => python::wheel(workspace()),
+        ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

@@ -1,0 +1,145 @@
+//! `cargo xtask dist`: archives of the program for people without Rust.
+//!
+//! An archive has the program, its man pages, completions for shells, the README and the licences.
+//! On Linux the program is linked statically, so that it runs on any distribution, and there is a
+//! Debian package, too.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::command::{cargo, succeed, target};
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "elvish", "powershell"];
+/// Files of the repository that go along.
+const DOCUMENTS: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
+
+/// Builds for this machine, or for another target, into `target/dist`.
+pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
+    let host = host(root)?;
+    let triple = match arguments {
+        [] => host.as_str(),
+        [triple] => triple,
+        _ => return Err("expected one target, such as aarch64-unknown-linux-gnu".into()),
+    };
+    let program = build(root, triple)?;
+    // Pages and completions are the same everywhere, and only a program of this machine runs.
+    let own = if triple == host { program.clone() } else { build(root, &host)? };
+    let dist = target(root).join("dist");
+    let name = format!("alhazen-{VERSION}-{triple}");
+    let folder = dist.join(&name);
+    io(&folder, || assemble(root, &folder, &program))?;
+    describe(&own, &folder)?;
+
+    let archive = format!("{name}.tar.gz");
+    succeed(Command::new("tar").current_dir(&dist).args(["-czf", &archive, &name]))?;
+    println!("{}", dist.join(archive).display());
+    if triple.contains("linux") {
+        debian(&folder, triple, &dist)?;
+    }
+    Ok(())
+}
+
+/// The target that this machine's compiler builds for.
+fn host(root: &Path) -> Result<String, String> {
+    let output = cargo(root).args(["-vV"]).output().map_err(|error| error.to_string())?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| "cargo does not say what it builds for".into())
+}
+
+/// Builds the program for a target, and returns its path.
+fn build(root: &Path, triple: &str) -> Result<PathBuf, String> {
+    let mut command = cargo(root);
+    command.args(["build", "--release", "--package", "alhazen-cli", "--target", triple]);
+    if triple.contains("linux-gnu") {
+        // This replaces the flags of `.cargo/config.toml`.
+        let processor = if triple.starts_with("x86_64") { "-C target-cpu=x86-64-v3 " } else { "" };
+        let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
+        command.env(variable, format!("{processor}-C target-feature=+crt-static"));
+    }
+    succeed(&mut command)?;
+    let suffix = if triple.contains("windows") { ".exe" } else { "" };
+    Ok(target(root).join(triple).join("release").join(format!("alhazen{suffix}")))
+}
+
+/// Puts the program and documents into an empty folder.
+fn assemble(root: &Path, folder: &Path, program: &Path) -> std::io::Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder)?;
+    }
+    fs::create_dir_all(folder.join("completions"))?;
+    fs::copy(program, folder.join(program.file_name().unwrap_or_default()))?;
+    for document in DOCUMENTS {
+        fs::copy(root.join(document), folder.join(document))?;
+    }
+    Ok(())
+}
+
+/// Writes man pages and completions.
+fn describe(program: &Path, folder: &Path) -> Result<(), String> {
+    succeed(Command::new(program).arg("man").arg(folder.join("man")))?;
+    for shell in SHELLS {
+        let output = Command::new(program).args(["completions", shell]).output();
+        let script = output.map_err(|error| error.to_string())?.stdout;
+        let path = folder.join("completions").join(format!("alhazen.{shell}"));
+        io(&path, || fs::write(&path, script))?;
+    }
+    Ok(())
+}
+
+/// Makes a Debian package of an archive's folder, where `dpkg-deb` is installed.
+fn debian(folder: &Path, triple: &str, dist: &Path) -> Result<(), String> {
+    let architecture = match triple.split('-').next() {
+        Some("x86_64") => "amd64",
+        Some("aarch64") => "arm64",
+        _ => return Ok(()),
+    };
+    if Command::new("dpkg-deb").arg("--version").output().is_err() {
+        eprintln!("warning: no Debian package, as there is no dpkg-deb");
+        return Ok(());
+    }
+    let package = dist.join(format!("alhazen_{VERSION}_{architecture}"));
+    io(&package, || lay_out(folder, &package, architecture))?;
+    let mut command = Command::new("dpkg-deb");
+    succeed(command.args(["--root-owner-group", "--build"]).arg(&package).arg(dist))?;
+    Ok(())
+}
+
+/// Lays the files of an archive out as the Debian package installs them.
+fn lay_out(folder: &Path, package: &Path, architecture: &str) -> std::io::Result<()> {
+    if package.exists() {
+        fs::remove_dir_all(package)?;
+    }
+    let place = |from: &str, to: &str| {
+        let to = package.join(to);
+        fs::create_dir_all(to.parent().unwrap_or(package))?;
+        fs::copy(folder.join(from), to).map(|_| ())
+    };
+    place("alhazen", "usr/bin/alhazen")?;
+    for document in DOCUMENTS {
+        place(document, &format!("usr/share/doc/alhazen/{document}"))?;
+    }
+    place("completions/alhazen.bash", "usr/share/bash-completion/completions/alhazen")?;
+    place("completions/alhazen.zsh", "usr/share/zsh/vendor-completions/_alhazen")?;
+    place("completions/alhazen.fish", "usr/share/fish/vendor_completions.d/alhazen.fish")?;
+    for page in fs::read_dir(folder.join("man"))? {
+        let page = page?.file_name().to_string_lossy().into_owned();
+        place(&format!("man/{page}"), &format!("usr/share/man/man1/{page}"))?;
+    }
+    let size = fs::metadata(folder.join("alhazen"))?.len() / 1024;
+    fs::create_dir_all(package.join("DEBIAN"))?;
+    let control = format!(
+        "Package: alhazen\nVersion: {VERSION}\nArchitecture: {architecture}\nSection: graphics\n\
+         Priority: optional\nInstalled-Size: {size}\nMaintainer: The authors of alhazen \
+         <alhazen@localhost>\nDescription: physically based renderer\n Renders pbrt-v4 scenes and meshes \
+         by every algorithm of light transport.\n"
+    );
+    fs::write(package.join("DEBIAN/control"), control)
+}
+
+/// Runs a task on files; the error names the path.
+fn io(path: &Path, task: impl FnOnce() -> std::io::Result<()>) -> Result<(), String> {
+    task().map_err(|error| format!("{}: {error}", path.display()))
+}
