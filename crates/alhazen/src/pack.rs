@@ -57,8 +57,9 @@ pub fn pack(scene: &Path, assets: &dyn AssetSource, output: impl Write) -> Resul
         return Err(PackError::Scene(Box::new(imported)));
     }
     let read = recorder.read.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let folder = std::path::absolute(folder).map_err(|error| PackError::File(folder.to_owned(), error))?;
-    let (manifest, entries) = entries(&folder, &name, &read);
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let here = std::path::absolute(here).map_err(|error| PackError::File(here.to_owned(), error))?;
+    let (manifest, entries) = entries((folder, &here), &name, &read);
 
     let mut archive = ZipWriter::new_stream(Hashing::new(output));
     let mut add = |name: &str, content: &[u8]| {
@@ -105,9 +106,14 @@ pub enum ConvertError {
     Pack(PackError),
 }
 
-/// The manifest, and the name and source of each entry, the scene first.
-fn entries(folder: &Path, scene: &Path, read: &BTreeSet<PathBuf>) -> (Manifest, Vec<(String, PathBuf)>) {
-    let inside: Vec<_> = folder.components().filter_map(name_of).collect();
+/// The manifest, and the name and source of each entry, the scene first. `folder` is the scene's,
+/// as it was given and as an absolute path.
+fn entries(
+    (folder, absolute): (&Path, &Path),
+    scene: &Path,
+    read: &BTreeSet<PathBuf>,
+) -> (Manifest, Vec<(String, PathBuf)>) {
+    let inside: Vec<_> = absolute.components().filter_map(name_of).collect();
     let relative = read.iter().filter(|path| !path.is_absolute());
     let highest = relative.map(|path| resolved(path).0).max().unwrap_or(0).min(inside.len());
     let inside = &inside[inside.len() - highest..];
@@ -256,6 +262,18 @@ mod tests {
             pack(&scene, &assets, io::sink()).unwrap().hash
         };
         assert_eq!(hash("x/y"), hash("z/y"));
+    }
+
+    #[test]
+    fn descriptions_and_scenes_without_a_folder_are_packed() {
+        let assets = MemoryAssets::default().with("a.pbrt", "WorldBegin Shape \"sphere\"");
+        let packed = pack(Path::new("a.pbrt"), &assets, io::sink()).unwrap();
+        assert_eq!(packed.files, [PathBuf::from("a.pbrt")]);
+        let mut bytes = Vec::new();
+        pack_converted(&import("a.pbrt", &assets).desc, &mut bytes).unwrap();
+        let converted = import("b.zip", &MemoryAssets::default().with("b.zip", bytes));
+        assert!(!converted.has_errors(), "{:?}", converted.diagnostics);
+        assert_eq!(converted.desc.shapes.len(), 1);
     }
 
     #[test]
