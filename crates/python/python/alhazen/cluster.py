@@ -66,7 +66,7 @@ def render(
 
     scene: a scene, the name of its file, or the bytes of an archive. address: of the cluster, such
     as "auto" or "ray://host:10001"; where Ray is initialised already, that cluster is used; by
-    default one is started on this machine. shards: the number of parts that the passes are split
+    default the one that runs on this machine, or else a new one. shards: the number of parts that the passes are split
     into, by default 16, or 4 for each worker if that is more. threads: of each worker, by default
     the cores of the smallest machine. time: seconds after which no more shards are waited for.
     checkpoint: a film file from which the render is continued if it exists, and that is saved every
