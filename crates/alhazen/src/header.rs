@@ -16,12 +16,13 @@ const MAX_NAME_BYTES: usize = 4 << 20;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     attributes: Vec<(String, Attribute)>,
-    /// The names of objects and of materials, where the film has their identifiers.
-    names: [Vec<String>; 2],
+    /// The names of objects, materials and assets, where the film has their identifiers.
+    names: [Vec<String>; ID_LAYERS.len()],
 }
 
 /// The layers of identifiers that [`Header::names`] are for, and their keys in JSON.
-const ID_LAYERS: [(Layer, &str); 2] = [(Layer::ObjectId, "objects"), (Layer::MaterialId, "materials")];
+const ID_LAYERS: [(Layer, &str); 3] =
+    [(Layer::ObjectId, "objects"), (Layer::MaterialId, "materials"), (Layer::AssetId, "assets")];
 
 impl Header {
     /// The header of pictures of a scene.
@@ -51,6 +52,7 @@ impl Header {
             names: [
                 listed(Layer::ObjectId, &mut names.objects()),
                 listed(Layer::MaterialId, &mut names.materials().map(str::to_owned)),
+                listed(Layer::AssetId, &mut names.assets()),
             ],
         }
     }
@@ -130,11 +132,12 @@ impl Header {
         let attributes = json["attributes"].as_object()?.iter();
         let attributes = attributes.map(|(name, json)| Some((name.clone(), value(json)?)));
         let list = |(_, key): (Layer, &str)| {
-            let names = json[key].as_array()?.iter();
+            let names = json[key].as_array().into_iter().flatten();
             names.map(|name| Some(name.as_str()?.to_owned())).collect::<Option<Vec<_>>>()
         };
-        let [objects, materials] = ID_LAYERS.map(list);
-        Some(Self { attributes: attributes.collect::<Option<_>>()?, names: [objects?, materials?] })
+        let [objects, materials, assets] = ID_LAYERS.map(list);
+        let names = [objects?, materials?, assets?];
+        Some(Self { attributes: attributes.collect::<Option<_>>()?, names })
     }
 }
 

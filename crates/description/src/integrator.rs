@@ -93,6 +93,11 @@ impl IntegratorDesc {
         }
     }
 
+    /// Whether the algorithm makes layers of parts of the light.
+    pub fn makes_parts(&self) -> bool {
+        matches!(self, Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_))
+    }
+
     /// Whether the algorithm draws scattering under surfaces, or no scattering at all.
     pub fn knows_subsurface(&self) -> bool {
         match self {

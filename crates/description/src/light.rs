@@ -16,11 +16,13 @@ pub struct LightDesc {
     pub scale: f32,
     /// The medium around it.
     pub medium: Option<Handle<MediumDesc>>,
+    /// Its group, whose light may have a layer of its own in the picture.
+    pub group: Option<String>,
 }
 
 impl From<LightKind> for LightDesc {
     fn from(kind: LightKind) -> Self {
-        Self { kind, world_from_light: TransformDesc::default(), scale: 1.0, medium: None }
+        Self { kind, world_from_light: TransformDesc::default(), scale: 1.0, medium: None, group: None }
     }
 }
 
@@ -137,11 +139,13 @@ pub struct AreaLightDesc {
     pub power: Option<f32>,
     /// Whether both sides emit.
     pub two_sided: bool,
+    /// Its group, whose light may have a layer of its own in the picture.
+    pub group: Option<String>,
 }
 
 impl AreaLightDesc {
     /// Constant radiance on one side.
     pub fn new(radiance: SpectrumDesc) -> Self {
-        Self { radiance, image: None, scale: 1.0, power: None, two_sided: false }
+        Self { radiance, image: None, scale: 1.0, power: None, two_sided: false, group: None }
     }
 }

@@ -1,5 +1,7 @@
 //! The scene as a whole.
 
+use std::collections::HashSet;
+
 use crate::{
     AcceleratorDesc, AreaLightDesc, Arena, CameraDesc, FilmDesc, FilterDesc, FloatTextureDesc, ImageDesc,
     InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MediumDesc, ObjectDesc, OptionsDesc, SamplerDesc,
@@ -61,6 +63,20 @@ pub struct SceneDesc {
 }
 
 impl SceneDesc {
+    /// The group of lights without one, and of all other light.
+    pub const DEFAULT_LIGHT_GROUP: &str = "default";
+
+    /// The names of the groups of lights: first [`Self::DEFAULT_LIGHT_GROUP`], then the others in
+    /// their order.
+    pub fn light_groups(&self) -> Vec<&str> {
+        let lights = self.lights.iter().map(|(_, light)| &light.group);
+        let groups = lights.chain(self.area_lights.iter().map(|(_, light)| &light.group));
+        let (mut names, mut known) = (vec![Self::DEFAULT_LIGHT_GROUP], HashSet::new());
+        known.insert(Self::DEFAULT_LIGHT_GROUP);
+        names.extend(groups.flatten().map(String::as_str).filter(|name| known.insert(name)));
+        names
+    }
+
     /// The same settings, with nothing in the world.
     pub fn settings(&self) -> Self {
         Self {

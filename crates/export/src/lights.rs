@@ -27,10 +27,11 @@ pub(crate) fn lights(
     extensions: &mut BTreeSet<String>,
 ) {
     for (_, light) in desc.lights.iter() {
-        let LightDesc { kind, world_from_light, scale, medium } = &light.value;
+        let LightDesc { kind, world_from_light, scale, medium, group } = &light.value;
         let mut statement = Statement::new("LightSource", kind.name()).target("light");
         write(&mut statement, kind, desc, files, extensions);
         statement.float("scale", *scale, 1.0);
+        write_group(&mut statement, group.as_deref(), extensions);
         // The medium of the camera is in force.
         let is_elsewhere = *medium != desc.camera.medium;
         let TransformDesc { start, end, times: _ } = world_from_light;
@@ -104,8 +105,13 @@ fn write(
 }
 
 /// The emission of the surfaces that follow.
-pub(crate) fn area_light(desc: &SceneDesc, light: &AreaLightDesc, files: &mut Files) -> Statement {
-    let AreaLightDesc { radiance, image: picture, scale, power, two_sided } = light;
+pub(crate) fn area_light(
+    desc: &SceneDesc,
+    light: &AreaLightDesc,
+    files: &mut Files,
+    extensions: &mut BTreeSet<String>,
+) -> Statement {
+    let AreaLightDesc { radiance, image: picture, scale, power, two_sided, group } = light;
     let mut statement = Statement::new("AreaLightSource", "diffuse").target("light");
     match picture {
         Some(picture) => {
@@ -117,5 +123,13 @@ pub(crate) fn area_light(desc: &SceneDesc, light: &AreaLightDesc, files: &mut Fi
     statement.float("scale", *scale, 1.0);
     statement.optional_float("power", *power);
     statement.flag("twosided", *two_sided, false);
+    write_group(&mut statement, group.as_deref(), extensions);
     statement
+}
+
+fn write_group(to: &mut Statement, group: Option<&str>, extensions: &mut BTreeSet<String>) {
+    if let Some(group) = group {
+        extensions.insert("groups of lights".into());
+        to.text("lightgroup", group);
+    }
 }

@@ -86,7 +86,8 @@ impl World<'_, '_> {
             self.text.transform(place);
             directives.iter().for_each(|line| self.text.line(line));
             if let Some(light) = run[0].area_light {
-                let light = area_light(self.desc, &self.desc.area_lights[light], self.files);
+                let light = &self.desc.area_lights[light];
+                let light = area_light(self.desc, light, self.files, self.extensions);
                 self.text.statement(light);
             }
             for desc in run {

@@ -1,5 +1,7 @@
 //! From the description of film and filter to a [`Film`].
 
+use std::sync::Arc;
+
 use description::schema::Settings;
 use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, GBufferSpace, SceneDesc, Spanned};
 use math::Bounds2i;
@@ -71,6 +73,10 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
             }
         }
     }
+    let light_groups = match layers.has(Layer::LightGroups) {
+        true => desc.light_groups().into_iter().map(str::to_owned).collect(),
+        false => Arc::default(),
+    };
     let color_space = match film.color_space {
         ColorSpaceDesc::Srgb => RgbColorSpace::srgb(),
         ColorSpaceDesc::DciP3 => RgbColorSpace::dci_p3(),
@@ -94,6 +100,7 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
         layers,
         buckets,
         gbuffer,
+        light_groups,
     })
 }
 

@@ -40,7 +40,11 @@ fn murmur3(bytes: &[u8]) -> u32 {
 
 /// The name of a layer of identifiers in a picture.
 fn layer_name(layer: Layer) -> &'static str {
-    if layer == Layer::ObjectId { "CryptoObject" } else { "CryptoMaterial" }
+    match layer {
+        Layer::MaterialId => "CryptoMaterial",
+        Layer::AssetId => "CryptoAsset",
+        _ => "CryptoObject",
+    }
 }
 
 /// The names of a layer's channels: of each rank identifier and coverage, two ranks in r, g, b and

@@ -10,7 +10,6 @@ use image::{
 use math::Vec3;
 use spectrum::{Matrix3, Rgb};
 
-use crate::film::ID_LAYERS;
 use crate::splats::SPLAT_SUMS;
 use crate::sum::{reserved, value};
 use crate::{Buckets, Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
@@ -36,8 +35,8 @@ impl Film {
 /// A film, or the sum of two, that is developed while it is written.
 ///
 /// Beside R, G and B there are the channels of the layers: A; Z; N, P, uv and motion; albedo;
-/// samples and variance; and for identifiers those of Cryptomatte; and those of the buckets. All
-/// but the colours, alpha, albedo and buckets are single floats.
+/// samples and variance; parts of the light; for identifiers those of Cryptomatte; and those of the
+/// buckets. All but the colours, their parts, alpha, albedo and buckets are single floats.
 #[derive(Debug)]
 pub struct Development<'film> {
     film: &'film Film,
@@ -81,12 +80,17 @@ impl<'film> Development<'film> {
         let channel = |name: &str, depth| Channel { name: name.to_owned(), depth };
         let mut channels = ["R", "G", "B"].map(|name| channel(name, color_depth)).to_vec();
         for layer in layers.iter() {
-            let depth =
-                if matches!(layer, Layer::Alpha | Layer::Albedo) { color_depth } else { SampleDepth::F32 };
+            let is_color = layer.is_part() || matches!(layer, Layer::Alpha | Layer::Albedo);
+            let depth = if is_color { color_depth } else { SampleDepth::F32 };
             channels.extend(layer.channels(film.gbuffer).iter().map(|name| channel(name, depth)));
             if layer.is_id() {
                 channels.extend(cryptomatte::channels(layer).map(|name| channel(&name, depth)));
                 cryptomatte::describe(layer, &mut metadata);
+            }
+            if layer == Layer::LightGroups {
+                let names = film.light_groups().iter();
+                let names = names.flat_map(|group| ["R", "G", "B"].map(|c| format!("lights.{group}.{c}")));
+                channels.extend(names.map(|name| channel(&name, depth)));
             }
         }
         if let Some(buckets) = buckets {
@@ -101,7 +105,7 @@ impl<'film> Development<'film> {
     /// names, those that are in the picture.
     pub fn set_names<S: AsRef<str>>(&mut self, layer: Layer, names: impl IntoIterator<Item = S>) {
         if layer.is_id() && self.layers.has(layer) {
-            let ids = self.films().flat_map(|film| &film.ids[usize::from(layer == ID_LAYERS[1])]);
+            let ids = self.films().flat_map(|film| film.ids_of(layer));
             let present: BTreeSet<u32> = ids.flat_map(|ids| ids.keys().map(|&(_, id)| id)).collect();
             cryptomatte::set_manifest(layer, names, &present, &mut self.metadata);
         }
@@ -156,9 +160,7 @@ impl<'film> Development<'film> {
             if paths == 0 { 0.0 } else { sum(self) }
         };
         let response = [0, 1, 2].map(|c| mean[c] + splat(c));
-        let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
-        let rgb = if self.film.half_floats() { as_half(rgb) } else { rgb };
-        rgb.to_array().into_iter().for_each(&mut put);
+        self.color(response).into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
         }
@@ -171,6 +173,12 @@ impl<'film> Development<'film> {
         }
     }
 
+    /// The colour of a response of the sensor.
+    fn color(&self, response: [f64; 3]) -> [f32; 3] {
+        let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
+        if self.film.half_floats() { as_half(rgb) } else { rgb }.to_array()
+    }
+
     fn layer(&self, layer: Layer, [tile, first, pixel]: [usize; 3], weight: f64, mut put: impl FnMut(f32)) {
         let sum = |c| self.sum(|film| film.data.units(tile, first, pixel, c));
         let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { (a / b) as f32 };
@@ -181,10 +189,10 @@ impl<'film> Development<'film> {
                 let moments = [0, 1, 2].map(|i| sum(offset + i));
                 put(self.variance([tile, first, pixel], moments, weight));
             }
-            Layer::ObjectId | Layer::MaterialId => {
+            _ if layer.is_id() => {
                 let mut covered = BTreeMap::<u32, i128>::new();
                 for film in self.films() {
-                    let ids = &film.ids[usize::from(layer == ID_LAYERS[1])][tile];
+                    let ids = &film.ids_of(layer)[tile];
                     for (&(_, id), weight) in ids.range(keys(pixel)) {
                         *covered.entry(id).or_default() += weight;
                     }
@@ -203,6 +211,12 @@ impl<'film> Development<'film> {
                 variance.into_iter().for_each(|variance| put(variance as f32));
                 variance.into_iter().zip(moments).for_each(|(v, (sum, _))| put(quotient(v, mean(sum))));
             }
+            _ if layer.is_part() => {
+                for part in 0..self.film.layout.sums(layer) / 3 {
+                    let mean = |c| if weight == 0.0 { 0.0 } else { sum(offset + 3 * part + c) / weight };
+                    self.color([0, 1, 2].map(mean)).into_iter().for_each(&mut put);
+                }
+            }
             _ => {
                 let divisor = if layer.is_mean_of_hits() { sum(0) } else { weight };
                 if layer == Layer::Depth && divisor == 0.0 {
@@ -216,7 +230,7 @@ impl<'film> Development<'film> {
                         mean.to_array().into_iter().for_each(put);
                     }
                     Layer::Slope | Layer::CameraSlope => (0..2).for_each(|i| put(mean(i).abs())),
-                    _ => (0..layer.sums()).for_each(|i| put(mean(i))),
+                    _ => (0..self.film.layout.sums(layer)).for_each(|i| put(mean(i))),
                 }
             }
         }

@@ -57,6 +57,13 @@ impl Exposure {
         rgb.each(|c| c * factor)
     }
 
+    /// The response to a part of the light of a sample, which is scaled as the whole is.
+    pub(crate) fn part(&self, part: &SampledSpectrum, sample: &Sample) -> [f32; 3] {
+        let (l, lambda) = (&sample.l[0], &sample.lambda[0]);
+        let factor = self.factor(self.sensor.response(l, lambda), 1.0);
+        self.sensor.response(part, lambda).map(|c| c * factor)
+    }
+
     /// The factor by which light of this response is scaled down to what it may have.
     #[inline(always)]
     fn factor<R: Real>(&self, [r, g, b]: [R; 3], samples: f32) -> R {

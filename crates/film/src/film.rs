@@ -12,6 +12,8 @@
 //! two), [`SPLAT_BYTES`] and 12 bytes for each bucket once there are splats, and about [`ID_BYTES`]
 //! for each identifier in it.
 
+use std::sync::Arc;
+
 use description::GBufferSpace;
 use image::{ImageError, require_memory};
 use math::Bounds2i;
@@ -62,6 +64,8 @@ pub struct FilmSettings {
     pub buckets: Option<Buckets>,
     /// The space of a geometry buffer, whose layers have the format's names.
     pub gbuffer: Option<GBufferSpace>,
+    /// The names of the groups of lights; none without their layer.
+    pub light_groups: Arc<[String]>,
 }
 
 /// A film.
@@ -84,13 +88,14 @@ pub struct Film {
     /// Light and weight of each bucket; none in films of splats alone.
     pub(crate) spectrum: Sums,
     pub(crate) gbuffer: Option<GBufferSpace>,
-    /// Weights of object and material identifiers, for each tile; none without their layers.
-    pub(crate) ids: [Vec<IdSums>; 2],
+    pub(crate) light_groups: Arc<[String]>,
+    /// Weights of the identifiers of [`ID_LAYERS`], for each tile; none without their layers.
+    pub(crate) ids: [Vec<IdSums>; ID_LAYERS.len()],
     pub(crate) splats: SplatSums,
 }
 
 /// The layers of [`Film::ids`].
-pub(crate) const ID_LAYERS: [Layer; 2] = [Layer::ObjectId, Layer::MaterialId];
+pub(crate) const ID_LAYERS: [Layer; 3] = [Layer::ObjectId, Layer::MaterialId, Layer::AssetId];
 
 impl Film {
     /// A film without light. Refused if there is no pixel to render, or more than fit in memory.
@@ -100,7 +105,8 @@ impl Film {
 
     /// A film for splats alone, which takes [`SPLAT_BYTES`] for each pixel; it has no tiles.
     pub(crate) fn of_splats(settings: FilmSettings) -> Result<Self, ImageError> {
-        Self::with_colors(FilmSettings { layers: LayerSet::NONE, ..settings }, 0)
+        let (layers, light_groups) = (LayerSet::NONE, Arc::default());
+        Self::with_colors(FilmSettings { layers, light_groups, ..settings }, 0)
     }
 
     fn with_colors(settings: FilmSettings, color_sums: usize) -> Result<Self, ImageError> {
@@ -117,11 +123,11 @@ impl Film {
                 full_resolution[1]
             )));
         }
-        let (grid, layout) = (Grid(bounds), Layout::new(layers));
+        let (grid, layout) = (Grid(bounds), Layout::new(layers, settings.light_groups.len()));
         let no_memory = |_| no_memory(grid);
         let buckets = settings.buckets.filter(|_| color_sums > 0);
         let bucket_sums = buckets.map_or(0, |buckets| BUCKET_SUMS * buckets.count());
-        let ids = |layer| maps(if layers.has(layer) { grid.tile_count() } else { 0 });
+        let ids = |layer| maps(if layers.has(layer) { grid.tile_count() } else { 0 }).map_err(no_memory);
         let film = Self {
             full_resolution,
             grid,
@@ -137,7 +143,8 @@ impl Film {
             buckets: settings.buckets,
             spectrum: Sums::new(grid, bucket_sums).map_err(no_memory)?,
             gbuffer: settings.gbuffer,
-            ids: [ids(ID_LAYERS[0]).map_err(no_memory)?, ids(ID_LAYERS[1]).map_err(no_memory)?],
+            light_groups: settings.light_groups,
+            ids: [ids(ID_LAYERS[0])?, ids(ID_LAYERS[1])?, ids(ID_LAYERS[2])?],
             splats: SplatSums::default(),
         };
         // Most pixels will have one identifier per layer.
@@ -160,6 +167,7 @@ impl Film {
             layers: self.layout.layers(),
             buckets: self.buckets,
             gbuffer: self.gbuffer,
+            light_groups: self.light_groups.clone(),
         }
     }
 
@@ -207,9 +215,20 @@ impl Film {
         self.half_floats
     }
 
+    /// The identifiers of a layer.
+    pub(crate) fn ids_of(&self, layer: Layer) -> &[IdSums] {
+        let index = ID_LAYERS.iter().position(|&of| of == layer);
+        index.map_or(&[], |index| &self.ids[index])
+    }
+
     /// The buckets of a spectral film.
     pub fn buckets(&self) -> Option<Buckets> {
         self.buckets
+    }
+
+    /// The names of the groups of lights of its layer.
+    pub fn light_groups(&self) -> &[String] {
+        &self.light_groups
     }
 
     /// The layers beside the colour.
@@ -242,11 +261,11 @@ impl Film {
 
     fn tile(&mut self, tile: usize) -> FilmTile<'_> {
         let range = self.grid.range(tile);
-        let [objects, materials] = &mut self.ids;
+        let ids = self.ids.each_mut().map(|ids| ids.get_mut(tile));
         let data = (self.layout.layers() != LayerSet::NONE).then(|| TileData {
             layout: &self.layout,
             sums: (self.layout.count() > 0).then(|| self.data.tile(tile, range.clone())),
-            ids: [objects.get_mut(tile), materials.get_mut(tile)],
+            ids,
         });
         let spectrum = &mut self.spectrum;
         FilmTile {
@@ -277,7 +296,7 @@ impl Film {
         let mut rest = &mut self.counts[..];
         let (mut data, mut spectrum) = (self.data.tiles(grid), self.spectrum.tiles(grid));
         let buckets = self.buckets;
-        let [mut objects, mut materials] = self.ids.each_mut().map(|ids| ids.iter_mut());
+        let mut ids = self.ids.each_mut().map(|ids| ids.iter_mut());
         let mut tiles = reserved(grid.tile_count()).map_err(|_| no_memory(grid))?;
         tiles.extend(self.color.tiles(grid).enumerate().map(|(tile, color)| {
             let bounds = grid.bounds(tile);
@@ -286,7 +305,7 @@ impl Film {
             let data = (layout.layers() != LayerSet::NONE).then(|| TileData {
                 layout,
                 sums: data.next(),
-                ids: [objects.next(), materials.next()],
+                ids: ids.each_mut().map(Iterator::next),
             });
             let spectrum = buckets.zip(spectrum.next());
             FilmTile { bounds, exposure, color, counts, data, spectrum }
@@ -304,10 +323,11 @@ impl Film {
     /// where the other film has splats and there is no memory for them.
     ///
     /// # Panics
-    /// If the other film has other pixels, layers or buckets.
+    /// If the other film has other pixels, layers, groups of lights or buckets.
     pub fn merge(&mut self, other: &Self) -> Result<(), ImageError> {
         assert_eq!(self.grid.0, other.grid.0, "films of the same pixels can be merged");
         assert_eq!(self.layers(), other.layers(), "films of the same layers can be merged");
+        assert_eq!(self.light_groups, other.light_groups, "films of the same lights can be merged");
         assert_eq!(self.buckets, other.buckets, "films of the same buckets can be merged");
         if !other.splats.is_empty() {
             self.reserve_splats()?;
@@ -355,7 +375,7 @@ impl Film {
     /// without identifiers.
     pub(crate) fn pixel_bytes(settings: &FilmSettings, color: bool, splats: bool) -> u64 {
         let buckets = settings.buckets.map_or(0, |buckets| buckets.count() * SUM_BYTES);
-        let data = Layout::new(settings.layers).count() * SUM_BYTES;
+        let data = Layout::new(settings.layers, settings.light_groups.len()).count() * SUM_BYTES;
         let color = if color { PIXEL_BYTES + BUCKET_SUMS * buckets } else { 0 };
         let splats = if splats { SPLAT_BYTES + buckets } else { 0 };
         (color + data + splats) as u64

@@ -50,11 +50,29 @@ pub enum Layer {
     /// Variance of the sensor's responses to the samples that hit something, and that variance over
     /// their mean.
     ColorVariance,
+    /// Light that the first surface reflects, without what its facets mirror.
+    Diffuse,
+    /// Light that facets of the first surface mirror.
+    Specular,
+    /// Light that the first surface transmits.
+    Transmission,
+    /// Light that is scattered first by a participating medium.
+    Volume,
+    /// Light that is not scattered: of lights that the camera sees.
+    Emission,
+    /// Light that is scattered once or not at all.
+    Direct,
+    /// Light that is scattered more than once.
+    Indirect,
+    /// Light of each group of lights.
+    LightGroups,
+    /// Identifiers of the assets in the pixel, and the coverage of each.
+    AssetId,
 }
 
 impl Layer {
     /// Every layer.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 27] = [
         Self::Alpha,
         Self::Depth,
         Self::Normal,
@@ -73,6 +91,27 @@ impl Layer {
         Self::Slope,
         Self::CameraSlope,
         Self::ColorVariance,
+        Self::Diffuse,
+        Self::Specular,
+        Self::Transmission,
+        Self::Volume,
+        Self::Emission,
+        Self::Direct,
+        Self::Indirect,
+        Self::LightGroups,
+        Self::AssetId,
+    ];
+
+    /// The parts of the light by what paths do. The first five sum to the colour, and so do the
+    /// last two.
+    pub const OF_PATHS: [Self; 7] = [
+        Self::Diffuse,
+        Self::Specular,
+        Self::Transmission,
+        Self::Volume,
+        Self::Emission,
+        Self::Direct,
+        Self::Indirect,
     ];
 
     /// Its name, as the command line and film files have it.
@@ -96,6 +135,15 @@ impl Layer {
             Self::Slope => "slope",
             Self::CameraSlope => "camera-slope",
             Self::ColorVariance => "color-variance",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Transmission => "transmission",
+            Self::Volume => "volume",
+            Self::Emission => "emission",
+            Self::Direct => "direct",
+            Self::Indirect => "indirect",
+            Self::LightGroups => "light-groups",
+            Self::AssetId => "asset-id",
         }
     }
 
@@ -104,8 +152,8 @@ impl Layer {
         Self::ALL.into_iter().find(|layer| layer.name() == name)
     }
 
-    /// The names of its channels in a picture; none where they depend on the pixels. A geometry
-    /// buffer has the format's names.
+    /// The names of its channels in a picture; none where they depend on the pixels or the scene. A
+    /// geometry buffer has the format's names.
     pub(crate) fn channels(self, gbuffer: Option<GBufferSpace>) -> &'static [&'static str] {
         match gbuffer {
             Some(space) => self.format_channels(space).unwrap_or(self.own_channels()),
@@ -138,7 +186,14 @@ impl Layer {
                 "relativeVariance.G",
                 "relativeVariance.B",
             ],
-            Self::ObjectId | Self::MaterialId => &[],
+            Self::Diffuse => &["diffuse.R", "diffuse.G", "diffuse.B"],
+            Self::Specular => &["specular.R", "specular.G", "specular.B"],
+            Self::Transmission => &["transmission.R", "transmission.G", "transmission.B"],
+            Self::Volume => &["volume.R", "volume.G", "volume.B"],
+            Self::Emission => &["emission.R", "emission.G", "emission.B"],
+            Self::Direct => &["direct.R", "direct.G", "direct.B"],
+            Self::Indirect => &["indirect.R", "indirect.G", "indirect.B"],
+            Self::ObjectId | Self::MaterialId | Self::AssetId | Self::LightGroups => &[],
         }
     }
 
@@ -169,9 +224,10 @@ impl Layer {
         })
     }
 
-    /// The number of its sums per pixel.
-    pub(crate) fn sums(self) -> usize {
+    /// The number of its sums per pixel, of a film with this number of groups of lights.
+    pub(crate) fn sums(self, groups: usize) -> usize {
         match self {
+            Self::LightGroups => 3 * groups,
             // Σ w², Σ w² y and Σ w² y² of the luminance y.
             Self::Variance => 3,
             // Samples are counted in any case.
@@ -208,14 +264,19 @@ impl Layer {
         )
     }
 
+    /// Whether it is a part of the colour.
+    pub fn is_part(self) -> bool {
+        self == Self::LightGroups || Self::OF_PATHS.contains(&self)
+    }
+
     /// Whether it counts identifiers.
     pub(crate) fn is_id(self) -> bool {
-        matches!(self, Self::ObjectId | Self::MaterialId)
+        matches!(self, Self::ObjectId | Self::MaterialId | Self::AssetId)
     }
 
     /// Whether it needs a sample's first hit, or whether there is one.
     fn is_of_first_hit(self) -> bool {
-        !matches!(self, Self::Samples | Self::Variance)
+        !(self.is_part() || matches!(self, Self::Samples | Self::Variance))
     }
 }
 
@@ -253,6 +314,11 @@ impl LayerSet {
     pub fn has_first_hit(self) -> bool {
         self.iter().any(Layer::is_of_first_hit)
     }
+
+    /// Whether some layer is a part of the colour.
+    pub fn has_parts(self) -> bool {
+        self.iter().any(Layer::is_part)
+    }
 }
 
 impl FromIterator<Layer> for LayerSet {
@@ -266,26 +332,43 @@ impl FromIterator<Layer> for LayerSet {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     layers: LayerSet,
+    groups: usize,
     offsets: [usize; Layer::ALL.len()],
     count: usize,
 }
 
 impl Layout {
-    /// The layout of these layers.
-    pub(crate) fn new(layers: LayerSet) -> Self {
+    /// The layout of these layers, with this number of groups of lights.
+    pub(crate) fn new(layers: LayerSet, groups: usize) -> Self {
         let coverage = layers.iter().any(|layer| layer.is_mean_of_hits() || layer.is_id());
         let mut count = if coverage { 2 } else { 0 };
         let mut offsets = [0; Layer::ALL.len()];
         for layer in layers.iter() {
             offsets[layer as usize] = count;
-            count += layer.sums();
+            count += layer.sums(groups);
         }
-        Self { layers, offsets, count }
+        Self { layers, groups, offsets, count }
     }
 
     /// The layers.
     pub(crate) fn layers(&self) -> LayerSet {
         self.layers
+    }
+
+    /// The number of sums of a layer.
+    pub(crate) fn sums(&self, layer: Layer) -> usize {
+        layer.sums(self.groups)
+    }
+
+    /// The number of groups of lights of its layer.
+    pub(crate) fn groups(&self) -> usize {
+        self.groups
+    }
+
+    /// The layers that are parts of the colour, with the first sum of each.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (Layer, usize)> {
+        let parts = Layer::OF_PATHS.into_iter().chain([Layer::LightGroups]);
+        parts.filter_map(|layer| Some((layer, self.offset(layer)?)))
     }
 
     /// The number of sums per pixel.

@@ -4,6 +4,8 @@ use std::slice::from_ref;
 
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use crate::Parts;
+
 /// A sample of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
@@ -17,12 +19,15 @@ pub struct Sample<'a> {
     pub alpha: f32,
     /// The sample's first hit; only films with a layer of it use it.
     pub first_hit: Option<FirstHit>,
+    /// The parts of its radiance, at the first group of wavelengths; only films with a layer of
+    /// them use them.
+    pub parts: Option<&'a Parts>,
 }
 
 impl<'a> Sample<'a> {
     /// A sample of radiance alone, with opacity 0.
     pub fn new(l: &'a SampledSpectrum, lambda: &'a SampledWavelengths, weight: f32) -> Self {
-        Self { l: from_ref(l), lambda: from_ref(lambda), weight, alpha: 0.0, first_hit: None }
+        Self { l: from_ref(l), lambda: from_ref(lambda), weight, alpha: 0.0, first_hit: None, parts: None }
     }
 }
 
@@ -57,4 +62,6 @@ pub struct FirstHit {
     pub object: u32,
     /// Identifier of the material.
     pub material: u32,
+    /// Identifier of the asset.
+    pub asset: u32,
 }

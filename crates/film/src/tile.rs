@@ -7,10 +7,11 @@ use math::Bounds2i;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::exposure::Exposure;
+use crate::film::ID_LAYERS;
 use crate::grid::index_in;
 use crate::layer::Layout;
 use crate::sum::{MAX_TERM, TileSums, can_add, units};
-use crate::{Buckets, FirstHit, Layer, LayerSet, Sample};
+use crate::{Buckets, FirstHit, Layer, LayerSet, Parts, Sample};
 
 /// The weights of identifiers in a tile, in units of sums: by pixel and identifier.
 pub(crate) type IdSums = BTreeMap<(u16, u32), i128>;
@@ -37,6 +38,12 @@ impl FilmTile<'_> {
     /// Whether some layer of the film takes [`Sample::first_hit`] or [`Sample::alpha`].
     pub fn wants_first_hit(&self) -> bool {
         self.data.as_ref().is_some_and(|data| data.layout.layers().has_first_hit())
+    }
+
+    /// Room for [`Sample::parts`], if some layer of the film takes them.
+    pub fn new_parts(&self) -> Option<Parts> {
+        let layout = self.data.as_ref()?.layout;
+        layout.layers().has_parts().then(|| Parts::new(layout.groups()))
     }
 
     /// Whether some layer of the film takes the slopes of [`Sample::first_hit`].
@@ -171,8 +178,8 @@ struct LaneTerms {
 pub(crate) struct TileData<'film> {
     pub(crate) layout: &'film Layout,
     pub(crate) sums: Option<TileSums<'film>>,
-    /// Of objects and materials.
-    pub(crate) ids: [Option<&'film mut IdSums>; 2],
+    /// Of [`ID_LAYERS`].
+    pub(crate) ids: [Option<&'film mut IdSums>; ID_LAYERS.len()],
 }
 
 impl TileData<'_> {
@@ -180,13 +187,24 @@ impl TileData<'_> {
     fn add(&mut self, pixel: usize, sample: &Sample, terms: [f64; 4], exposure: &Exposure) {
         let Some(sums) = &mut self.sums else { return };
         let weight = f64::from(sample.weight);
-        let mut add = |layer, weight: f64, values: &[f32]| {
-            let Some(offset) = self.layout.offset(layer) else { return };
+        let mut add_at = |offset, weight: f64, values: &[f32]| {
             for (i, &value) in values.iter().enumerate() {
                 let term = weight * f64::from(value);
                 if can_add(term) {
                     sums.add(pixel, offset + i, term);
                 }
+            }
+        };
+        if let Some(parts) = sample.parts {
+            for (layer, offset) in self.layout.parts() {
+                for (i, part) in parts.of(layer).iter().enumerate() {
+                    add_at(offset + 3 * i, weight, &exposure.part(part, sample));
+                }
+            }
+        }
+        let mut add = |layer, weight, values: &[f32]| {
+            if let Some(offset) = self.layout.offset(layer) {
+                add_at(offset, weight, values);
             }
         };
         add(Layer::Alpha, weight, &[sample.alpha]);
@@ -226,8 +244,8 @@ impl TileData<'_> {
         if self.layout.has_coverage() {
             sums.add(pixel, 0, if sample.first_hit.is_some() { positive } else { 0.0 });
             sums.add(pixel, 1, positive);
-            if let Some(FirstHit { object, material, .. }) = sample.first_hit {
-                for (ids, id) in self.ids.iter_mut().zip([object, material]) {
+            if let Some(FirstHit { object, material, asset, .. }) = sample.first_hit {
+                for (ids, id) in self.ids.iter_mut().zip([object, material, asset]) {
                     if let Some(ids) = ids {
                         *ids.entry((pixel as u16, id)).or_insert(0) += units(positive);
                     }

@@ -3,8 +3,9 @@
 use description::schema::Settings;
 use description::{
     BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, MaterialKind,
-    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
+    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc, Spanned,
 };
+use film::Layer;
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
@@ -38,6 +39,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     builder.media();
     builder.subsurface();
     builder.connections_to_lens();
+    builder.parts();
     let diagnostics = builder.diagnostics;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
@@ -91,6 +93,32 @@ impl Builder<'_> {
             format!("integrator `{}` does not know participating media; left out", integrator.name());
         let warning = Diagnostic::warning("no-media", message, integrator.origin.span);
         self.diagnostics.push(warning.with_help("`vol-path` draws them"));
+    }
+
+    /// Whether the film has layers of parts of the light.
+    fn has_parts(&self) -> bool {
+        self.parts_of_film().next().is_some()
+    }
+
+    fn parts_of_film(&self) -> impl Iterator<Item = &Spanned<String>> {
+        let layers = self.desc.film.layers.iter();
+        layers.filter(|name| Layer::from_name(&name.value).is_some_and(Layer::is_part))
+    }
+
+    /// Checks that the algorithm makes the layers of parts of the light, if there are any.
+    fn parts(&mut self) {
+        let integrator = &self.desc.integrator;
+        if integrator.makes_parts() {
+            return;
+        }
+        let error = |name: &Spanned<String>| {
+            let message =
+                format!("integrator `{}` does not make the layer `{}`", integrator.name(), name.value);
+            let error = Diagnostic::error("invalid-film", message, name.span);
+            error.with_help("`path` and `vol-path` make it")
+        };
+        let errors: Vec<_> = self.parts_of_film().map(error).collect();
+        self.diagnostics.extend(errors);
     }
 
     /// Whether a material scatters under its surface.
@@ -244,7 +272,7 @@ impl Builder<'_> {
         if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
             return pixels(VolPath::new(desc), sampler);
         }
-        if self.has_subsurface() {
+        if self.has_subsurface() || self.has_parts() {
             return pixels(Path::new(desc, interfaces), sampler);
         }
         self.waves(Path::new(desc, interfaces), sampler)

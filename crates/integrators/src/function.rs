@@ -157,8 +157,9 @@ impl Integrator for Function {
                 for x in bounds.min[0]..bounds.max[0] {
                     let value = self.value(&mut sampler, [x, y], pass) as f32;
                     let l: [SampledSpectrum; GROUPS] = white.map(|white| white * value);
+                    let (first_hit, parts) = (None, None);
                     let sample =
-                        film::Sample { l: &l, lambda: &lambda, weight: 1.0, alpha: 1.0, first_hit: None };
+                        film::Sample { l: &l, lambda: &lambda, weight: 1.0, alpha: 1.0, first_hit, parts };
                     tile.add([x, y], &sample);
                 }
             }

@@ -7,7 +7,8 @@ use geometry::Hit;
 /// Names of the objects and materials of a scene, for AOVs that identify them.
 ///
 /// An object is a shape of the world, or an instance with everything in it. The n-th instance of
-/// the object `tree` is `tree/n`, counted from 0. Unnamed shapes and materials are numbered in the
+/// the object `tree` is `tree/n`, counted from 0. All instances of it are the asset `tree`; a shape
+/// of the world is an asset of its own. Unnamed shapes and materials are numbered in the
 /// order of the description: `shape-7`, `material-7`.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -73,13 +74,14 @@ impl Names {
         self.of_instances.resize(instances, id);
     }
 
-    /// The name of the object that a ray has hit.
-    pub fn object(&self, hit: &Hit) -> String {
+    /// The names of the object that a ray has hit, and of its asset.
+    pub fn object(&self, hit: &Hit) -> [String; 2] {
         let id = match hit.instance.ids().first() {
             Some(instance) => self.of_instances[instance.0 as usize],
             None => self.of_geometries[hit.geometry.0 as usize],
         };
-        self.object_name(self.objects[id as usize])
+        let object = self.objects[id as usize];
+        [self.object_name(object), self.asset_name(object)]
     }
 
     /// The name of a material.
@@ -92,9 +94,22 @@ impl Names {
         self.objects.iter().map(|&object| self.object_name(object))
     }
 
+    /// The names of all assets, in the order of the description.
+    pub fn assets(&self) -> impl Iterator<Item = String> {
+        let first = |object: &&Object| !matches!(object, Object::Instance { n: 1.., .. });
+        self.objects.iter().filter(first).map(|&object| self.asset_name(object))
+    }
+
     /// The names of all materials, in the order of the description; then that of the default one.
     pub fn materials(&self) -> impl Iterator<Item = &str> {
         self.materials.iter().map(String::as_str)
+    }
+
+    fn asset_name(&self, object: Object) -> String {
+        match object {
+            Object::Shape(_) => self.object_name(object),
+            Object::Instance { prototype, .. } => self.prototypes[prototype as usize].name.clone(),
+        }
     }
 
     fn object_name(&self, object: Object) -> String {

@@ -45,6 +45,10 @@ pub fn put(payload: &mut Vec<u8>, film: &Film) {
         color.into_iter().chain(settings.layers.iter().map(Layer::name)).chain(splats).collect();
     payload.push(layers.len() as u8);
     layers.iter().for_each(|name| put_text(payload, name));
+    if settings.layers.has(Layer::LightGroups) {
+        payload.extend((settings.light_groups.len() as u32).to_le_bytes());
+        settings.light_groups.iter().for_each(|name| put_text(payload, name));
+    }
 }
 
 /// Reads what [`put`] has written, and makes a film of it without light.
@@ -98,6 +102,12 @@ pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFi
             }
         }
     }
+    let mut light_groups = Vec::new();
+    if layers.has(Layer::LightGroups) {
+        for _ in 0..fields.u32()? {
+            light_groups.push(fields.text()?.to_owned());
+        }
+    }
     let settings = FilmSettings {
         full_resolution,
         pixel_bounds: Bounds2i { min, max },
@@ -110,6 +120,7 @@ pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFi
         layers,
         buckets,
         gbuffer,
+        light_groups: light_groups.into(),
     };
     let pixels = settings.pixel_bounds.area() as u64;
     limits.take(pixels.saturating_mul(Film::pixel_bytes(&settings, color, splats)), "a film")?;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use alhazen_film::{
-    Development, Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet,
-    PIXEL_BYTES, PassSet, ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
+    Development, Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstEvent, FirstHit, Layer, LayerSet,
+    PIXEL_BYTES, Parts, PassSet, ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
 };
 use description::{FilmKind, GBufferSpace, SceneDesc, Span, Spanned};
 use image::{Attribute, Format, Image, PixelSource, ReadOptions, WriteOptions, encode, read};
@@ -21,7 +21,10 @@ fn settings() -> FilmSettings {
 }
 
 fn film(layers: impl IntoIterator<Item = Layer>) -> Film {
-    Film::new(FilmSettings { layers: layers.into_iter().collect(), ..settings() }).unwrap()
+    let layers: LayerSet = layers.into_iter().collect();
+    let groups = if layers.has(Layer::LightGroups) { &["default", "sun"][..] } else { &[] };
+    let light_groups = groups.iter().map(|name| (*name).into()).collect();
+    Film::new(FilmSettings { layers, light_groups, ..settings() }).unwrap()
 }
 
 fn hit(depth: f32, object: &str) -> FirstHit {
@@ -40,6 +43,7 @@ fn hit(depth: f32, object: &str) -> FirstHit {
         motion: [-2.0, 4.0],
         object: id_of_name(object),
         material: id_of_name("gold"),
+        asset: id_of_name("toys"),
     }
 }
 
@@ -50,7 +54,11 @@ fn add(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit
 fn add_light(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit>, l: f32, u: f32) {
     let (l, lambda) = (SampledSpectrum::splat(l), SampledWavelengths::sample_visible(u));
     let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
-    film.add(pixel, &Sample { alpha, first_hit, ..Sample::new(&l, &lambda, weight) });
+    let (mut parts, diffuse) = (Parts::new(2), SampledSpectrum([0.0, 0.25, 0.5, 1.0]));
+    parts.add(l * 0.25, 0, &FirstEvent::Transmission, 2);
+    parts.add(l * 0.75, 1, &FirstEvent::Reflection { diffuse }, 1);
+    let parts = Some(&parts);
+    film.add(pixel, &Sample { alpha, first_hit, parts, ..Sample::new(&l, &lambda, weight) });
 }
 
 /// The picture with all layers, as a reader of its file sees it.
@@ -157,7 +165,7 @@ fn the_variance_of_colours_is_that_of_samples_that_hit() {
 
 #[test]
 fn pixels_without_hits_are_far_and_black() {
-    let mut film = film(Layer::ALL);
+    let mut film = film(Layer::ALL.into_iter().filter(|layer| !layer.is_part()));
     add(&mut film, [0, 0], 1.0, None);
     let image = written(&film);
     for pixel in [[0, 0], [20, 17]] {
@@ -306,6 +314,31 @@ fn order_merging_and_files_do_not_change_a_bit() {
     other.picture = film([Layer::Depth]);
     let error = other.merge(&files[1][..], &limits).unwrap_err();
     assert!(error.to_string().contains("the settings of the films differ"), "{error}");
+}
+
+#[test]
+fn parts_of_the_light_sum_to_the_colours() {
+    // Sums are limited, and parts with them.
+    let limited = FilmSettings { max_component_value: 0.5, ..film(Layer::ALL).settings() };
+    for mut film in [film(Layer::ALL), Film::new(limited).unwrap()] {
+        (0..6).for_each(|pass| add_pass(&mut film, pass));
+        let image = written(&film);
+        let pixels = (0..RESOLUTION[1]).flat_map(|y| (0..RESOLUTION[0]).map(move |x| [x as u32, y as u32]));
+        for (pixel, c) in pixels.flat_map(|pixel| ["R", "G", "B"].map(|c| (pixel, c))) {
+            let sum =
+                |parts: &[&str]| parts.iter().map(|p| at(&image, &format!("{p}.{c}"), pixel)).sum::<f32>();
+            let color = at(&image, c, pixel);
+            for parts in [
+                &["diffuse", "specular", "transmission", "volume", "emission"][..],
+                &["direct", "indirect"],
+                &["lights.default", "lights.sun"],
+            ] {
+                let error = (sum(parts) - color).abs();
+                assert!(error <= 1e-5 * color.abs().max(1.0), "{parts:?} at {pixel:?}: {error} of {color}");
+            }
+            assert!((sum(&["indirect"]) - 0.25 * color).abs() <= 1e-5 * color.abs().max(1.0));
+        }
+    }
 }
 
 #[test]

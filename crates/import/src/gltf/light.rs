@@ -18,6 +18,8 @@ pub(super) struct Light {
     pub kind: Kind,
     /// Whether its light ends at a distance, which is not drawn.
     pub has_range: bool,
+    /// Empty for a light without a name.
+    pub name: String,
     pub pointer: String,
 }
 
@@ -73,6 +75,7 @@ impl Light {
             intensity: place.number_in("intensity", 1.0, POSITIVE)?,
             kind,
             has_range: range.is_some() && kind != Kind::Directional,
+            name: place.string("name")?.unwrap_or("").to_owned(),
             pointer: place.pointer.clone(),
         })
     }
@@ -99,6 +102,7 @@ impl Light {
                 cone_delta_angle: (outer - inner).to_degrees(),
             },
         };
-        Some(LightDesc { world_from_light, scale, ..LightDesc::from(kind) })
+        let group = (!self.name.is_empty()).then(|| self.name.clone());
+        Some(LightDesc { world_from_light, scale, group, ..LightDesc::from(kind) })
     }
 }

@@ -238,9 +238,11 @@ impl Part<'_, '_, '_> {
     fn area_light(&mut self) -> Option<Handle<AreaLightDesc>> {
         let material = self.material;
         let color = if material.is_unlit { &material.base } else { &material.emissive };
+        let group = (!material.name.is_empty()).then(|| material.name.clone());
         if let Some(image) = self.colors.filter(|_| material.is_unlit) {
             let light = AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0));
-            let light = AreaLightDesc { image: Some(image), two_sided: material.is_two_sided, ..light };
+            let light =
+                AreaLightDesc { image: Some(image), two_sided: material.is_two_sided, group, ..light };
             return Some(self.builder.desc.area_lights.push(light));
         }
         let scale = color.factor.into_iter().fold(0.0, f32::max);
@@ -249,7 +251,7 @@ impl Part<'_, '_, '_> {
         }
         let tint = color.factor.map(|v| v / scale);
         let mut light = AreaLightDesc::new(SpectrumDesc::rgb(tint[0], tint[1], tint[2]));
-        (light.scale, light.two_sided) = (scale, material.is_two_sided);
+        (light.scale, light.two_sided, light.group) = (scale, material.is_two_sided, group);
         if let Some(texture) = &color.texture {
             let image = self.builder.pictures.image(texture, Encoding::Color)?;
             let edit = if tint == [1.0; 3] && image.is_color() { Edit::None } else { Edit::Tint(tint) };

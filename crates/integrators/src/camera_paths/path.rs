@@ -17,7 +17,8 @@ use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::PathsFrom;
-use crate::transport::direct::{DirectLighting, light_context};
+use crate::transport::direct::{Connection, DirectLighting, light_context};
+use crate::transport::parts::{DIFFUSE, event_at, event_of};
 use crate::transport::path_state::{PathState, Scattered};
 use crate::transport::subsurface::{Exit, enters, under_surface};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
@@ -37,6 +38,16 @@ impl Path {
         Self { settings, interfaces, direct: DirectLighting::none(interfaces) }
     }
 
+    /// Takes the parts of the radiance along a ray that leaves the scene.
+    fn take_escaped(&self, tracer: &mut Tracer, path: &PathState, lambda: &SampledWavelengths) {
+        if tracer.takes_parts() {
+            let (scene, origin) = (tracer.scene, path.origin.as_ref());
+            for (light, l) in self.direct.escaped_from_each(scene, &path.ray, origin, lambda) {
+                tracer.take_part(Some(light), &path.first, path.depth, path.beta * l);
+            }
+        }
+    }
+
     /// Leads a path out of a body under the surface of which it has gone; returns the direct light
     /// where it leaves, and whether it goes on.
     fn leave_body(
@@ -47,7 +58,12 @@ impl Path {
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let context = light_context(&exit.surface, exit.bsdf.flags());
-        let l = path.beta * self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
+        let light = self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
+        let l = light.map_or(SampledSpectrum::ZERO, |light| {
+            let l = path.beta * light.l;
+            tracer.take_part(Some(light.light), &path.first, path.depth, l);
+            l
+        });
         let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
         if let Some(scattered) = &scattered {
             path.scatter(&exit.surface, context, scattered);
@@ -72,11 +88,14 @@ impl PathsFrom for Path {
             let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
                 if path.depth >= min_depth {
                     l += path.beta * direct.escaped(scene, &path.ray, path.origin.as_ref(), lambda);
+                    self.take_escaped(tracer, &path, lambda);
                 }
                 return l;
             };
             if path.depth >= min_depth {
-                l += path.beta * direct.emitted(scene, &surface, path.origin.as_ref(), lambda);
+                let emitted = path.beta * direct.emitted(scene, &surface, path.origin.as_ref(), lambda);
+                tracer.take_part(surface.area_light, &path.first, path.depth, emitted);
+                l += emitted;
             }
             let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
                 path.pass_through(&surface, t);
@@ -90,16 +109,31 @@ impl PathsFrom for Path {
             bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
-            let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
+            let (light, scattered) = each_bxdf!(bsdf.bxdf, bxdf => {
                 let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if bsdf.flags().is_non_specular() {
-                    l += path.beta * direct.sample(tracer, (&surface, &context), &bsdf, lambda);
-                }
-                Scattered::sample(&surface, &bsdf, tracer.sampler)
+                let light = match bsdf.flags().is_non_specular() {
+                    true => direct.sample(tracer, (&surface, &context), &bsdf, lambda),
+                    false => None,
+                };
+                (light, Scattered::sample(&surface, &bsdf, tracer.sampler))
             });
+            let is_first = path.depth == 1 && tracer.takes_parts();
+            if let Some(Connection { light, wi, l: found, .. }) = light {
+                let found = path.beta * found;
+                let first = if is_first { event_at(&bsdf, surface.surface.wo, wi) } else { path.first };
+                tracer.take_part(Some(light), &first, path.depth, found);
+                l += found;
+            }
             let Some(scattered) = scattered else { return l };
+            let body = body.filter(|_| enters(&surface, &scattered.sample));
+            if is_first {
+                path.first = match body {
+                    Some(_) => DIFFUSE,
+                    None => event_of(&bsdf, surface.surface.wo, &scattered.sample),
+                };
+            }
             rough_before |= !scattered.sample.flags.is_specular();
-            if let Some(body) = body.filter(|_| enters(&surface, &scattered.sample)) {
+            if let Some(body) = body {
                 let entry = (&surface, context);
                 let Some(exit) = path.go_under(tracer, entry, (&body, &scattered), lambda) else {
                     return l;

@@ -63,7 +63,9 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
         let stats = pixels.add(film.tiles_mut()?, control, |sample, tracer| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
-            self.rays.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight
+            let l = self.rays.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight;
+            tracer.scale_parts(camera_ray.weight);
+            l
         })?;
         Ok(stats)
     }

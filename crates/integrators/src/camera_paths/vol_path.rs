@@ -16,6 +16,7 @@
 //! Unbiased up to `max_depth`. Sources: [Miller 2019]; [Pharr 2023 §14.2].
 
 use description::PathDesc;
+use film::FirstEvent;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Bsdf, BsdfSample, Bxdf, Directions, Subsurface, TransportMode};
@@ -28,6 +29,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::PathsFrom;
 use crate::transport::direct::{MediumVertex, light_context};
 use crate::transport::media::{FlightEnd, Heroes, Throughput};
+use crate::transport::parts::{DIFFUSE, event_at, event_of};
 use crate::transport::path_state::{Origin, Scattered, pass_through, throughput};
 use crate::transport::roulette;
 use crate::transport::subsurface::{enters, under_surface};
@@ -68,6 +70,8 @@ struct Path {
     eta_scale: f32,
     /// Whether an earlier vertex was not specular.
     rough_before: bool,
+    /// The event by which it left its first vertex, for layers of parts.
+    first: FirstEvent,
 }
 
 /// A vertex from which lights are sampled.
@@ -87,6 +91,7 @@ impl Path {
             origin: None,
             eta_scale: 1.0,
             rough_before: false,
+            first: FirstEvent::None,
         }
     }
 
@@ -123,9 +128,15 @@ impl VolPath {
     }
 
     /// The radiance of infinite lights along the ray of a path that leaves the scene.
-    fn escaped(&self, scene: &Scene, path: &Path, lambda: &SampledWavelengths) -> SampledSpectrum {
+    fn escaped(&self, tracer: &mut Tracer, path: &Path, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let scene = tracer.scene;
         let lights = scene.infinite_lights().iter();
-        lights.map(|&id| self.met(scene, path, id, scene.light(id).le(&path.ray.ray, lambda))).sum()
+        let met = lights.map(|&id| {
+            let l = self.met(scene, path, id, scene.light(id).le(&path.ray.ray, lambda));
+            tracer.take_part(Some(id), &path.first, path.depth, l);
+            l
+        });
+        met.sum()
     }
 
     /// Next-event estimation at a vertex.
@@ -174,7 +185,16 @@ impl VolPath {
         let Throughput { beta, r_u, .. } = path.throughput;
         let by_light = r_u * passage.r_l * (pmf * sample.pdf);
         let by_scattering = if scene.light(light).is_delta() { black } else { r_u * passage.r_u * pdf };
-        beta * l * passage.t / path.heroes.mean(by_light + by_scattering)
+        let l = beta * l * passage.t / path.heroes.mean(by_light + by_scattering);
+        if tracer.takes_parts() {
+            let first = match &vertex {
+                _ if path.depth > 1 => path.first,
+                Vertex::Surface(surface, bsdf) => event_at(bsdf, surface.surface.wo, wi),
+                Vertex::Medium(_) => FirstEvent::Volume,
+            };
+            tracer.take_part(Some(light), &first, path.depth, l);
+        }
+        l
     }
 
     /// Leads a path that enters a body at `entry`, from the side of its medium, out of it again;
@@ -224,6 +244,7 @@ impl PathsFrom for VolPath {
                 let flight = tracer.fly(id, &path.ray.ray, t_max, lambda, &path.heroes, &mut path.throughput);
                 if path.depth >= min_depth {
                     l += flight.emitted;
+                    tracer.take_part(None, &path.first, path.depth, flight.emitted);
                 }
                 match flight.end {
                     FlightEnd::Passed => (),
@@ -233,6 +254,9 @@ impl PathsFrom for VolPath {
                             return l;
                         }
                         path.depth += 1;
+                        if path.depth == 1 {
+                            path.first = FirstEvent::Volume;
+                        }
                         let vertex = MediumVertex::new(p, &path.ray.ray, phase);
                         l += self.direct(tracer, &path, Vertex::Medium(&vertex), lambda);
                         let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
@@ -245,13 +269,14 @@ impl PathsFrom for VolPath {
                 }
             }
             let Some((mut surface, t)) = hit else {
-                let escaped = self.escaped(scene, &path, lambda);
-                return if path.depth >= min_depth { l + escaped } else { l };
+                return if path.depth >= min_depth { l + self.escaped(tracer, &path, lambda) } else { l };
             };
             if let Some(light) = surface.area_light.filter(|_| path.depth >= min_depth) {
                 let emitted = scene.emitted(&surface, surface.surface.wo, lambda);
                 if !emitted.is_black() {
-                    l += self.met(scene, &path, light, emitted);
+                    let emitted = self.met(scene, &path, light, emitted);
+                    tracer.take_part(Some(light), &path.first, path.depth, emitted);
+                    l += emitted;
                 }
             }
             let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
@@ -275,7 +300,14 @@ impl PathsFrom for VolPath {
                 return l;
             };
             path.throughput.beta *= throughput(&surface, &sample);
-            if let Some(body) = body.filter(|_| enters(&surface, &sample)) {
+            let body = body.filter(|_| enters(&surface, &sample));
+            if path.depth == 1 && tracer.takes_parts() {
+                path.first = match body {
+                    Some(_) => DIFFUSE,
+                    None => event_of(&bsdf, surface.surface.wo, &sample),
+                };
+            }
+            if let Some(body) = body {
                 let (left, goes_on) =
                     self.under_surface(tracer, &mut path, &surface, (&body, &sample), lambda);
                 l += left;

@@ -189,7 +189,7 @@ impl Integrator for Radiosity {
                     tracer.finish()?;
                     let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
                     let (l, weight) = (l.groups(), sample.filter_weight);
-                    tile.add([x, y], &Sample { l, lambda, weight, alpha, first_hit });
+                    tile.add([x, y], &Sample { l, lambda, weight, alpha, first_hit, parts: None });
                 }
             }
             Ok(stats)

@@ -78,10 +78,21 @@ impl DirectLighting {
         origin: Option<&Origin>,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
+        self.escaped_from_each(scene, ray, origin, lambda).map(|(_, l)| l).sum()
+    }
+
+    /// [`escaped`](Self::escaped) light by light.
+    pub fn escaped_from_each(
+        &self,
+        scene: &Scene,
+        ray: &RayDifferential,
+        origin: Option<&Origin>,
+        lambda: &SampledWavelengths,
+    ) -> impl Iterator<Item = (LightId, SampledSpectrum)> {
         let lights = scene.infinite_lights().iter();
-        lights
-            .map(|&id| scene.light(id).le(&ray.ray, lambda) * self.weight(scene, origin, id, ray.ray.d))
-            .sum()
+        lights.map(move |&id| {
+            (id, scene.light(id).le(&ray.ray, lambda) * self.weight(scene, origin, id, ray.ray.d))
+        })
     }
 
     /// The weighted emission of a surface back along a ray.
@@ -98,7 +109,7 @@ impl DirectLighting {
         if l.is_black() { l } else { l * self.weight(scene, origin, light, -wo) }
     }
 
-    /// Next-event estimation: direct light that a surface scatters to `wo`.
+    /// Next-event estimation: direct light that a surface scatters to `wo`; `None` if none arrives.
     #[doc(alias = "SampleLd")]
     pub fn sample<B: Scatter>(
         &self,
@@ -106,11 +117,10 @@ impl DirectLighting {
         vertex: (&SurfaceInteraction, &LightSampleContext),
         bsdf: &Bsdf<B>,
         lambda: &SampledWavelengths,
-    ) -> SampledSpectrum {
-        match self.connect(tracer.scene, tracer.sampler, vertex, bsdf, lambda) {
-            Some(Connection { ray, t_max, interfaces, l }) if !tracer.occluded(&ray, t_max, interfaces) => l,
-            _ => SampledSpectrum::ZERO,
-        }
+    ) -> Option<Connection> {
+        let connection = self.connect(tracer.scene, tracer.sampler, vertex, bsdf, lambda)?;
+        let Connection { ray, t_max, interfaces, .. } = &connection;
+        (!tracer.occluded(ray, *t_max, *interfaces)).then_some(connection)
     }
 
     /// Next-event estimation in a medium, before its shadow ray is traced; `None` if no light
@@ -130,7 +140,8 @@ impl DirectLighting {
         let weight = if light.is_delta() { 1.0 } else { power_heuristic(p_l, p) };
         let (ray, t_max) = vertex.shadow_ray(&sample);
         let l = sample.l * (p * weight / p_l);
-        (!l.is_black()).then_some(Connection { ray, t_max, interfaces: self.interfaces(light), l })
+        let interfaces = self.interfaces(light);
+        (!l.is_black()).then_some(Connection { light: light.id(), wi: sample.wi, ray, t_max, interfaces, l })
     }
 
     /// [`sample`](Self::sample) before its shadow ray is traced; `None` if no light arrives.
@@ -158,7 +169,8 @@ impl DirectLighting {
             l * (power_heuristic(p_l, p_b) / p_l)
         };
         let (ray, t_max) = sample.shadow_ray(&surface.surface);
-        Some(Connection { ray, t_max, interfaces: self.interfaces(light), l })
+        let interfaces = self.interfaces(light);
+        Some(Connection { light: light.id(), wi: sample.wi, ray, t_max, interfaces, l })
     }
 }
 
@@ -192,6 +204,10 @@ impl MediumVertex {
 
 /// A vertex connected to a point on a light.
 pub(crate) struct Connection {
+    /// The light.
+    pub light: LightId,
+    /// Unit direction to it.
+    pub wi: Vector3,
     /// The shadow ray.
     pub ray: Ray,
     /// Its end.
@@ -231,7 +247,7 @@ pub(crate) fn connect_all_in_medium(
         let l = sample.l * (vertex.phase.p(vertex.wo, sample.wi) / sample.pdf);
         if !l.is_black() {
             let (ray, t_max) = vertex.shadow_ray(&sample);
-            connect(Connection { ray, t_max, interfaces: Interfaces::Pass, l });
+            connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
         }
     }
 }
@@ -258,7 +274,8 @@ pub(crate) fn connect_all(
             let l = scattered(surface, &bsdf, &sample);
             if !l.is_black() {
                 let (ray, t_max) = sample.shadow_ray(&surface.surface);
-                connect(Connection { ray, t_max, interfaces: Interfaces::Pass, l: l / sample.pdf });
+                let l = l / sample.pdf;
+                connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
             }
         }
     })

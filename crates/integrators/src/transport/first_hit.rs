@@ -53,6 +53,7 @@ pub(crate) fn first_hit(
             tracer.view.pixel_on_plane(Some((neighbours, true)), p, surface.surface.n, time)
         });
         let names = tracer.scene.names();
+        let [object, asset] = names.object(&hit).map(|name| id_of_name(&name));
         return Some(FirstHit {
             depth,
             position: world_from_render.transform_point3(p.as_dvec3()).as_vec3().to_array(),
@@ -66,8 +67,9 @@ pub(crate) fn first_hit(
             albedo,
             uv: surface.surface.uv.to_array(),
             motion: motion(tracer, &hit, p).to_array(),
-            object: id_of_name(&names.object(&hit)),
+            object,
             material: id_of_name(names.material(surface.material)),
+            asset,
         });
     }
     None

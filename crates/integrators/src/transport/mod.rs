@@ -7,6 +7,7 @@
 //! | `pixel_samples` | camera rays of all pixels of a pass |
 //! | `first_hit` | the first hit of a camera ray, for the AOVs of the film |
 //! | `shutter_sample` | wavelengths and time of a sample |
+//! | `parts` | the first event of a path, for layers of parts of the light |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
 //! | `media` | flights through participating media, and their transmittance |
@@ -18,6 +19,7 @@
 pub(crate) mod direct;
 pub(crate) mod first_hit;
 pub(crate) mod media;
+pub(crate) mod parts;
 pub(crate) mod path_state;
 pub(crate) mod pixel_samples;
 pub(crate) mod roulette;

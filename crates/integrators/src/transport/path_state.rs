@@ -1,5 +1,6 @@
 //! A path from the camera between two of its vertices.
 
+use film::FirstEvent;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
@@ -25,6 +26,8 @@ pub(crate) struct PathState {
     /// The product of η² over the refractions: β times this is without the scaling of radiance by
     /// refraction.
     pub eta_scale: f32,
+    /// The event by which it left its first vertex, for layers of parts.
+    pub first: FirstEvent,
 }
 
 /// The vertex that a ray starts at, as a context of light sampling, and the density of the ray's
@@ -65,7 +68,15 @@ impl Scattered {
 impl PathState {
     /// A path of throughput 1 whose ray leaves scattering event number `depth`; 0 is the camera.
     pub fn new(ray: RayDifferential, depth: u32) -> Self {
-        Self { ray, beta: SampledSpectrum::ONE, depth, origin: None, medium: None, eta_scale: 1.0 }
+        Self {
+            ray,
+            beta: SampledSpectrum::ONE,
+            depth,
+            origin: None,
+            medium: None,
+            eta_scale: 1.0,
+            first: FirstEvent::None,
+        }
     }
 
     /// Passes a surface at distance `t` that does not scatter.

@@ -4,7 +4,7 @@
 //! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and
 //! then those of the algorithm. [Pharr 2023 §1.3.4, §5.4.1]
 
-use film::{FilmTile, Filter, FirstHit};
+use film::{FilmTile, Filter, FirstHit, Parts};
 use geometry::RayStats;
 use lanes::{Each, Int, Real};
 use math::Vec2;
@@ -69,18 +69,21 @@ impl PixelSamples<'_> {
         let tile = |mut tile: FilmTile| {
             let mut sampler = self.sampler.clone();
             let mut stats = RayStats::default();
-            let bounds = tile.bounds();
+            let (bounds, mut parts) = (tile.bounds(), tile.new_parts());
             let done = (bounds.min[1]..bounds.max[1]).try_for_each(|y| {
                 control.check()?;
                 for x in bounds.min[0]..bounds.max[0] {
                     let mut sample = self.begin(shutter, [x, y], &mut sampler);
-                    let mut tracer = Tracer::new(self.scene, self.view, control, &mut sampler, &mut stats);
+                    parts.iter_mut().for_each(Parts::clear);
+                    let mut tracer = Tracer::new(self.scene, self.view, control, &mut sampler, &mut stats)
+                        .with_parts(parts.as_mut());
                     let l = radiance(&mut sample, &mut tracer);
                     let first_hit = self.first_hit(&tile, &sample, &sample.lambda, &mut tracer);
                     tracer.finish()?;
                     let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
                     let radiance = film::Sample::new(&l, &sample.lambda, sample.filter_weight);
-                    tile.add([x, y], &film::Sample { alpha, first_hit, ..radiance });
+                    let parts = parts.as_ref();
+                    tile.add([x, y], &film::Sample { alpha, first_hit, parts, ..radiance });
                 }
                 Ok(())
             });

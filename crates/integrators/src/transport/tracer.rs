@@ -1,11 +1,13 @@
 //! Tracing the rays of a sample.
 
+use film::{FirstEvent, Parts};
 use geometry::{Hit, RayStats};
 use math::{Ray, RayDifferential};
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf};
+use scene::light::LightId;
 use scene::{Scene, SurfaceInteraction, View};
-use spectrum::SampledWavelengths;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::{Cancelled, Control};
 
@@ -24,6 +26,8 @@ pub struct Tracer<'a> {
     pub stats: &'a mut RayStats,
     control: &'a Control,
     is_cancelled: bool,
+    /// Takes the parts of the sample's radiance, where the film has layers of them.
+    parts: Option<&'a mut Parts>,
 }
 
 impl<'a> Tracer<'a> {
@@ -35,13 +39,46 @@ impl<'a> Tracer<'a> {
         sampler: &'a mut Sampler,
         stats: &'a mut RayStats,
     ) -> Self {
-        Self { scene, view, sampler, stats, control, is_cancelled: false }
+        Self { scene, view, sampler, stats, control, is_cancelled: false, parts: None }
+    }
+
+    /// The same, which also takes the parts of the sample's radiance.
+    pub(crate) fn with_parts(self, parts: Option<&'a mut Parts>) -> Self {
+        Self { parts, ..self }
+    }
+
+    /// Whether the parts of the sample's radiance are taken.
+    #[inline]
+    pub(crate) fn takes_parts(&self) -> bool {
+        self.parts.is_some()
+    }
+
+    /// Takes a part of the sample's radiance: that of a path with this first event and number of
+    /// scattering events from a light, or from a medium.
+    #[inline]
+    pub(crate) fn take_part(
+        &mut self,
+        light: Option<LightId>,
+        first: &FirstEvent,
+        events: u32,
+        l: SampledSpectrum,
+    ) {
+        if let Some(parts) = &mut self.parts {
+            let group = light.map_or(0, |light| self.scene.light(light).group());
+            parts.add(l, group, first, events);
+        }
+    }
+
+    /// Multiplies the parts of the sample's radiance.
+    pub(crate) fn scale_parts(&mut self, factor: f32) {
+        self.parts.iter_mut().for_each(|parts| parts.scale(factor));
     }
 
     /// Traces a part of the sample with another sampler.
     pub fn with_sampler<T>(&mut self, sampler: &mut Sampler, trace: impl FnOnce(&mut Tracer) -> T) -> T {
         let Self { scene, view, control, is_cancelled, .. } = *self;
-        let mut part = Tracer { scene, view, sampler, stats: self.stats, control, is_cancelled };
+        let parts = self.parts.as_deref_mut();
+        let mut part = Tracer { scene, view, sampler, stats: self.stats, control, is_cancelled, parts };
         let found = trace(&mut part);
         self.is_cancelled = part.is_cancelled;
         found

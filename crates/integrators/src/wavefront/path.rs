@@ -45,7 +45,7 @@ impl Path {
             let bsdf = Bsdf { bxdf, frame: bsdf.frame };
             if bsdf.flags().is_non_specular() {
                 let connection = self.direct.connect(scene, sampler, (&surface, &context), &bsdf, &lambda);
-                if let Some(Connection { ray, t_max, interfaces, l }) = connection {
+                if let Some(Connection { ray, t_max, interfaces, l, .. }) = connection {
                     let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
                     queue.push(path, state.beta * l, &ray, t_max);
                 }

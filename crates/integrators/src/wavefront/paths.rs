@@ -1,5 +1,6 @@
 //! The paths of a batch, in columns.
 
+use film::FirstEvent;
 use geometry::RayColumns;
 use lanes::{Int, MAX_LANES, Real};
 use math::{Bounds2i, Differentials, Point3Error, Ray, RayDifferential, Vec3};
@@ -189,6 +190,7 @@ impl Paths {
             depth: self.depth[row],
             origin: (pdf > 0.0).then_some(Origin { context, pdf }),
             eta_scale: self.eta_scale[row],
+            first: FirstEvent::None,
         }
     }
 

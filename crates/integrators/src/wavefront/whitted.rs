@@ -34,7 +34,7 @@ impl Whitted {
         let PathState { ray, beta, depth, .. } = state;
         if depth < self.0.max_depth {
             connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
-                let Connection { ray, t_max, interfaces, l } = light;
+                let Connection { ray, t_max, interfaces, l, .. } = light;
                 let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
                 queue.push(path, beta * l, &ray, t_max);
             });

@@ -63,7 +63,8 @@ fn every_algorithm_writes_aovs_without_changing_colours() {
         IntegratorDesc::Radiosity(RadiosityDesc::default()),
     ] {
         let name = format!("{integrator:?}");
-        let film = rendered(&wall(integrator.clone(), &Layer::ALL));
+        let layers: Vec<_> = Layer::ALL.into_iter().filter(|layer| !layer.is_part()).collect();
+        let film = rendered(&wall(integrator.clone(), &layers));
         let colors = |film: &Film| film.develop().unwrap().values().map(f32::to_bits).collect::<Vec<_>>();
         assert!(colors(&film) == colors(&rendered(&wall(integrator, &[]))), "{name}");
 

@@ -15,6 +15,7 @@ mod media;
 mod merging;
 mod mlt;
 mod openpbr;
+mod parts;
 mod photon_mapping;
 
 mod session;

@@ -95,6 +95,45 @@ macro_rules! each_bxdf {
     };
 }
 
+impl Bxdf<'_> {
+    /// The share of f that is diffuse, from 0 to 1, for two directions on the same side: what
+    /// fibres scatter, or comes out of the depth of a surface. Facets mirror the rest. Fibres of
+    /// hair and measured surfaces count as facets.
+    pub fn diffuse_share(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
+        let mirrored = match self {
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::NormalizedFresnel(_) => {
+                return SampledSpectrum::ONE;
+            }
+            Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::CoatedConductor(_)
+            | Self::Hair(_)
+            | Self::Measured(_) => return SampledSpectrum::ZERO,
+            Self::OpenPbr(surface) => {
+                let share = surface.diffused(wo, wi).safe_div(self.f(wo, wi, mode));
+                return share.map(|share| share.clamp(0.0, 1.0));
+            }
+            Self::CoatedDiffuse(layers) => layers.interface.f(wo, wi, mode),
+            Self::Subsurface(body) => body.boundary.f(wo, wi, mode),
+        };
+        let share = mirrored.safe_div(self.f(wo, wi, mode));
+        share.map(|share| 1.0 - share.clamp(0.0, 1.0))
+    }
+
+    /// The same for a sample in the local frame, on the side of `wo`. Where its value is that of one
+    /// of many ways in which light takes its direction, it is the share of this one.
+    pub fn diffuse_share_of(&self, wo: Vector3, sample: &BsdfSample, mode: TransportMode) -> SampledSpectrum {
+        match self {
+            _ if sample.flags.is_specular() => SampledSpectrum::ZERO,
+            Self::CoatedDiffuse(_) if sample.pdf_is_proportional => {
+                SampledSpectrum::splat(if sample.flags.is_diffuse() { 1.0 } else { 0.0 })
+            }
+            _ => self.diffuse_share(wo, sample.wi, mode),
+        }
+    }
+}
+
 impl Scatter for Bxdf<'_> {
     #[inline]
     fn flags(&self) -> BxdfFlags {

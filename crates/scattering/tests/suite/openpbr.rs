@@ -362,3 +362,31 @@ fn coats_absorb_along_the_path_in_them() {
     let expected = reflected + (1.0 - reflected) * 0.5f32.powf(1.0 / inner);
     assert!((albedo(&bxdf, cosine)[0] - expected).abs() < 1e-3);
 }
+
+#[test]
+fn what_is_not_diffuse_does_not_depend_on_what_lies_deep() {
+    let base = OpenPbrParameters { specular_roughness: 0.6, coat_roughness: 0.4, ..Default::default() };
+    let coated = OpenPbrParameters { coat_weight: 1.0, coat_darkening: 0.0, ..base };
+    let fuzzy = OpenPbrParameters { fuzz_weight: 1.0, fuzz_color: SampledSpectrum::ZERO, ..base };
+    let mut random = Random::new(5);
+    for parameters in [base, coated, fuzzy, thin(base)] {
+        let black = SampledSpectrum::ZERO;
+        let [bright, dark] = [WHITE, black].map(|color| {
+            surface(OpenPbrParameters { base_color: color, subsurface_color: color, ..parameters })
+        });
+        let metal = surface(OpenPbrParameters { base_metalness: 1.0, fuzz_weight: 0.0, ..parameters });
+        for _ in 0..1000 {
+            let [wo, wi] = [(); 2].map(|()| {
+                let (cosine, phi) = (0.01 + 0.99 * random.get_1d(), 6.0 * random.get_1d());
+                spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, phi)
+            });
+            let share = bright.diffuse_share(wo, wi, TransportMode::Radiance);
+            assert!(share.0.iter().all(|share| (0.0..=1.0).contains(share)), "{share:?}");
+            assert_eq!(metal.diffuse_share(wo, wi, TransportMode::Radiance), black);
+            let value = |bxdf: &Bxdf| bxdf.f(wo, wi, TransportMode::Radiance);
+            let mirrored = (WHITE - share) * value(&bright);
+            let error = (mirrored - value(&dark))[0].abs();
+            assert!(error <= 1e-4 * value(&bright)[0], "{error} of {:?}", value(&dark));
+        }
+    }
+}

@@ -3,6 +3,8 @@
 //! The lights of a group are numbered in the order in which its members were added, lights of its
 //! instances included. An emitting geometry becomes one row for each path of instances to it.
 
+use std::collections::HashMap;
+
 use super::Compiler;
 use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, SceneSphere};
 use crate::material::Material;
@@ -182,17 +184,33 @@ impl Compiler<'_> {
             emission.unwrap_or_else(AreaEmission::black)
         });
         let mut table = LightTable::new(emissions.collect());
-        self.add_rows(GroupId::TOP, InstancePath::TOP, world, &mut table);
-        for (light, medium) in self.lights(sphere) {
-            table.push(light, 1, MediumInterface { inside: medium, outside: medium });
+        let desc = self.desc;
+        let groups: HashMap<_, _> = desc.light_groups().into_iter().zip(0..).collect();
+        let group = |name: &Option<String>| name.as_ref().map_or(0, |name| groups[name.as_str()]);
+        // Emissions of materials, which follow those of area lights, have no group.
+        let of_emissions: Vec<_> = desc.area_lights.iter().map(|(_, light)| group(&light.group)).collect();
+        self.add_rows(GroupId::TOP, InstancePath::TOP, world, &of_emissions, &mut table);
+        for (light, medium, group) in self.lights(sphere, group) {
+            table.push(light, 1, MediumInterface { inside: medium, outside: medium }, group);
         }
         table
     }
 
-    fn add_rows(&self, group: GroupId, path: InstancePath, world: &World, table: &mut LightTable) {
+    /// Adds the rows of the emitters of a group of the world. `light_groups` has the groups of
+    /// emissions.
+    fn add_rows(
+        &self,
+        group: GroupId,
+        path: InstancePath,
+        world: &World,
+        light_groups: &[u32],
+        table: &mut LightTable,
+    ) {
         for member in &self.emitters[group.0 as usize].members {
             match member {
-                &Member::Instance(id, placed) => self.add_rows(placed, path.into(id), world, table),
+                &Member::Instance(id, placed) => {
+                    self.add_rows(placed, path.into(id), world, light_groups, table)
+                }
                 Member::Geometry(geometry, emitter) => {
                     let &Emitter { emission, alpha, invisible, power, primitives } = emitter;
                     let mut light = AreaLight {
@@ -211,7 +229,8 @@ impl Compiler<'_> {
                         (0..primitives).map(scale).collect()
                     });
                     let media = self.entries[geometry.0 as usize].media.unwrap_or_default();
-                    table.push(Light::Area(light), primitives, media);
+                    let group = light_groups.get(emission.0 as usize).copied().unwrap_or(0);
+                    table.push(Light::Area(light), primitives, media, group);
                 }
             }
         }

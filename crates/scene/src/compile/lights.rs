@@ -27,12 +27,17 @@ fn seen_through(portal: Portal, radiance: PortalRadiance) -> Light {
 }
 
 impl Compiler<'_> {
-    /// Compiles all lights without a surface, each with its medium. `scene` bounds all surfaces.
-    pub(super) fn lights(&mut self, scene: SceneSphere) -> Vec<(Light, Option<MediumId>)> {
+    /// Compiles all lights without a surface, each with its medium and the index of its group.
+    /// `scene` bounds all surfaces.
+    pub(super) fn lights(
+        &mut self,
+        scene: SceneSphere,
+        group: impl Fn(&Option<String>) -> u32,
+    ) -> Vec<(Light, Option<MediumId>, u32)> {
         let desc = self.desc;
         let lights = desc.lights.iter();
         let compile = |(_, desc): (_, &Stated<LightDesc>)| {
-            Some((self.light(&desc.value, &desc.origin, scene)?, medium_id(desc.medium)))
+            Some((self.light(&desc.value, &desc.origin, scene)?, medium_id(desc.medium), group(&desc.group)))
         };
         lights.filter_map(compile).collect()
     }

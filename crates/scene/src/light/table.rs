@@ -23,6 +23,8 @@ pub(crate) struct LightTable {
     row: Vec<u32>,
     /// The media around each row.
     media: Vec<MediumInterface>,
+    /// The group of each row.
+    groups: Vec<u32>,
     emissions: Vec<AreaEmission>,
     infinite: Vec<LightId>,
 }
@@ -33,9 +35,9 @@ impl LightTable {
         Self { emissions, ..Self::default() }
     }
 
-    /// Adds a row of `count` lights. The media are those on the sides of its surface; without one,
-    /// it is in the outer.
-    pub fn push(&mut self, light: Light, count: u32, media: MediumInterface) {
+    /// Adds a row of `count` lights of a group. The media are those on the sides of its surface;
+    /// without one, it is in the outer.
+    pub fn push(&mut self, light: Light, count: u32, media: MediumInterface, group: u32) {
         if each_light!(&light, light => light.is_infinite()) {
             self.infinite.push(LightId(self.row.len() as u32));
         }
@@ -43,6 +45,7 @@ impl LightTable {
         self.row.resize(self.row.len() + count as usize, self.rows.len() as u32);
         self.rows.push(light);
         self.media.push(media);
+        self.groups.push(group);
     }
 
     /// Whether there is no light.
@@ -162,6 +165,12 @@ impl<'a> LightRef<'a> {
     /// The row of the table that it belongs to.
     pub fn row(&self) -> &'a Light {
         self.light
+    }
+
+    /// Its group, an index of [`SceneDesc::light_groups`](description::SceneDesc::light_groups).
+    pub fn group(&self) -> usize {
+        let LightTable { row, groups, .. } = self.part.lights.table;
+        groups[row[self.id.0 as usize] as usize] as usize
     }
 
     /// The medium of the light that leaves it along `w`, where its surface has the normal `n`, zero

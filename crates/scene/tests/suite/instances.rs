@@ -112,18 +112,19 @@ fn the_name_of_an_instance_applies_to_everything_in_it() {
         scene.hit(&ray, f32::INFINITY, &mut RayStats::default()).map(|hit| scene.names().object(&hit))
     };
     for (x, expected) in [
-        (0.0, "shape-0"),
-        (1.0, "shape-1"),
-        (2.0, "tree/0"),
-        (2.3, "tree/0"),
-        (2.6, "tree/0"),
-        (3.0, "leaf/0"),
-        (4.0, "tree/1"),
-        (4.6, "tree/1"),
+        (0.0, ["shape-0", "shape-0"]),
+        (1.0, ["shape-1", "shape-1"]),
+        (2.0, ["tree/0", "tree"]),
+        (2.3, ["tree/0", "tree"]),
+        (2.6, ["tree/0", "tree"]),
+        (3.0, ["leaf/0", "leaf"]),
+        (4.0, ["tree/1", "tree"]),
+        (4.6, ["tree/1", "tree"]),
     ] {
-        assert_eq!(name(x).as_deref(), Some(expected), "at {x}");
+        assert_eq!(name(x).unwrap(), expected, "at {x}");
     }
     let names: Vec<String> = scene.names().objects().collect();
     assert_eq!(names, ["shape-0", "shape-1", "tree/0", "leaf/0", "tree/1"]);
+    assert_eq!(scene.names().assets().collect::<Vec<_>>(), ["shape-0", "shape-1", "tree", "leaf"]);
     assert_eq!(scene.names().materials().collect::<Vec<_>>(), ["default"]);
 }

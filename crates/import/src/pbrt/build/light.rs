@@ -11,11 +11,12 @@ impl Builder<'_> {
     pub(super) fn light(&mut self, light: LightStatement) -> Option<Stated<LightDesc>> {
         let (read, origin) = self.read(light.statement, |reader| {
             let kind = kind(reader)?;
-            Some((kind, scale(reader)))
+            Some((kind, scale(reader), group(reader)))
         });
         let medium = light.medium.as_ref().and_then(|name| self.named_medium(name));
-        let (kind, scale) = read?;
-        Some(Stated::new(LightDesc { kind, world_from_light: light.world_from_light, scale, medium }, origin))
+        let (kind, scale, group) = read?;
+        let world_from_light = light.world_from_light;
+        Some(Stated::new(LightDesc { kind, world_from_light, scale, medium, group }, origin))
     }
 
     /// Builds an area light; one that cannot be read is replaced by one without emission.
@@ -39,6 +40,15 @@ fn scale(reader: &mut Reader) -> f32 {
         reader.refuse("scale", "`scale` cannot be negative");
     }
     scale
+}
+
+/// The group of lights that it belongs to.
+fn group(reader: &mut Reader) -> Option<String> {
+    let name = reader.string("lightgroup")?.value;
+    if name.is_empty() {
+        reader.refuse("lightgroup", "a group of lights has a name");
+    }
+    Some(name)
 }
 
 /// A power or an illuminance; the format writes -1 for none.
@@ -148,5 +158,6 @@ fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {
         scale: scale(reader),
         power: total(reader, "power"),
         two_sided: reader.boolean("twosided", false),
+        group: group(reader),
     })
 }

@@ -4,8 +4,8 @@ use super::chances::Lobe;
 use super::diffuse::oren_nayar;
 use super::fuzz::{self, Scattered};
 use super::mirror::Mirror;
-use super::shares::Shares;
-use super::{OpenPbr, View, Weights};
+use super::shares::{Rests, Shares};
+use super::{OpenPbr, View, Weights, flip, is_off_horizon};
 use crate::{BsdfSample, TransportMode, fr_dielectric};
 use math::{Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
@@ -54,10 +54,7 @@ impl OpenPbr<'_> {
         let (o, i, rests) = (&view.shares, &self.shares(wi), &view.rests);
         let mut f = SampledSpectrum::ZERO;
         if self.stack.fuzz_weight > 0.0 {
-            let fibres = [o, i].map(|w| Scattered { once: w.taken.fuzz_once, more: w.taken.fuzz_more });
-            let roughness = self.stack.fuzz_roughness;
-            let fuzz = fuzz::value(self.fuzz_color, roughness, rests.fuzz, [wo, wi], fibres);
-            f += fuzz * (self.stack.fuzz_weight * weights.layers);
+            f += self.fuzz([o, i], rests, [wo, wi], weights);
         }
         if self.stack.coat_weight > 0.0
             && let Some(mirror) = Mirror::new(&self.stack.coat, wo, wi)
@@ -72,12 +69,7 @@ impl OpenPbr<'_> {
             base += self.reflectance(mirror.cosine, weights) * white;
         }
         if weights.diffuse > 0.0 {
-            let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
-            let mut diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
-            if self.stack.is_thin {
-                diffuse = diffuse * self.diffuse_weight + self.scattered(1.0 - self.forward, wo, wi);
-            }
-            base += diffuse * left * self.darkening * weights.diffuse;
+            base += self.diffuse([o, i], rests, [wo, wi], weights);
         }
         if weights.metal > 0.0 && rests.metal > 0.0 {
             let left = o.metal_rest() * i.metal_rest() / (PI * rests.metal);
@@ -91,6 +83,56 @@ impl OpenPbr<'_> {
             base *= self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z));
         }
         f + base
+    }
+
+    /// The value of the fibres.
+    #[inline]
+    fn fuzz(
+        &self,
+        shares: [&Shares; 2],
+        rests: &Rests,
+        directions: [Vector3; 2],
+        weights: &Weights,
+    ) -> SampledSpectrum {
+        let fibres = shares.map(|w| Scattered { once: w.taken.fuzz_once, more: w.taken.fuzz_more });
+        let fuzz = fuzz::value(self.fuzz_color, self.stack.fuzz_roughness, rests.fuzz, directions, fibres);
+        fuzz * (self.stack.fuzz_weight * weights.layers)
+    }
+
+    /// The value of the diffuse base, below the coat.
+    #[inline]
+    fn diffuse(
+        &self,
+        [o, i]: [&Shares; 2],
+        rests: &Rests,
+        [wo, wi]: [Vector3; 2],
+        weights: &Weights,
+    ) -> SampledSpectrum {
+        let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
+        let mut diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
+        if self.stack.is_thin {
+            diffuse = diffuse * self.diffuse_weight + self.scattered(1.0 - self.forward, wo, wi);
+        }
+        diffuse * left * self.darkening * weights.diffuse
+    }
+
+    /// The value of fibres and the diffuse base alone, for two directions on the same side.
+    pub(in super::super) fn diffused(&self, wo: Vector3, wi: Vector3) -> SampledSpectrum {
+        if !(is_off_horizon(wo) && is_off_horizon(wi)) {
+            return SampledSpectrum::ZERO;
+        }
+        let (below, weights) = (wo.z < 0.0, self.weights(wo.z));
+        let directions @ [wo, wi] = [flip(below, wo), flip(below, wi)];
+        let (o, i, rests) = (self.shares(wo), self.shares(wi), self.rests());
+        let absorbed = self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z));
+        let mut f = SampledSpectrum::ZERO;
+        if self.stack.fuzz_weight > 0.0 {
+            f += self.fuzz([&o, &i], &rests, directions, &weights);
+        }
+        if weights.diffuse > 0.0 {
+            f += self.diffuse([&o, &i], &rests, directions, &weights) * absorbed;
+        }
+        f
     }
 
     /// The value for two directions off the horizon.
