@@ -38,7 +38,8 @@ fn constants_are_kept() {
     let material = desc.materials.push(MaterialKind::Diffuse { reflectance: 0.65.into() }.into());
     let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(2.5));
     desc.lights.push(LightKind::Infinite { radiance, illuminance: Some(3.0), portal: None }.into());
-    let area_light = Some(desc.area_lights.push(AreaLightDesc::new(0.1.into())));
+    let light = AreaLightDesc { group: Some("glow".into()), ..AreaLightDesc::new(0.1.into()) };
+    let area_light = Some(desc.area_lights.push(light));
     desc.shapes.push(ShapeDesc { material: Some(material), area_light, ..sphere() });
     check(&desc);
 }
