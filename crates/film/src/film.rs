@@ -89,13 +89,10 @@ pub struct Film {
     pub(crate) spectrum: Sums,
     pub(crate) gbuffer: Option<GBufferSpace>,
     pub(crate) light_groups: Arc<[String]>,
-    /// Weights of the identifiers of [`ID_LAYERS`], for each tile; none without their layers.
-    pub(crate) ids: [Vec<IdSums>; ID_LAYERS.len()],
+    /// Weights of the identifiers of [`Layer::IDS`], for each tile; none without their layers.
+    pub(crate) ids: [Vec<IdSums>; Layer::IDS.len()],
     pub(crate) splats: SplatSums,
 }
-
-/// The layers of [`Film::ids`].
-pub(crate) const ID_LAYERS: [Layer; 3] = [Layer::ObjectId, Layer::MaterialId, Layer::AssetId];
 
 impl Film {
     /// A film without light. Refused if there is no pixel to render, or more than fit in memory.
@@ -144,11 +141,11 @@ impl Film {
             spectrum: Sums::new(grid, bucket_sums).map_err(no_memory)?,
             gbuffer: settings.gbuffer,
             light_groups: settings.light_groups,
-            ids: [ids(ID_LAYERS[0])?, ids(ID_LAYERS[1])?, ids(ID_LAYERS[2])?],
+            ids: [ids(Layer::IDS[0])?, ids(Layer::IDS[1])?, ids(Layer::IDS[2])?],
             splats: SplatSums::default(),
         };
         // Most pixels will have one identifier per layer.
-        let id_layers = ID_LAYERS.into_iter().filter(|&layer| layers.has(layer)).count();
+        let id_layers = Layer::IDS.into_iter().filter(|&layer| layers.has(layer)).count();
         require_memory(ID_BYTES * id_layers * bounds.area()).map_err(no_memory)?;
         Ok(film)
     }
@@ -217,7 +214,7 @@ impl Film {
 
     /// The identifiers of a layer.
     pub(crate) fn ids_of(&self, layer: Layer) -> &[IdSums] {
-        let index = ID_LAYERS.iter().position(|&of| of == layer);
+        let index = Layer::IDS.iter().position(|&of| of == layer);
         index.map_or(&[], |index| &self.ids[index])
     }
 

@@ -102,6 +102,9 @@ impl Layer {
         Self::AssetId,
     ];
 
+    /// Those that count identifiers.
+    pub const IDS: [Self; 3] = [Self::ObjectId, Self::MaterialId, Self::AssetId];
+
     /// The parts of the light by what paths do. The first five sum to the colour, and so do the
     /// last two.
     pub const OF_PATHS: [Self; 7] = [
@@ -271,7 +274,7 @@ impl Layer {
 
     /// Whether it counts identifiers.
     pub(crate) fn is_id(self) -> bool {
-        matches!(self, Self::ObjectId | Self::MaterialId | Self::AssetId)
+        Self::IDS.contains(&self)
     }
 
     /// Whether it needs a sample's first hit, or whether there is one.

@@ -7,7 +7,6 @@ use math::Bounds2i;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::exposure::Exposure;
-use crate::film::ID_LAYERS;
 use crate::grid::index_in;
 use crate::layer::Layout;
 use crate::sum::{MAX_TERM, TileSums, can_add, units};
@@ -178,8 +177,8 @@ struct LaneTerms {
 pub(crate) struct TileData<'film> {
     pub(crate) layout: &'film Layout,
     pub(crate) sums: Option<TileSums<'film>>,
-    /// Of [`ID_LAYERS`].
-    pub(crate) ids: [Option<&'film mut IdSums>; ID_LAYERS.len()],
+    /// Of [`Layer::IDS`].
+    pub(crate) ids: [Option<&'film mut IdSums>; Layer::IDS.len()],
 }
 
 impl TileData<'_> {

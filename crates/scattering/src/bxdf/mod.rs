@@ -121,8 +121,8 @@ impl Bxdf<'_> {
         share.map(|share| 1.0 - share.clamp(0.0, 1.0))
     }
 
-    /// The same for a sample in the local frame, on the side of `wo`. Where its value is that of one
-    /// of many ways in which light takes its direction, it is the share of this one.
+    /// The same for a sample in the local frame, on the side of `wo`. Where its value is that of
+    /// one of many ways in which light takes its direction, it is the share of this one.
     pub fn diffuse_share_of(&self, wo: Vector3, sample: &BsdfSample, mode: TransportMode) -> SampledSpectrum {
         match self {
             _ if sample.flags.is_specular() => SampledSpectrum::ZERO,
