@@ -121,7 +121,8 @@ fn parts_sum_to_the_picture() {
     for (integrator, in_fog) in [(path(5), false), (vol_path(5), true), (vol_path(5), false)] {
         let mut desc = settings(integrator, 16, 1);
         still_life(&mut desc);
-        (sky(&mut desc), lamp(&mut desc));
+        sky(&mut desc);
+        lamp(&mut desc);
         if in_fog {
             fog(&mut desc, 0.9);
         }
