@@ -4,7 +4,8 @@
 //! it is rendered, a [`Job`] renders a description to a picture, [`write_picture`] writes that to a
 //! file. A [`RenderOrder`] saves a render, so that it can be continued as a [`SavedRender`].
 //! [`render_file`] does all but the last. [`compare`] renders one scene with several integrators
-//! and measures their errors.
+//! and measures their errors. A [`trace::PixelTrace`] shows what happens along the paths of a
+//! pixel.
 
 pub use description;
 pub use export;
@@ -32,6 +33,7 @@ mod picture;
 mod schedule;
 mod settings;
 mod sketch;
+pub mod trace;
 
 pub use clock::system_clock;
 pub use film_file::{RenderOrder, SavedRender, Shard};

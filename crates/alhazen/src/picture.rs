@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use image::{
     Attribute, Channel, Chromaticities, Display, DisplaySettings, Format, Image, ImageError, ImageMetadata,
-    PixelSource, WriteOptions,
+    PixelSource, WriteOptions, encode,
 };
 use spectrum::{Matrix3, Rgb, RgbColorSpace};
 
@@ -24,6 +26,13 @@ pub fn write_picture(
         Some(format) if format != Format::Exr => write(&InSrgb::new(picture, format, display)),
         _ => write(picture),
     }
+}
+
+/// A picture as a PNG in a data URI.
+pub(crate) fn data_uri(picture: &Image) -> String {
+    let png =
+        encode(picture, Format::Png, &WriteOptions::default()).expect("invariant: PNG takes any picture");
+    format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
 /// A pixel source that converts colours to sRGB, and for formats of codes to what a display shows,

@@ -104,6 +104,13 @@ pub struct Compiled {
     compiled_at: Instant,
 }
 
+impl Compiled {
+    /// The name of the algorithm.
+    pub fn integrator(&self) -> &'static str {
+        self.integrator
+    }
+}
+
 /// A job with everything that it is run with.
 pub struct Task<'a> {
     /// The scene file.

@@ -26,6 +26,7 @@ mod resume;
 mod scene;
 mod summary;
 mod threads;
+mod trace;
 mod values;
 
 use std::io::ErrorKind;
@@ -56,6 +57,7 @@ fn main() -> ExitCode {
         Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),
+        Command::TracePixel(arguments) => trace::trace(arguments),
         Command::Doctor(arguments) => doctor::doctor(arguments).map(done),
         Command::Completions(arguments) => manual::completions(arguments).map(done),
         Command::Man(arguments) => manual::man(arguments).map(done),

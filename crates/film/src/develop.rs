@@ -8,7 +8,7 @@ use image::{
     Channel, Chromaticities, Image, ImageError, ImageMetadata, PixelSource, Pixels, SampleDepth, Window,
 };
 use math::Vec3;
-use spectrum::{Matrix3, Rgb};
+use spectrum::{Matrix3, Rgb, SampledSpectrum, SampledWavelengths};
 
 use crate::splats::SPLAT_SUMS;
 use crate::sum::{reserved, value};
@@ -23,6 +23,11 @@ impl Film {
     /// where there is no memory for it.
     pub fn develop(&self) -> Result<Image, ImageError> {
         Development::of_colors(self, None).to_image()
+    }
+
+    /// The colour that light gives a pixel, in the film's colour space.
+    pub fn rgb(&self, l: &SampledSpectrum, lambda: &SampledWavelengths) -> [f32; 3] {
+        Development::of_colors(self, None).color(self.exposure.response(l, lambda, 1.0).map(f64::from))
     }
 
     /// The picture with all layers and buckets, row by row while it is written, so that a large one

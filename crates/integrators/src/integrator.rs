@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use description::Diagnostic;
-use film::Film;
+use film::{Film, Filter};
 use geometry::RayStats;
 use scene::{Scene, View};
 
-use crate::{Cancelled, Control, PassError};
+use crate::{Cancelled, Control, PassError, Record};
 
 /// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
@@ -50,6 +50,19 @@ pub trait Integrator: Send {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, PassError>;
+
+    /// The steps of a sample of a pixel, given by its index; `None` by algorithms that do not
+    /// estimate pixels one by one. `filter` is that of the film.
+    fn record(
+        &self,
+        _sample: ([i32; 2], u32),
+        _scene: &Scene,
+        _view: &View,
+        _filter: &Filter,
+        _control: &Control,
+    ) -> Option<Result<Record, Cancelled>> {
+        None
+    }
 
     /// The additional films of the passes so far, with their names. Their pictures are saved beside
     /// the main one, under its name with theirs appended.

@@ -38,7 +38,7 @@ use image::{Image, ImageError, PixelSource};
 use rayon::prelude::*;
 use scene::{Scene, View};
 
-use crate::{Control, Integrator, PassError};
+use crate::{Cancelled, Control, Integrator, PassError, Record};
 
 /// The number of passes of the first noise estimate. Before it, light that few paths find may be
 /// missing.
@@ -282,6 +282,22 @@ impl Session {
     /// Whether the next pass would end after this time. At least one pass is run.
     fn is_over(&self, time: Duration) -> bool {
         !self.state.done.is_empty() && self.state.elapsed.saturating_add(self.last_pass) >= time
+    }
+
+    /// The steps of a sample of a pixel, given by its index, which are not added to the film;
+    /// `None` by algorithms that do not estimate pixels one by one.
+    pub fn record(
+        &mut self,
+        pixel: [i32; 2],
+        index: u32,
+        control: &Control,
+    ) -> Result<Option<Record>, Cancelled> {
+        if !self.is_prepared {
+            self.integrator.prepare(&self.scene, &self.view, control)?;
+            self.is_prepared = true;
+        }
+        let filter = self.state.film.filter();
+        self.integrator.record((pixel, index), &self.scene, &self.view, filter, control).transpose()
     }
 
     /// The progress of the session.

@@ -3,6 +3,7 @@
 mod bench;
 mod command;
 mod dist;
+mod gallery;
 mod python;
 mod rgb_table;
 mod test;
@@ -23,6 +24,7 @@ usage: cargo xtask TASK
   wheel      build the Python package, into target/wheels
   dist [TARGET]
              archives of the program, and on Debian a package, into target/dist
+  gallery    the pages of docs/gallery, with their pictures
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
+        ["gallery"] => gallery::make(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

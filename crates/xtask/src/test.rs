@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use super::command::{cargo, succeed};
-use super::{python, tidy};
+use super::{gallery, python, tidy};
 
 /// A step that cargo runs.
 struct Step {
@@ -50,6 +50,7 @@ pub fn run(root: &Path) -> Result<(), String> {
     for Step { name, arguments } in STEPS {
         step(name, || succeed(cargo(root).args(arguments).env("RUSTDOCFLAGS", "-D warnings")))?;
     }
+    step("gallery", || gallery::check(root))?;
     step("tests of the Python package", || python::test(root))?;
     println!("all tests passed in {:.0} s", start.elapsed().as_secs_f64());
     Ok(())

@@ -56,6 +56,12 @@ pub enum Command {
     /// reference, maps of their errors, error over time, bias and noise apart, efficiency and rays.
     /// Ctrl-C ends with a report of what has been done.
     Compare(Box<Compare>),
+    /// Show what happens along the paths of a pixel: in words, and as a drawing.
+    ///
+    /// Each sample's rays, what they hit, how it scatters light, shadow rays, and the light that
+    /// arrives, of the algorithms that estimate pixels one by one. The picture adds the same
+    /// samples.
+    TracePixel(Box<TracePixel>),
     /// Check and convert scene files.
     #[command(subcommand)]
     Scene(Scene),
@@ -87,6 +93,7 @@ impl Command {
             Self::Image(Image::Info(info)) => info.json,
             Self::Image(Image::Diff(diff)) => diff.json,
             Self::Image(Image::Convert(convert)) => convert.json,
+            Self::TracePixel(trace) => trace.json,
             Self::Doctor(doctor) => doctor.json,
             Self::Completions(_) | Self::Man(_) => false,
         }
@@ -156,6 +163,44 @@ pub struct Compare {
     pub quiet: bool,
     /// Write the report's numbers to standard output, as one JSON object instead of text, errors
     /// too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `alhazen trace-pixel`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
+pub struct TracePixel {
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, or an archive
+    /// (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    pub scene: PathBuf,
+    /// Column of the pixel, counted from 0 at the left.
+    #[arg(value_parser = clap::value_parser!(i32).range(0..))]
+    pub x: i32,
+    /// Row of the pixel, counted from 0 at the top.
+    #[arg(value_parser = clap::value_parser!(i32).range(0..))]
+    pub y: i32,
+    /// The number of samples to trace.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub samples: u32,
+    /// The index of the first of them.
+    #[arg(long, value_name = "I", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..1 << 30))]
+    pub first: u32,
+    /// Draw the rays over a view of the scene that is cut open (.svg), or write them as coloured
+    /// edges for programs that show meshes (.ply). Can be given several times.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// From where to draw: side, from the right of the camera; top; or front, as the camera looks.
+    /// [default: where the rays take the most space]
+    #[arg(long, value_name = "SIDE", value_parser = ["side", "top", "front"])]
+    pub from: Option<String>,
+    /// The algorithm, see the list below. [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<String>,
+    /// Changes to the scene.
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Write one JSON object to standard output instead of text.
     #[arg(long)]
     pub json: bool,
 }

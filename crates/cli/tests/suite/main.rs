@@ -17,3 +17,4 @@ mod resume;
 mod scene;
 mod serve;
 mod tev;
+mod trace;

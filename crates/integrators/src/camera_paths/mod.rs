@@ -13,6 +13,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use path::Path;
 pub(crate) use paths_from::PathsFrom;
+pub(crate) use pixel_loop::record;
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;

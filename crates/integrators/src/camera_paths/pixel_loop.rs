@@ -1,13 +1,14 @@
 //! Camera rays for all pixels: turns a [`RayIntegrator`] into an [`Integrator`].
 
-use film::Film;
+use film::{Film, Filter};
 use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use scene::{Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::pixel_samples::PixelSamples;
+use crate::transport::Record;
+use crate::transport::pixel_samples::{PixelSample, PixelSamples};
 use crate::{Cancelled, Control, Integrator, PassError, Tracer};
 
 /// An algorithm that estimates the radiance along a ray.
@@ -26,6 +27,24 @@ pub trait RayIntegrator: Send + Sync {
         ray: RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum;
+}
+
+/// The steps of one sample of a pixel.
+pub(crate) fn record(
+    rays: &impl RayIntegrator,
+    pixels: &PixelSamples,
+    pixel: [i32; 2],
+    control: &Control,
+) -> Result<Record, Cancelled> {
+    let (mut sampler, mut stats, mut steps) = (pixels.sampler.clone(), RayStats::default(), Vec::new());
+    let PixelSample { camera_ray, mut lambda, .. } = pixels.begin(None, pixel, &mut sampler);
+    let tracer = Tracer::new(pixels.scene, pixels.view, control, &mut sampler, &mut stats);
+    let mut tracer = tracer.with_steps(&mut steps);
+    let l = camera_ray.map_or(SampledSpectrum::ZERO, |camera_ray| {
+        rays.li(&mut tracer, camera_ray.ray, &mut lambda) * camera_ray.weight
+    });
+    tracer.finish()?;
+    Ok(Record { lambda, l, steps })
 }
 
 /// Runs a [`RayIntegrator`] for each sample of each pixel.
@@ -68,5 +87,17 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
             l
         })?;
         Ok(stats)
+    }
+
+    fn record(
+        &self,
+        (pixel, index): ([i32; 2], u32),
+        scene: &Scene,
+        view: &View,
+        filter: &Filter,
+        control: &Control,
+    ) -> Option<Result<Record, Cancelled>> {
+        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler };
+        Some(record(&self.rays, &pixels, pixel, control))
     }
 }

@@ -13,6 +13,7 @@
 //! | `media` | flights through participating media, and their transmittance |
 //! | `subsurface` | paths under the surface of bodies |
 //! | `single_scattering` | what a medium adds to a ray by one scattering event |
+//! | `record` | what happens along the paths of a sample, for people who want to see it |
 //! | `roulette` | Russian roulette |
 //! | `visibility` | shadow rays |
 
@@ -22,6 +23,7 @@ pub(crate) mod media;
 pub(crate) mod parts;
 pub(crate) mod path_state;
 pub(crate) mod pixel_samples;
+mod record;
 pub(crate) mod roulette;
 pub(crate) mod shutter_sample;
 pub(crate) mod single_scattering;
@@ -29,4 +31,5 @@ pub(crate) mod subsurface;
 mod tracer;
 mod visibility;
 
+pub use record::{Record, Step};
 pub use tracer::Tracer;

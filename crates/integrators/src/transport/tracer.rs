@@ -9,6 +9,7 @@ use scene::light::LightId;
 use scene::{Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use super::Step;
 use crate::{Cancelled, Control};
 
 /// Traces the rays of a sample, on one thread.
@@ -28,6 +29,8 @@ pub struct Tracer<'a> {
     is_cancelled: bool,
     /// Takes the parts of the sample's radiance, where the film has layers of them.
     parts: Option<&'a mut Parts>,
+    /// Takes the steps of the sample, where somebody wants to see them.
+    steps: Option<&'a mut Vec<Step>>,
 }
 
 impl<'a> Tracer<'a> {
@@ -39,7 +42,7 @@ impl<'a> Tracer<'a> {
         sampler: &'a mut Sampler,
         stats: &'a mut RayStats,
     ) -> Self {
-        Self { scene, view, sampler, stats, control, is_cancelled: false, parts: None }
+        Self { scene, view, sampler, stats, control, is_cancelled: false, parts: None, steps: None }
     }
 
     /// The same, which also takes the parts of the sample's radiance.
@@ -47,10 +50,23 @@ impl<'a> Tracer<'a> {
         Self { parts, ..self }
     }
 
+    /// The same, which also takes the steps of the sample.
+    pub(crate) fn with_steps(self, steps: &'a mut Vec<Step>) -> Self {
+        Self { steps: Some(steps), ..self }
+    }
+
+    /// Takes a step of the sample.
+    #[inline]
+    pub(crate) fn take_step(&mut self, step: impl FnOnce(&Scene) -> Step) {
+        if let Some(steps) = &mut self.steps {
+            steps.push(step(self.scene));
+        }
+    }
+
     /// Whether the parts of the sample's radiance are taken.
     #[inline]
     pub(crate) fn takes_parts(&self) -> bool {
-        self.parts.is_some()
+        self.parts.is_some() || self.steps.is_some()
     }
 
     /// Takes a part of the sample's radiance: that of a path with this first event and number of
@@ -67,6 +83,9 @@ impl<'a> Tracer<'a> {
             let group = light.map_or(0, |light| self.scene.light(light).group());
             parts.add(l, group, first, events);
         }
+        if !l.is_black() {
+            self.take_step(|_| Step::Light { light, events, l });
+        }
     }
 
     /// Multiplies the parts of the sample's radiance.
@@ -78,7 +97,9 @@ impl<'a> Tracer<'a> {
     pub fn with_sampler<T>(&mut self, sampler: &mut Sampler, trace: impl FnOnce(&mut Tracer) -> T) -> T {
         let Self { scene, view, control, is_cancelled, .. } = *self;
         let parts = self.parts.as_deref_mut();
-        let mut part = Tracer { scene, view, sampler, stats: self.stats, control, is_cancelled, parts };
+        let steps = self.steps.as_deref_mut();
+        let stats = &mut *self.stats;
+        let mut part = Tracer { scene, view, sampler, stats, control, is_cancelled, parts, steps };
         let found = trace(&mut part);
         self.is_cancelled = part.is_cancelled;
         found
@@ -100,7 +121,20 @@ impl<'a> Tracer<'a> {
     /// The nearest surface that a ray hits, and its distance.
     #[inline]
     pub fn intersect(&mut self, ray: &Ray) -> Option<(SurfaceInteraction, f32)> {
-        if self.may_trace() { self.scene.intersect(ray, f32::INFINITY, self.stats) } else { None }
+        if !self.may_trace() {
+            return None;
+        }
+        if self.steps.is_some() {
+            let hit = self.scene.hit(ray, f32::INFINITY, self.stats);
+            self.take_step(|scene| {
+                let hit = hit.map(|hit| {
+                    let [object, _] = scene.names().object(&hit);
+                    (hit.t, object)
+                });
+                Step::Ray { ray: *ray, hit }
+            });
+        }
+        self.scene.intersect(ray, f32::INFINITY, self.stats)
     }
 
     /// The nearest hit of a ray.
@@ -117,6 +151,12 @@ impl<'a> Tracer<'a> {
         ray: &RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> Option<Bsdf<Bxdf<'a>>> {
-        self.scene.bsdf(self.view, surface, ray, lambda, self.sampler)
+        let bsdf = self.scene.bsdf(self.view, surface, ray, lambda, self.sampler)?;
+        self.take_step(|_| {
+            let (point, material) = (&surface.surface, surface.material);
+            let (p, n, wo) = (point.p.p, point.shading.n, point.wo);
+            Step::Surface { p, n, wo, material, lobes: bsdf.flags() }
+        });
+        Some(bsdf)
     }
 }

@@ -9,13 +9,15 @@ use math::Ray;
 use scene::Interfaces;
 use scene::light::LightLiSample;
 
-use super::Tracer;
+use super::{Step, Tracer};
 
 impl Tracer<'_> {
     /// Whether a surface occludes the ray at 0 < t < `t_max`.
     #[inline]
     pub(crate) fn occluded(&mut self, ray: &Ray, t_max: f32, interfaces: Interfaces) -> bool {
-        !self.may_trace() || self.scene.occluded(ray, t_max, interfaces, self.stats)
+        let is_occluded = !self.may_trace() || self.scene.occluded(ray, t_max, interfaces, self.stats);
+        self.take_step(|_| Step::Shadow { ray: *ray, t_max, is_clear: !is_occluded });
+        is_occluded
     }
 
     /// Whether the point or direction of a light sample is visible from a surface.

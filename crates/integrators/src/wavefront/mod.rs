@@ -36,7 +36,7 @@ mod ray_casting;
 mod shade;
 mod whitted;
 
-use film::{Film, FilmTile};
+use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
 use lanes::InstructionSet;
 use rayon::prelude::*;
@@ -47,8 +47,9 @@ use self::area_lights::AreaLights;
 use self::batch::Batch;
 use self::materials::LaneMaterials;
 use self::pass::Pass;
+use crate::camera_paths::record;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError, RayIntegrator};
+use crate::{Cancelled, Control, Integrator, PassError, RayIntegrator, Record};
 
 /// The most tiles of a batch: 4096 paths, whose state stays in the second-level cache.
 const BATCH_TILES: usize = 16;
@@ -154,5 +155,17 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
             sum += stats;
             Ok(sum)
         })?)
+    }
+
+    fn record(
+        &self,
+        (pixel, index): ([i32; 2], u32),
+        scene: &Scene,
+        view: &View,
+        filter: &Filter,
+        control: &Control,
+    ) -> Option<Result<Record, Cancelled>> {
+        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler };
+        Some(record(&self.algorithm, &pixels, pixel, control))
     }
 }

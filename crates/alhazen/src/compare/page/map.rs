@@ -2,10 +2,10 @@
 
 use image::false_color::signed_false_color;
 use image::metrics::RELATIVE_EPSILON;
-use image::{Format, Image, ImageError, WriteOptions, encode, require_memory};
+use image::{Image, ImageError, require_memory};
 
 use crate::compare::Comparison;
-use crate::picture::in_srgb;
+use crate::picture::{data_uri, in_srgb};
 
 /// Width of the blocks over which errors are averaged, in pixels.
 const BLOCK: u32 = 8;
@@ -113,40 +113,9 @@ fn colored(map: &Image, scale: f32) -> String {
     data_uri(&signed_false_color(map, scale).expect("invariant: a map is not empty"))
 }
 
-/// An sRGB picture as a PNG in a data URI.
-fn data_uri(picture: &Image) -> String {
-    let png =
-        encode(picture, Format::Png, &WriteOptions::default()).expect("invariant: PNG takes any picture");
-    format!("data:image/png;base64,{}", base64(&png))
-}
-
-/// Base64 by RFC 4648.
-fn base64(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let bits = group
-            .iter()
-            .enumerate()
-            .fold(0u32, |bits, (place, &byte)| bits | u32::from(byte) << (16 - 8 * place));
-        for place in 0..4 {
-            let character = ALPHABET[(bits >> (18 - 6 * place) & 63) as usize];
-            text.push(if place <= group.len() { char::from(character) } else { '=' });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_of_the_rfc() {
-        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
-        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
-        assert_eq!(base64(&[255; 3]), "////");
-    }
 
     #[test]
     fn errors_are_signed_and_scales_round() {

@@ -7,7 +7,7 @@ use scene::medium::{MediumId, MediumProperties};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Heroes, Throughput, attenuation};
-use crate::transport::Tracer;
+use crate::transport::{Step, Tracer};
 
 /// The end of a flight.
 pub(crate) enum FlightEnd {
@@ -110,6 +110,7 @@ impl Tracer<'_> {
                     let scattered =
                         FlightEnd::Scattered { p, sigma_s: properties.sigma_s, sigma_t, phase: medium.phase };
                     let end = if is_left { scattered } else { FlightEnd::Absorbed };
+                    self.take_step(|_| Step::Medium { p });
                     return Flight { emitted, end };
                 }
                 let scale = passed / (pdf * (1.0 - real));

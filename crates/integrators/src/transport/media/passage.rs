@@ -7,7 +7,7 @@ use scene::medium::{Medium, MediumId};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Heroes, attenuation};
-use crate::transport::Tracer;
+use crate::transport::{Step, Tracer};
 
 /// The transmittance below which ratio tracking ends at random.
 const FAINT: f32 = 0.05;
@@ -49,15 +49,29 @@ impl Tracer<'_> {
         &mut self,
         ray: &Ray,
         t_max: f32,
+        medium: Option<MediumId>,
+        lambda: &SampledWavelengths,
+        heroes: &Heroes,
+    ) -> Option<Passage> {
+        if self.scene.media().is_empty() {
+            let is_clear = !self.occluded(ray, t_max, Interfaces::Pass);
+            return is_clear.then_some(Passage::CLEAR);
+        }
+        let passage = self.passage(ray, t_max, medium, lambda, heroes);
+        self.take_step(|_| Step::Shadow { ray: *ray, t_max, is_clear: passage.is_some() });
+        passage
+    }
+
+    /// [`transmittance`](Self::transmittance) in a scene with media.
+    fn passage(
+        &mut self,
+        ray: &Ray,
+        t_max: f32,
         mut medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
     ) -> Option<Passage> {
         let mut passage = Passage::CLEAR;
-        if self.scene.media().is_empty() {
-            let is_clear = !self.occluded(ray, t_max, Interfaces::Pass);
-            return is_clear.then_some(passage);
-        }
         let (mut ray, mut t_max) = (*ray, t_max);
         // The length of the direction, which is a difference of points for lights at a distance.
         let scale = ray.d.length();

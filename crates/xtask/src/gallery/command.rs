@@ -1,0 +1,76 @@
+//! The commands of pages, and what they draw.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+
+/// How large pictures are made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// As the command says.
+    Whole,
+    /// So small that it takes no time.
+    Small,
+}
+
+/// What a command has drawn.
+pub struct Drawn {
+    /// The picture as a data URI.
+    pub picture: String,
+    /// What it cost.
+    pub cost: String,
+    /// What it said.
+    pub text: String,
+}
+
+/// Runs a command, as a reader would in the root of the repository.
+pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn, String> {
+    let failed = |problem: String| format!("`{line}`: {problem}");
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let ["alhazen", name @ ("render" | "trace-pixel"), rest @ ..] = &words[..] else {
+        return Err(failed("it is neither `alhazen render` nor `alhazen trace-pixel`".into()));
+    };
+    let folder = crate::command::target(root).join("gallery");
+    fs::create_dir_all(&folder).map_err(|error| failed(error.to_string()))?;
+    let file = folder.join(if *name == "render" { "picture.jpg" } else { "picture.svg" });
+    let mut command = Command::new(program);
+    command.current_dir(root).arg(name).args(rest).arg("-o").arg(&file);
+    if *name == "render" {
+        command.arg("--json");
+        if size == Size::Small {
+            command.args(["--resolution", "36x24", "--spp", "1"]);
+        }
+    }
+    let output = command.output().map_err(|error| failed(error.to_string()))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    if !output.status.success() {
+        return Err(failed(format!("{text}{}", String::from_utf8_lossy(&output.stderr))));
+    }
+    let bytes = fs::read(&file).map_err(|error| failed(error.to_string()))?;
+    let kind = if *name == "render" { "jpeg" } else { "svg+xml" };
+    let picture = format!("data:image/{kind};base64,{}", STANDARD.encode(bytes));
+    if *name == "trace-pixel" {
+        return Ok(Drawn { picture, cost: String::new(), text });
+    }
+    let json: Value = serde_json::from_str(&text).map_err(|error| failed(error.to_string()))?;
+    Ok(Drawn { picture, cost: cost(&json), text: String::new() })
+}
+
+/// What a render cost in words.
+fn cost(json: &Value) -> String {
+    let number = |key: &str| json[key].as_f64().unwrap_or(0.0);
+    let (rays, seconds) = (number("rays"), json["seconds"]["render"].as_f64().unwrap_or(0.0));
+    let tests = (number("extent_tests") / rays, number("primitive_tests") / rays);
+    let rays =
+        if rays < 1e6 { format!("{:.0} thousand", rays / 1e3) } else { format!("{:.1} million", rays / 1e6) };
+    let [width, height] = [0, 1].map(|i| json["resolution"][i].as_u64().unwrap_or(0));
+    format!(
+        "{width} × {height} pixels, {} samples a pixel, {rays} rays with {:.1} tests of extents and {:.1} of \
+         primitives each; {seconds:.1} s on {} threads",
+        json["samples_per_pixel"], tests.0, tests.1, json["threads"]
+    )
+}

@@ -1,0 +1,54 @@
+//! The gallery: pages that show what the program draws, each made of a text in
+//! `docs/gallery/pages`.
+//!
+//! The blocks of commands in a text are run, and what they draw becomes part of the page with what
+//! it cost, so that pages agree with the program. Pages are self-contained.
+
+mod command;
+mod page;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use command::Size;
+use page::Page;
+
+/// The folders of texts and of pages.
+const TEXTS: &str = "docs/gallery/pages";
+const PAGES: &str = "docs/gallery";
+
+/// Makes all pages with the program built for release.
+pub fn make(root: &Path) -> Result<(), String> {
+    super::command::succeed(super::command::cargo(root).args(["build", "--release", "-p", "alhazen-cli"]))?;
+    let program = super::command::target(root).join("release/alhazen");
+    let pages = pages(root)?;
+    for (i, page) in pages.iter().enumerate() {
+        println!("{}", page.title);
+        let neighbours = [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)));
+        let html = page.to_html(root, &program, neighbours)?;
+        let path = root.join(PAGES).join(page.file());
+        fs::write(&path, html).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    let index = root.join(PAGES).join("index.html");
+    fs::write(&index, page::index(&pages)).map_err(|error| format!("{}: {error}", index.display()))
+}
+
+/// Runs the commands of all pages at a small size with the program of tests.
+pub fn check(root: &Path) -> Result<(), String> {
+    let program = super::command::target(root).join("checked/alhazen");
+    for page in pages(root)? {
+        for command in page.commands() {
+            command::run(root, &program, &command, Size::Small)?;
+        }
+    }
+    Ok(())
+}
+
+/// The texts in the order of their names.
+fn pages(root: &Path) -> Result<Vec<Page>, String> {
+    let folder = root.join(TEXTS);
+    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    paths.iter().map(|path| Page::read(path)).collect()
+}
