@@ -97,9 +97,10 @@ fn sample_json(sample: &SampleTrace) -> Value {
 
 fn step_json(step: &TraceStep) -> Value {
     match step {
-        TraceStep::Ray { way, from, d, hit } => json!({
+        TraceStep::Ray { way, vertex, from, d, hit } => json!({
             "step": "ray",
             "way": format!("{way:?}").to_lowercase(),
+            "vertex": vertex,
             "from": from.to_array(),
             "direction": d.to_array(),
             "length": hit.as_ref().map(|(length, _)| length),

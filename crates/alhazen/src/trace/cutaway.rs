@@ -24,7 +24,7 @@ pub(super) fn cutaway(scene: &Scene, frame: &Frame, size: [u32; 2]) -> String {
         // Steep and distant surfaces are darker.
         let facing = surface.surface.shading.n.dot(into.normalize_or_zero()).abs();
         let near = 1.0 / (1.0 + t * into.length() / (frame.width + frame.height));
-        (0.25 + 0.55 * facing) * (0.5 + 0.5 * near)
+        (0.1 + 0.7 * facing) * (0.4 + 0.6 * near)
     };
     let picture = Image::from_fn(size[0], size[1], ["R", "G", "B"], |x, y| [brightness(x, y); 3]);
     data_uri(&picture)

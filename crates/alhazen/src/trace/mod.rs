@@ -52,8 +52,11 @@ pub struct SampleTrace {
 pub enum TraceStep {
     /// A ray to the nearest surface.
     Ray {
-        /// Where it comes from.
+        /// How it leaves.
         way: Way,
+        /// The number of the vertex that it leaves, counted from 1; 0 for the camera, and for a ray
+        /// that goes straight on.
+        vertex: usize,
         /// Where it begins.
         from: Vec3,
         /// Its direction, of unit length.
@@ -97,7 +100,7 @@ pub enum TraceStep {
     },
 }
 
-/// Where a ray comes from.
+/// How a ray leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// From the camera.
@@ -145,7 +148,7 @@ impl PixelTrace {
             let record = session.record(pixel, index, control)?.ok_or(TraceError::Algorithm)?;
             let (scene, film) = (session.scene(), &session.state().film);
             let colors = |l: &SampledSpectrum| film.rgb(l, &record.lambda);
-            let steps = Steps { scene, before: Way::Camera, last: None }.all(&record.steps, colors);
+            let steps = Steps { scene, vertices: Vec::new(), rays: 0 }.all(&record.steps, colors);
             let wavelengths = record.lambda.lambda().iter().zip(record.lambda.pdf().0);
             let wavelengths = wavelengths.filter(|(_, pdf)| *pdf > 0.0).map(|(lambda, _)| *lambda).collect();
             Ok(SampleTrace { index, wavelengths, rgb: colors(&record.l), steps })
@@ -157,10 +160,10 @@ impl PixelTrace {
 /// Makes steps of a record ones of a trace.
 struct Steps<'a> {
     scene: &'a Scene,
-    /// Where the next ray comes from, if it does not come from a surface.
-    before: Way,
-    /// Normal and direction back along the path of the last surface that scatters.
-    last: Option<[Vec3; 2]>,
+    /// The vertices so far: point, normal (zero in a medium), and direction back along the path.
+    vertices: Vec<[Vec3; 3]>,
+    /// The number of rays so far.
+    rays: usize,
 }
 
 impl Steps<'_> {
@@ -175,23 +178,19 @@ impl Steps<'_> {
     fn step(&mut self, step: &Step, colors: &impl Fn(&SampledSpectrum) -> [f32; 3]) -> TraceStep {
         match step {
             Step::Ray { ray, hit } => {
-                let way = match self.last.take() {
-                    Some([n, wo]) if n.dot(ray.d) * n.dot(wo) > 0.0 => Way::Reflected,
-                    Some(_) => Way::Transmitted,
-                    None => self.before,
-                };
-                self.before = Way::Onward;
+                let (way, vertex) = self.origin(ray.o, ray.d);
+                self.rays += 1;
                 let (from, d, length) = self.line(ray.o, ray.d);
                 let hit = hit.as_ref().map(|(t, object)| (t * length, object.clone()));
-                TraceStep::Ray { way, from, d, hit }
+                TraceStep::Ray { way, vertex, from, d, hit }
             }
             Step::Surface { p, n, wo, material, lobes } => {
-                self.last = Some([*n, *wo]);
+                self.vertices.push([*p, *n, *wo]);
                 let material = self.scene.names().material(*material).to_owned();
                 TraceStep::Surface { p: self.point(*p), material, lobes: kinds(*lobes) }
             }
             Step::Medium { p } => {
-                self.before = Way::Scattered;
+                self.vertices.push([*p, Vec3::ZERO, Vec3::ZERO]);
                 TraceStep::Medium { p: self.point(*p) }
             }
             Step::Shadow { ray, t_max, is_clear } => {
@@ -201,6 +200,27 @@ impl Steps<'_> {
             Step::Light { light, events, l } => {
                 let name = light.map_or("a medium".into(), |light| self.light(light));
                 TraceStep::Light { name, events: *events, rgb: colors(l) }
+            }
+        }
+    }
+
+    /// How a ray along `d` leaves `o`, and the number of its vertex. Algorithms that split paths go
+    /// on from earlier ones.
+    fn origin(&self, o: Vec3, d: Vec3) -> (Way, usize) {
+        // Rays begin a little off the surface.
+        let is_at = |[p, ..]: &[Vec3; 3]| (o - *p).length() <= 1e-4 * (1.0 + p.length());
+        match self.vertices.iter().rposition(is_at) {
+            None if self.rays == 0 => (Way::Camera, 0),
+            None => (Way::Onward, 0),
+            Some(index) => {
+                let [_, n, wo] = self.vertices[index];
+                let sides = n.dot(d) * n.dot(wo);
+                let way = match sides > 0.0 {
+                    _ if n == Vec3::ZERO => Way::Scattered,
+                    true => Way::Reflected,
+                    false => Way::Transmitted,
+                };
+                (way, index + 1)
             }
         }
     }

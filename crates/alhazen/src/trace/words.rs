@@ -25,7 +25,10 @@ impl fmt::Display for SampleTrace {
         let mut vertex = 0;
         for step in &self.steps {
             match step {
-                TraceStep::Ray { way, from, d, hit } => {
+                TraceStep::Ray { way, vertex: of, from, d, hit } => {
+                    if *of > 0 && *of < vertex {
+                        write!(f, "  at {of}")?;
+                    }
                     let way = match way {
                         Way::Camera => format!("a ray leaves the camera at {}", Point(*from)),
                         Way::Reflected => "a ray is reflected".into(),
