@@ -24,7 +24,8 @@ usage: cargo xtask TASK
   wheel      build the Python package, into target/wheels
   dist [TARGET]
              archives of the program, and on Debian a package, into target/dist
-  gallery    the pages of docs/gallery, with their pictures
+  gallery [NAME…]
+             the pages of docs/gallery with these in their names, with their pictures
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -37,7 +38,7 @@ fn main() -> ExitCode {
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
-        ["gallery"] => gallery::make(workspace()),
+        ["gallery", ref names @ ..] => gallery::make(workspace(), names),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

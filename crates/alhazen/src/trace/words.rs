@@ -26,9 +26,6 @@ impl fmt::Display for SampleTrace {
         for step in &self.steps {
             match step {
                 TraceStep::Ray { way, vertex: of, from, d, hit } => {
-                    if *of > 0 && *of < vertex {
-                        write!(f, "  at {of}")?;
-                    }
                     let way = match way {
                         Way::Camera => format!("a ray leaves the camera at {}", Point(*from)),
                         Way::Reflected => "a ray is reflected".into(),
@@ -36,7 +33,9 @@ impl fmt::Display for SampleTrace {
                         Way::Scattered => "a ray goes on from there".into(),
                         Way::Onward => "the ray goes straight on".into(),
                     };
-                    write!(f, "  {way} along {} and ", Point(*d))?;
+                    let earlier = *of > 0 && *of < vertex;
+                    let place = if earlier { format!("at {of} ") } else { String::new() };
+                    write!(f, "  {place}{way} along {} and ", Point(*d))?;
                     match hit {
                         Some((length, object)) => writeln!(f, "hits `{object}` after {length:.4}")?,
                         None => writeln!(f, "leaves the scene")?,

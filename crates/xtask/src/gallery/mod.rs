@@ -17,12 +17,16 @@ use page::Page;
 const TEXTS: &str = "docs/gallery/pages";
 const PAGES: &str = "docs/gallery";
 
-/// Makes all pages with the program built for release.
-pub fn make(root: &Path) -> Result<(), String> {
+/// Makes the pages that have one of these in their names, or all if there are none, with the
+/// program built for release.
+pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     super::command::succeed(super::command::cargo(root).args(["build", "--release", "-p", "alhazen-cli"]))?;
     let program = super::command::target(root).join("release/alhazen");
     let pages = pages(root)?;
     for (i, page) in pages.iter().enumerate() {
+        if !(names.is_empty() || names.iter().any(|name| page.file().contains(name))) {
+            continue;
+        }
         println!("{}", page.title);
         let neighbours = [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)));
         let html = page.to_html(root, &program, neighbours)?;
