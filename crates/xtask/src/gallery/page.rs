@@ -20,7 +20,7 @@ pub struct Page {
 const STYLE: &str = "\
 body { margin: 2rem auto; max-width: 62rem; padding: 0 1rem; font: 17px/1.5 serif; color: #222; background: #fafaf7 }
 h1, h2, nav { font-family: sans-serif } nav { font-size: 14px; display: flex; justify-content: space-between }
-figure { margin: 0; flex: 1 1 24rem } figure img { width: 100%; display: block; background: #000 }
+figure { margin: 0; flex: 1 1 24rem; max-width: 38rem } figure img { width: 100%; display: block; background: #000 }
 figcaption { font: 13px/1.4 sans-serif; color: #555 } .pictures { display: flex; flex-wrap: wrap; gap: 1rem; margin: 1rem 0 }
 pre { overflow-x: auto; background: #eee; padding: .5rem; font-size: 13px; white-space: pre-wrap } code { font-size: .9em }
 .all { display: grid; grid-template-columns: repeat(auto-fill, minmax(16rem, 1fr)); gap: .5rem 2rem }";
