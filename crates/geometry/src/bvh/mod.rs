@@ -16,7 +16,7 @@ pub(crate) use node::{RaySlabs, WIDTH};
 
 pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};
-pub(crate) use traverse::Leaves;
+pub(crate) use traverse::{Leaves, PacketLeaves};
 
 /// The maximum depth of a tree, which bounds the traversal stack.
 const MAX_DEPTH: usize = 96;

@@ -32,6 +32,22 @@ pub(crate) trait Leaves {
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
 }
 
+/// The tests of leaves by the rays of a packet.
+pub(crate) trait PacketLeaves {
+    /// Primitives that are tested at once.
+    type Block;
+
+    /// All blocks.
+    fn blocks(&self) -> &[Self::Block];
+
+    /// Tests blocks against the rays of the bits in `entering`, each before its end in `t_max`, which
+    /// it lowers: below zero to stop the ray.
+    ///
+    /// # Safety
+    /// As for [`Leaves::test`].
+    unsafe fn test(&mut self, blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]);
+}
+
 /// Each level of nodes pushes at most all children but one, the last one perhaps all; the bottom of
 /// the stack is [`StackEntry::END`].
 const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 2;
@@ -146,20 +162,18 @@ impl Bvh {
         }
     }
 
-    /// Traverses the tree with a packet of rays from one point. `test` is given blocks, a bit for
-    /// each ray that enters the box around them, and the end of each ray, which it may lower: below
-    /// zero to stop the ray. Returns the number of boxes tested. The rays must be finite, and their
-    /// directions must have the same signs.
+    /// Traverses the tree with a packet of rays from one point. Passes `leaves` the blocks that any
+    /// ray may meet before its end. Returns the number of boxes tested. The rays must be finite, and
+    /// their directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instruction set.
     #[inline(always)]
-    pub unsafe fn traverse_packet<S: Simd, B>(
+    pub unsafe fn traverse_packet<S: Simd>(
         &self,
-        blocks: &[B],
         rays: &[(Ray, f32); WIDTH],
         t_max: &mut [f32; WIDTH],
-        mut test: impl FnMut(Range<usize>, u32, &mut [f32; WIDTH]),
+        leaves: &mut impl PacketLeaves,
     ) -> u64 {
         let mut extents = 0;
         if self.nodes.is_empty() {
@@ -180,7 +194,7 @@ impl Bvh {
                     return extents;
                 }
                 if child.is_leaf() {
-                    test(child.blocks(), next.rays(), t_max);
+                    leaves.test(child.blocks(), next.rays(), t_max);
                     furthest = largest(t_max);
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
@@ -197,7 +211,7 @@ impl Bvh {
                         extents += WIDTH as u64;
                         if hits != 0 {
                             let child = *node.children().get_unchecked(lane);
-                            self.prefetch(blocks, child);
+                            self.prefetch(leaves.blocks(), child);
                             insert(
                                 &mut top,
                                 floor,

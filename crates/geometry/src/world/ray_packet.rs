@@ -12,7 +12,7 @@ use super::query::Query;
 use super::stats::RayStats;
 use super::trace::{TriangleLeaves, is_valid};
 use super::triangle_block::TriangleBlock;
-use crate::bvh::{Leaves, WIDTH};
+use crate::bvh::{Leaves, PacketLeaves, WIDTH};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
 use lanes::{Simd, Task, Vector};
 use math::Ray;
@@ -62,49 +62,85 @@ impl<Q: Query> Task for TracePacket<'_, Q> {
         let Self { group, rays, queries, stats } = self;
         let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i].0));
         let mut t_max = std::array::from_fn(|i| rays[i].1);
-        let mut primitives = 0;
         // SAFETY: the caller promises the instruction set.
         unsafe {
-            let lanes: ShearedLanes<S::F32x16> = Sheared::each(&sheared);
-            let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
-                if entering.count_ones() <= FEW {
-                    let mut entering = entering;
-                    while entering != 0 {
-                        let i = entering.trailing_zeros() as usize;
-                        entering &= entering - 1;
-                        if t_max[i] < 0.0 {
-                            continue;
-                        }
-                        let mut leaves = TriangleLeaves::<S, Q> {
-                            group,
-                            instance: InstancePath::TOP,
-                            sheared: &sheared[i],
-                            lanes: &sheared[i].lanes::<{ TriangleBlock::VERTICES }, S::F32x8>(),
-                            query: &mut queries[i],
-                            primitives: 0,
-                        };
-                        if leaves.test(blocks.clone(), &mut t_max[i]) {
-                            t_max[i] = -1.0;
-                        }
-                        primitives += leaves.primitives;
-                    }
-                    return;
-                }
-                for block in &group.triangles.blocks[blocks] {
-                    for lane in 0..block.len() {
-                        primitives += WIDTH as u64;
-                        let found = block.intersect_rays(lane, &lanes, S::F32x16::load(t_max));
-                        if let Some(found) = found {
-                            offer(&sheared, group, block, lane, &found, queries, t_max);
-                        }
-                    }
-                }
-            };
-            let triangles = &group.triangles;
-            stats.extents +=
-                triangles.tree.traverse_packet::<S, _>(&triangles.blocks, rays, &mut t_max, test);
+            let lanes = Sheared::each(&sheared);
+            let mut leaves =
+                PacketTriangles::<S, Q> { group, sheared: &sheared, lanes, queries, primitives: 0 };
+            stats.extents += group.triangles.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
+            stats.primitives += leaves.primitives;
         }
-        stats.primitives += primitives;
+    }
+}
+
+/// The triangles of a group, tested against the rays of a packet.
+struct PacketTriangles<'a, S: Simd, Q> {
+    group: &'a Group,
+    sheared: &'a [Sheared<'a>; WIDTH],
+    lanes: ShearedLanes<S::F32x16>,
+    queries: &'a mut [Q; WIDTH],
+    /// How many were tested, each against one ray.
+    primitives: u64,
+}
+
+impl<S: Simd, Q: Query> PacketLeaves for PacketTriangles<'_, S, Q> {
+    type Block = TriangleBlock;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[TriangleBlock] {
+        &self.group.triangles.blocks
+    }
+
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]) {
+        if entering.count_ones() <= FEW {
+            // SAFETY: as the caller promises.
+            return unsafe { self.test_each(blocks, entering, t_max) };
+        }
+        for block in &self.group.triangles.blocks[blocks] {
+            for lane in 0..block.len() {
+                self.primitives += WIDTH as u64;
+                // SAFETY: the caller promises the instruction set.
+                let ends = unsafe { S::F32x16::load(t_max) };
+                if let Some(found) = block.intersect_rays(lane, &self.lanes, ends) {
+                    offer(self.sheared, self.group, block, lane, &found, self.queries, t_max);
+                }
+            }
+        }
+    }
+}
+
+impl<S: Simd, Q: Query> PacketTriangles<'_, S, Q> {
+    /// Tests blocks against one ray after another.
+    ///
+    /// # Safety
+    /// As for [`PacketLeaves::test`].
+    #[inline(always)]
+    unsafe fn test_each(&mut self, blocks: Range<usize>, mut entering: u32, t_max: &mut [f32; WIDTH]) {
+        while entering != 0 {
+            let i = entering.trailing_zeros() as usize % WIDTH;
+            entering &= entering - 1;
+            if t_max[i] < 0.0 {
+                continue;
+            }
+            let sheared = &self.sheared[i];
+            // SAFETY: as the caller promises.
+            unsafe {
+                let lanes = sheared.lanes::<{ TriangleBlock::VERTICES }, S::F32x8>();
+                let mut leaves = TriangleLeaves::<S, Q> {
+                    group: self.group,
+                    instance: InstancePath::TOP,
+                    sheared,
+                    lanes: &lanes,
+                    query: &mut self.queries[i],
+                    primitives: 0,
+                };
+                if leaves.test(blocks.clone(), &mut t_max[i]) {
+                    t_max[i] = -1.0;
+                }
+                self.primitives += leaves.primitives;
+            }
+        }
     }
 }
 
