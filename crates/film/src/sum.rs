@@ -46,15 +46,32 @@ pub(crate) fn value(units: i128) -> f64 {
 #[inline]
 pub(crate) fn units(term: f64) -> i128 {
     debug_assert!(can_add(term));
-    if term.abs() < 0.5 {
-        return i128::from((term * UNITS_PER_ONE).round_ties_even() as i64);
+    if term.abs() < INTEGER_LIMIT / HALF {
+        // Two halves of 32 bits and more, the upper one rounded, so that the rest is exact.
+        let scaled = term * HALF;
+        let high = scaled + INTEGERS;
+        let low = (scaled - (high - INTEGERS)) * HALF + INTEGERS;
+        return (i128::from(integer(high)) << 32) + i128::from(integer(low));
     }
-    // Whole and fraction are exact, and conversions to 64 bits are quick. A term of 1 or more has
-    // no digits below the units.
+    // Whole and fraction are exact, and a large term has no digits below the units.
     let whole = term.abs().trunc();
-    let fraction = ((term.abs() - whole) * UNITS_PER_ONE).round_ties_even();
+    let fraction = (term.abs() - whole) * UNITS_PER_ONE;
     let units = i128::from(whole as u64) << 64 | i128::from(fraction as u64);
     if term < 0.0 { -units } else { units }
+}
+
+/// 2³².
+const HALF: f64 = 4_294_967_296.0;
+/// 2⁵² + 2⁵¹: a sum with a magnitude below [`INTEGER_LIMIT`] is rounded to an integer, which is in
+/// the low bits. Conversions to integers have more cases, which take longer.
+const INTEGERS: f64 = 6_755_399_441_055_744.0;
+/// 2⁵¹.
+const INTEGER_LIMIT: f64 = 2_251_799_813_685_248.0;
+
+/// The integer of a sum with [`INTEGERS`].
+#[inline]
+fn integer(sum: f64) -> i64 {
+    sum.to_bits().wrapping_sub(INTEGERS.to_bits()) as i64
 }
 
 #[inline]
