@@ -94,9 +94,9 @@ impl<R: Real> FlatShape<R> {
 
     #[inline(always)]
     fn pdf_by_area(&self, reference: &ShapeSampleContext<R>, p: Point3<R>) -> R {
-        let area = self.sides[0].cross(self.sides[1]).length();
-        let area = R::select(self.is_triangle, R::splat(0.5) * area, area);
-        reference.area_per_solid_angle(p, self.n) / area
+        // A normal of the length of the area.
+        let cross = self.sides[0].cross(self.sides[1]);
+        reference.area_per_solid_angle(p, cross * R::select(self.is_triangle, R::splat(0.5), R::one()))
     }
 
     #[inline(always)]
@@ -148,7 +148,6 @@ impl<R: Real> SeenTriangle<R> {
 /// A rectangle as seen from a point, for each lane.
 pub(crate) struct SeenRectangle<R: Real = f32> {
     seen: SphericalRectangle<R>,
-    lengths: Vec2<R>,
     weights: [R; 4],
 }
 
@@ -158,7 +157,6 @@ impl<R: Real> SeenRectangle<R> {
         let ([right, up], w) = (sides, corner - reference.p.p);
         Self {
             seen: SphericalRectangle::new(reference.p.p, corner, right, up),
-            lengths: Vec2::new(right.length(), up.length()),
             weights: reference.cosine_weights([w, w + right, w + up, w + right + up]),
         }
     }
@@ -173,12 +171,7 @@ impl<R: Real> SeenRectangle<R> {
     #[inline(always)]
     pub fn sample(&self, u: Vec2<R>) -> (Vec2<R>, R) {
         let u = sample_bilinear(u, self.weights);
-        let (along, zero, one) = (self.seen.sample(u), R::zero(), R::one());
-        let uv = Vec2::new(
-            (along.x / self.lengths.x).clamp(zero, one),
-            (along.y / self.lengths.y).clamp(zero, one),
-        );
-        (uv, bilinear_pdf(u, self.weights) * self.seen.pdf())
+        (self.seen.sample(u), bilinear_pdf(u, self.weights) * self.seen.pdf())
     }
 
     /// The density of [`sample`](Self::sample) at a point.

@@ -44,7 +44,8 @@ mod wide;
 pub use baseline::{first_equal, prefetch};
 pub use each::Each;
 pub use function::{
-    acos, asin, atan, atan2, cbrt, cos, exp, exp_m1, hypot, ln, ln_1p, log2, pow, powi, sin, sin_cos,
+    acos, asin, atan, atan2, cbrt, coarse_inverse_sqrt, cos, exp, exp_m1, hypot, ln, ln_1p, log2, pow, powi,
+    sin, sin_cos,
 };
 pub use instruction_set::InstructionSet;
 pub use real::{Callee, Int, Kernel, MAX_LANES, Mask, Real};

@@ -1,6 +1,6 @@
 //! Hits and samples of shapes.
 
-use lanes::Real;
+use lanes::{Real, coarse_inverse_sqrt};
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vector3};
 
 /// Where a ray meets a shape.
@@ -47,7 +47,8 @@ impl<R: Real> ShapeSampleContext<R> {
         Ray::spawn(self.p, self.n, w, self.time)
     }
 
-    /// dA/dω = d²/|cos θ| of an area at `p` with normal `n`.
+    /// dA/dω = d²/|cos θ| of an area at `p` with unit normal `n`; with a normal of another length,
+    /// divided by that.
     #[inline(always)]
     pub(crate) fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
         let toward = p - self.p.p;
@@ -62,7 +63,8 @@ impl<R: Real> ShapeSampleContext<R> {
         let mut weights = [R::zero(); 4];
         for i in 0..4 {
             let w = corners[i];
-            weights[i] = (w.dot(self.ns) / w.length()).abs().max(R::splat(0.01));
+            let cosine = (w.dot(self.ns) * coarse_inverse_sqrt(w.length_squared())).abs();
+            weights[i] = cosine.max(R::splat(0.01));
         }
         weights
     }

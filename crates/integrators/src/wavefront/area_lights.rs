@@ -83,24 +83,39 @@ impl AreaLights {
         (R::Int::select(is_row, rows, R::Int::splat(0)), is_row)
     }
 
-    /// The shapes of these rows.
+    /// The shapes of these rows, and the scales of their emission.
     #[inline(always)]
-    pub fn shapes<R: Real>(&self, rows: R::Int) -> FlatShape<R> {
-        FlatShape {
-            corner: self.vector::<R>(rows, 0),
-            sides: [self.vector::<R>(rows, 3), self.vector::<R>(rows, 6)],
-            n: self.vector::<R>(rows, 9),
-            is_triangle: self.number::<R>(rows, 13).gt(R::zero()),
+    pub fn shapes<R: Real>(&self, rows: R::Int) -> (FlatShape<R>, R) {
+        let mut numbers = [R::zero(); NUMBERS];
+        let row = rows.to_array()[0];
+        if rows.eq(R::Int::splat(row)).all() {
+            let one = &self.numbers[row as usize * NUMBERS..];
+            for (lanes, &number) in numbers.iter_mut().zip(one) {
+                *lanes = R::splat(number);
+            }
+        } else {
+            let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
+            for (column, lanes) in numbers.iter_mut().enumerate() {
+                *lanes = R::gather(&self.numbers, first.wrapping_add(R::Int::splat(column as u32)));
+            }
         }
+        let vector = |first: usize| Vec3::new(numbers[first], numbers[first + 1], numbers[first + 2]);
+        let shape = FlatShape {
+            corner: vector(0),
+            sides: [vector(3), vector(6)],
+            n: vector(9),
+            is_triangle: numbers[13].gt(R::zero()),
+        };
+        (shape, numbers[12])
     }
 
-    /// The radiance of these rows along `w` from points with the normals `n` of their shapes, in
-    /// the lanes of a mask; zero elsewhere.
+    /// The radiance of these rows, of which shapes and scales are given, along `w`, in the lanes of a
+    /// mask; zero elsewhere.
     #[inline(always)]
     pub fn radiance<R: Real>(
         &self,
         scene: &Scene,
-        rows: R::Int,
+        (rows, scale): (R::Int, R),
         (n, w): (Normal3<R>, Vector3<R>),
         lambda: &SampledWavelengths<R>,
         mask: R::Mask,
@@ -118,21 +133,6 @@ impl AreaLights {
             let l = emission.radiance.spectrum.sample(lambda);
             radiance = SampledSpectrum::select(emits, l, radiance);
         }
-        radiance * self.number::<R>(rows, 12)
-    }
-
-    #[inline(always)]
-    fn number<R: Real>(&self, rows: R::Int, column: u32) -> R {
-        let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
-        R::gather(&self.numbers, first.wrapping_add(R::Int::splat(column)))
-    }
-
-    #[inline(always)]
-    fn vector<R: Real>(&self, rows: R::Int, column: u32) -> Vector3<R> {
-        Vec3::new(
-            self.number::<R>(rows, column),
-            self.number::<R>(rows, column + 1),
-            self.number::<R>(rows, column + 2),
-        )
+        radiance * scale
     }
 }

@@ -59,11 +59,11 @@ impl Emit<'_, '_> {
 
         let (Pass { area_lights, pixels, .. }, paths) = (self.pass, &mut *self.paths);
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
-        let shapes = area_lights.shapes::<R>(table_rows);
+        let (shapes, scale) = area_lights.shapes::<R>(table_rows);
         let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
         let lambda = SampledWavelengths::new([a, b, c, d], pdf);
         let wo = -paths.direction.vector(rows);
-        let l = area_lights.radiance(pixels.scene, table_rows, (shapes.n, wo), &lambda, active);
+        let l = area_lights.radiance(pixels.scene, (table_rows, scale), (shapes.n, wo), &lambda, active);
         let is_lit = active & !l.is_black();
 
         let pdf = R::gather(&paths.pdf, rows.indices);

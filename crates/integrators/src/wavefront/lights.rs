@@ -164,11 +164,11 @@ impl Kernel for Sample<'_, '_> {
         };
         let (rows, in_lanes) = area_lights.rows::<R>(lights, chosen);
         if in_lanes.any() {
-            let shapes = area_lights.shapes::<R>(rows);
+            let (shapes, scale) = area_lights.shapes::<R>(rows);
             let (sample, valid) = shapes.sample_from(&context, Vec2::new(x, y));
             let (wi, is_apart) = (sample.p.p - p).normalize_masked();
             let mask = in_lanes & valid & is_apart;
-            let l = area_lights.radiance(pixels.scene, rows, (sample.n, -wi), &lambda, mask);
+            let l = area_lights.radiance(pixels.scene, (rows, scale), (sample.n, -wi), &lambda, mask);
             let is_lit = (mask & !l.is_black()).bits();
             // Interfaces occlude none of the lights that have a surface.
             let samples = &mut *self.samples;

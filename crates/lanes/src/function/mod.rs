@@ -19,7 +19,7 @@ pub use arc::{acos, asin, atan, atan2};
 pub use circular::{cos, sin, sin_cos};
 pub use exponential::{exp, exp_m1};
 pub use logarithm::{ln, ln_1p, log2};
-pub use power::{cbrt, hypot, pow, powi};
+pub use power::{cbrt, coarse_inverse_sqrt, hypot, pow, powi};
 
 use crate::{Int, Real};
 

@@ -53,6 +53,19 @@ pub fn powi<R: Real>(x: R, n: i32) -> R {
     if n < 0 { R::one() / power } else { power }
 }
 
+/// 1/√x of a positive normal number with a relative error below 5·10⁻⁶, in a fraction of the time of
+/// root and quotient; any finite numbers elsewhere.
+#[inline(always)]
+pub fn coarse_inverse_sqrt<R: Real>(x: R) -> R {
+    // Half of the exponent, from the bits, and two steps of Newton's method.
+    let half = R::splat(0.5) * x;
+    let mut root = R::from_bits(R::Int::splat(0x5f37_5a86).wrapping_sub(x.to_bits().shr(1)));
+    for _ in 0..2 {
+        root = root * (R::splat(1.5) - half * root * root);
+    }
+    root
+}
+
 /// ∛x, with an error below 0.6 ulp.
 #[inline(always)]
 pub fn cbrt<R: Real>(x: R) -> R {

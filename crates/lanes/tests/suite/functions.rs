@@ -22,6 +22,7 @@ enum Function {
     Reciprocal,
     Cbrt,
     Hypot,
+    CoarseInverseSqrt,
 }
 
 use Function::*;
@@ -65,6 +66,7 @@ impl Function {
             Reciprocal => powi(x, -1),
             Cbrt => cbrt(x),
             Hypot => hypot(x, y),
+            CoarseInverseSqrt => coarse_inverse_sqrt(x),
         }
     }
 
@@ -88,6 +90,7 @@ impl Function {
             Reciprocal => 1.0 / x,
             Cbrt => x.cbrt(),
             Hypot => x.hypot(y),
+            CoarseInverseSqrt => x.sqrt().recip(),
         }
     }
 
@@ -110,6 +113,7 @@ impl Function {
             Reciprocal => x.powi(-1),
             Cbrt => x.cbrt(),
             Hypot => x.hypot(y),
+            CoarseInverseSqrt => x.sqrt().recip(),
         }
     }
 }
@@ -138,7 +142,10 @@ impl Kernel for Apply<'_> {
                 }
             };
         }
-        apply! { Sin Cos Asin Acos Atan Atan2 Exp ExpM1 Ln Log2 Ln1p Pow Cube Reciprocal Cbrt Hypot }
+        apply! {
+            Sin Cos Asin Acos Atan Atan2 Exp ExpM1 Ln Log2 Ln1p Pow Cube Reciprocal Cbrt Hypot
+            CoarseInverseSqrt
+        }
         results
     }
 }
@@ -190,6 +197,15 @@ fn functions_of_one_number_are_within_their_bounds() {
     for (function, bound) in OF_ONE {
         check(function, bound, every(997));
     }
+}
+
+#[test]
+fn coarse_inverse_roots_are_within_their_bound() {
+    // 5·10⁻⁶ in units of at least 2⁻²⁴.
+    let bound = 5e-6 * 2_f64.powi(24);
+    let is_positive = |&x: &f32| x > 0.0 && x.is_normal();
+    let positive = |xs: [f32; BLOCK]| xs.map(|x| Some(x).filter(is_positive).unwrap_or(1.0));
+    check(CoarseInverseSqrt, bound, every(997).map(|(xs, ys)| (positive(xs), ys)));
 }
 
 #[test]
@@ -248,7 +264,7 @@ fn every_instruction_set_gives_the_same_bits() {
             [0, 1].map(|odd| std::array::from_fn(|i| number(2 * (BLOCK as u32 * round + i as u32) + odd)));
         let moderate = xs.map(|x: f32| f32::from_bits(x.to_bits() & 0xc3ff_ffff));
         for xs in [&xs, &moderate] {
-            for (function, _) in OF_ONE.into_iter().chain(OF_TWO) {
+            for (function, _) in OF_ONE.into_iter().chain(OF_TWO).chain([(CoarseInverseSqrt, 0.0)]) {
                 let expected = InstructionSet::Scalar.dispatch(Apply(function, xs, &ys));
                 for set in available() {
                     let found = set.dispatch(Apply(function, xs, &ys));

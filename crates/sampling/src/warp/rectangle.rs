@@ -20,6 +20,8 @@ use math::{Point3, Vec2, Vector3};
 pub struct SphericalRectangle<R: Real = f32> {
     origin: Point3<R>,
     axes: [Vector3<R>; 3],
+    /// One by the lengths of the sides.
+    scales: [R; 2],
     x: [R; 2],
     y: [R; 2],
     z: R,
@@ -32,7 +34,8 @@ impl<R: Real> SphericalRectangle<R> {
     #[inline(always)]
     pub fn new(p: Point3<R>, corner: Point3<R>, side_x: Vector3<R>, side_y: Vector3<R>) -> Self {
         let (length_x, length_y) = (side_x.length(), side_y.length());
-        let (axis_x, axis_y) = (side_x * (R::one() / length_x), side_y * (R::one() / length_y));
+        let scales = [R::one() / length_x, R::one() / length_y];
+        let (axis_x, axis_y) = (side_x * scales[0], side_y * scales[1]);
         let axis_z = axis_x.cross(axis_y);
         let d = corner - p;
         let z = d.dot(axis_z);
@@ -42,6 +45,7 @@ impl<R: Real> SphericalRectangle<R> {
         let mut rectangle = Self {
             origin: p,
             axes: [axis_x, axis_y, axis_z],
+            scales,
             x: [x, x + length_x],
             y: [y, y + length_y],
             z: -z.abs(),
@@ -70,27 +74,29 @@ impl<R: Real> SphericalRectangle<R> {
         R::one() / (self.phi[1] - self.phi[0])
     }
 
-    /// A point of the rectangle, by its distances from the corner along the sides.
+    /// A point of the rectangle, by the parts of the sides that lead to it. Divisions are few, as
+    /// they take most of the time.
     #[inline(always)]
     pub fn sample(&self, u: Vec2<R>) -> Vec2<R> {
-        let Self { x: [x0, x1], y: [y0, y1], z, .. } = *self;
-        let z2 = z * z;
+        let Self { x: [x0, x1], y: [y0, y1], z, scales, .. } = *self;
+        let (z2, tiny) = (z * z, R::splat(f32::MIN_POSITIVE));
         // z components of the normals of the planes through p and the sides at y₀ and y₁.
-        let b0 = -y0 / (y0 * y0 + z2).sqrt();
-        let b1 = y1 / (y1 * y1 + z2).sqrt();
+        let [r0, r1] = inverse_lengths(z2, self.y);
+        let (b0, b1) = (-(y0 * r0), y1 * r1);
         let (sin, cos) = sin_cos(self.phi[0] + u.x * (self.phi[1] - self.phi[0]));
-        let f = (cos * b0 + b1) / sin;
-        // 1 − b₀², without cancellation.
-        let rest = z2 / (y0 * y0 + z2);
-        let tiny = R::splat(f32::MIN_POSITIVE);
-        let x = ((-z).copysign(f) / (f * f - rest).max(tiny).sqrt()).clamp(x0, x1);
+        // f·sin φ, and (1 − b₀²)·sin² φ without cancellation: x = −z / √(f² − 1 + b₀²), with the
+        // sign of f.
+        let (f, rest) = (cos * b0 + b1, z * r0 * sin);
+        let root = (f * f - rest * rest).max(tiny).sqrt();
+        let x = (-z * sin / root.copysign(f)).clamp(x0, x1);
 
         let distance2 = x * x + z2;
-        let h0 = y0 / (distance2 + y0 * y0).sqrt();
-        let h1 = y1 / (distance2 + y1 * y1).sqrt();
+        let [r0, r1] = inverse_lengths(distance2, self.y);
+        let (h0, h1) = (y0 * r0, y1 * r1);
         let h = h0 + u.y * (h1 - h0);
         let y = (h * (distance2 / (R::one() - h * h).max(tiny)).sqrt()).clamp(y0, y1);
-        Vec2::new(x - x0, y - y0)
+        let (zero, one) = (R::zero(), R::one());
+        Vec2::new(((x - x0) * scales[0]).clamp(zero, one), ((y - y0) * scales[1]).clamp(zero, one))
     }
 
     /// The `u` that [`sample`](Self::sample) sends to a point of the rectangle.
@@ -120,4 +126,12 @@ impl<R: Real> SphericalRectangle<R> {
         let (sin1, cos1) = (x * y1, -self.z * (square + y1 * y1).sqrt());
         atan2(sin1 * cos0 - cos1 * sin0, cos1 * cos0 + sin1 * sin0)
     }
+}
+
+/// 1/√(square + y²) of both y, by one division.
+#[inline(always)]
+fn inverse_lengths<R: Real>(square: R, [y0, y1]: [R; 2]) -> [R; 2] {
+    let (length0, length1) = ((square + y0 * y0).sqrt(), (square + y1 * y1).sqrt());
+    let inverse = R::one() / (length0 * length1);
+    [length1 * inverse, length0 * inverse]
 }

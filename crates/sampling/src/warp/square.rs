@@ -1,7 +1,7 @@
 //! The bilinear density over the unit square [Pharr 2023 §A.5.5]: the marginal of y is linear, and
 //! so is x given y.
 
-use super::{invert_linear, linear_pdf, sample_linear};
+use super::{invert_linear, sample_linear};
 use lanes::Real;
 use math::{Vec2, lerp};
 
@@ -16,8 +16,11 @@ pub fn sample_bilinear<R: Real>(u: Vec2<R>, w: [R; 4]) -> Vec2<R> {
 /// Density of [`sample_bilinear`].
 #[inline(always)]
 pub fn bilinear_pdf<R: Real>(p: Vec2<R>, w: [R; 4]) -> R {
-    let pdf_y = linear_pdf(p.y, w[0] + w[1], w[2] + w[3]);
-    pdf_y * linear_pdf(p.x, lerp(p.y, w[0], w[2]), lerp(p.y, w[1], w[3]))
+    let (zero, one) = (R::zero(), R::one());
+    let inside = p.x.ge(zero) & p.x.le(one) & p.y.ge(zero) & p.y.le(one);
+    let sum = w[0] + w[1] + w[2] + w[3];
+    let pdf = R::splat(4.0) * lerp(p.x, lerp(p.y, w[0], w[2]), lerp(p.y, w[1], w[3])) / sum;
+    R::select(inside, R::select(sum.le(zero), one, pdf), zero)
 }
 
 /// Inverse of [`sample_bilinear`].

@@ -244,8 +244,8 @@ fn spherical_rectangle() {
             if inside { rectangle.pdf() as f64 } else { 0.0 }
         };
         let point = |u| {
-            let along = rectangle.sample(u);
-            corner + shift + x.normalize() * along.x + y.normalize() * along.y
+            let parts = rectangle.sample(u);
+            corner + shift + x * parts.x + y * parts.y
         };
         let direction = |u| Some((point(Vec2::from(u)) - shift).normalize().to_array());
         Chi2 { bins: [48, 96], ..CHI2 }.sphere(direction, pdf).unwrap();

@@ -101,18 +101,9 @@ impl BvhLightSampler {
         Cluster::<R>::gather(self.clusters.as_flattened(), nodes).importance(context.p.p, context.ns)
     }
 
-    /// Probability of choosing the tree: zero if its root is a leaf of importance zero.
-    #[inline(always)]
-    fn tree_probability<R: Real>(&self, context: &LightSampleContext<R>) -> R {
-        let probability = R::splat(1.0 - self.infinite.probability());
-        // Below an interior root the descent finds importances of zero.
-        match self.kinds.first() {
-            Some(&kind) if kind >= LEAF => {
-                let is_zero = self.importance(R::Int::splat(0), context).eq(R::zero());
-                R::select(is_zero, R::zero(), probability)
-            }
-            _ => probability,
-        }
+    /// Probability of choosing the tree.
+    fn tree_probability(&self) -> f32 {
+        1.0 - self.infinite.probability()
     }
 
     /// See [`LightSampler::sample_lanes`](super::LightSampler::sample_lanes).
@@ -147,8 +138,8 @@ impl BvhLightSampler {
         active: R::Mask,
     ) -> (R::Int, R, R::Mask) {
         let zero = R::zero();
-        let mut pmf = self.tree_probability(context);
-        let mut valid = active & pmf.gt(zero);
+        let mut pmf = R::splat(self.tree_probability());
+        let mut valid = active;
         let mut node = R::Int::splat(0);
         loop {
             let kind = R::Int::gather(&self.kinds, node);
@@ -197,7 +188,7 @@ impl BvhLightSampler {
         if !in_tree.any() {
             return pmf;
         }
-        pmf = R::select(in_tree, self.tree_probability(context), pmf);
+        pmf = R::select(in_tree, R::splat(self.tree_probability()), pmf);
         let (mut descends, mut node, mut trail, mut depth) = (in_tree, root, low, 0);
         loop {
             let kind = R::Int::gather(&self.kinds, node);
