@@ -1,6 +1,6 @@
 //! Triangles and bilinear patches as plain data, from which lanes compute surface points.
 
-use lanes::{Each, Real};
+use lanes::{Each, Mask, Real};
 use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, coordinate_system, face_forward, gamma};
 
 /// A triangle or a bilinear patch, `p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist`.
@@ -110,7 +110,7 @@ impl<R: Real> PatchLanes<R> {
         let p = Point3Error::new(p, size * R::splat(gamma(5)));
         let cross = du.cross(dv);
         let squared = cross.length_squared();
-        let mut n = cross / squared.sqrt() * self.sign;
+        let mut n = cross * (self.sign / squared.sqrt());
         let [dpdu, dpdv] = tangents([du, dv], &self.uv, n);
         let c = R::one() - a - b;
         let mut ns = n;
@@ -136,10 +136,14 @@ fn select_each<R: Real>(mask: R::Mask, a: [Vector3<R>; 3], b: [Vector3<R>; 3]) -
 fn tangents<R: Real>([du, dv]: [Vector3<R>; 2], uv: &[Vec2<R>; 3], n: Normal3<R>) -> [Vector3<R>; 2] {
     let (st_du, st_dv) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = st_du.x * st_dv.y - st_dv.x * st_du.y;
-    let dpdu = (du * st_dv.y - dv * st_du.y) / determinant;
-    let dpdv = (dv * st_du.x - du * st_dv.x) / determinant;
+    let inverse = R::one() / determinant;
+    let dpdu = (du * st_dv.y - dv * st_du.y) * inverse;
+    let dpdv = (dv * st_du.x - du * st_dv.x) * inverse;
     let squared = dpdu.cross(dpdv).length_squared();
     let is_regular = squared.gt(R::zero()) & squared.lt(R::splat(f32::INFINITY));
+    if is_regular.all() {
+        return [dpdu, dpdv];
+    }
     let (any_u, any_v) = coordinate_system(n);
     [Vec3::select(is_regular, dpdu, any_u), Vec3::select(is_regular, dpdv, any_v)]
 }

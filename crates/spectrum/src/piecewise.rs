@@ -72,6 +72,8 @@ impl std::error::Error for ParseError {}
 pub struct PiecewiseLinear {
     lambdas: Box<[f32]>,
     values: Box<[f32]>,
+    /// From each value to the next one, per nanometre; 0 for the last.
+    slopes: Box<[f32]>,
     guide: Option<Guide>,
 }
 
@@ -124,7 +126,9 @@ impl PiecewiseLinear {
             return Err(SpectrumError::NotIncreasing { previous: w[0].0, lambda: w[1].0 });
         }
         let (lambdas, values): (Vec<f32>, Vec<f32>) = pairs.iter().copied().unzip();
-        Ok(Self { guide: Guide::new(&lambdas), lambdas: lambdas.into(), values: values.into() })
+        let slope = |w: &[(f32, f32)]| (w[1].1 - w[0].1) / (w[1].0 - w[0].0);
+        let slopes = pairs.windows(2).map(slope).chain([0.0]).collect();
+        Ok(Self { guide: Guide::new(&lambdas), lambdas: lambdas.into(), values: values.into(), slopes })
     }
 
     /// From numbers, wavelength and value in turn.
@@ -176,16 +180,11 @@ impl PiecewiseLinear {
     #[inline(always)]
     pub fn at<R: Real>(&self, lambda: R) -> R {
         let below = self.interval(lambda);
-        let above = below.wrapping_add(R::Int::splat(1));
-        let last = R::Int::splat(self.lambdas.len() as u32 - 1);
-        let above = R::Int::select(above.lt(last), above, last);
-        let [l0, l1] = [below, above].each(|i| R::gather(&self.lambdas, i));
-        let [v0, v1] = [below, above].each(|i| R::gather(&self.values, i));
-        let t = (lambda - l0) / (l1 - l0);
-        let inside = lambda.ge(l0) & lambda.lt(l1);
-        // At the end of the last interval the division is 0/0.
-        let value = R::select(inside, v0 * (R::one() - t) + v1 * t, v0);
-        R::select(inside | lambda.eq(l0), value, R::zero())
+        let [start, value, slope] =
+            [&self.lambdas, &self.values, &self.slopes].each(|numbers| R::gather(numbers, below));
+        let last = R::splat(self.lambdas[self.lambdas.len() - 1]);
+        let inside = lambda.ge(start) & lambda.le(last);
+        R::select(inside, value + (lambda - start) * slope, R::zero())
     }
 
     /// The index of the last wavelength that is at most `lambda`, or else 0, with the same steps in
@@ -234,7 +233,7 @@ impl PiecewiseLinear {
 
     /// The same spectrum times `factor`.
     pub fn scaled(mut self, factor: f32) -> Self {
-        self.values.iter_mut().for_each(|v| *v *= factor);
+        self.values.iter_mut().chain(&mut self.slopes).for_each(|v| *v *= factor);
         self
     }
 
@@ -265,6 +264,7 @@ mod tests {
             assert!((spectrum.at(lambda) - value).abs() < 1e-5, "{lambda}");
         }
         assert_eq!(spectrum.max_value(), 3.0);
+        assert!((spectrum.clone().scaled(2.0).at(450.0) - 4.0).abs() < 1e-5);
         assert_eq!(PiecewiseLinear::from_pairs(&[(500.0, 2.0)]).unwrap().at(500.0), 2.0);
     }
 
