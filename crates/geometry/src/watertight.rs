@@ -109,17 +109,22 @@ impl<'a> Sheared<'a> {
         (t < t_max).then_some((t, uv))
     }
 
-    /// Resolves an uncertain hit in doubles.
+    /// Resolves an uncertain hit in doubles. Most are on the triangle that the ray leaves, behind its
+    /// origin.
     #[cold]
     #[inline(never)]
     pub fn resolve(&self, corners: &[Vec3; 3]) -> Option<(f32, Vec2)> {
+        let (height, slope) = self.exact_distance(corners);
+        if height * slope <= 0.0 {
+            return None;
+        }
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let sheared = |p: Vec3| {
             let v = p - self.ray.o;
             [sx.mul_add(v[az], v[ax]), sy.mul_add(v[az], v[ay]), v[az] * sz]
         };
-        let [a, b, c] = corners.map(sheared);
+        let [a, b, c] = [sheared(corners[0]), sheared(corners[1]), sheared(corners[2])];
         let mut e = [edge(b, c), edge(c, a), edge(a, b)];
         if e.iter().any(|e| e.abs() < VANISHING) {
             e = [exact_edge(b, c), exact_edge(c, a), exact_edge(a, b)];
@@ -137,17 +142,20 @@ impl<'a> Sheared<'a> {
             return None;
         }
         if t <= distance_error([a, b, c], e, inverse) {
-            t = self.exact_distance(corners)?;
+            let exact = height / slope;
+            if !(exact > 0.0 && exact.is_finite()) {
+                return None;
+            }
+            t = exact as f32;
         }
         Some((t, Vec2::new(e[1] * inverse, e[2] * inverse)))
     }
 
-    /// t > 0 of the hit on the triangle's plane, in doubles.
-    fn exact_distance(&self, corners: &[Vec3; 3]) -> Option<f32> {
-        let [a, b, c] = corners.map(|p| p.as_dvec3());
+    /// The distance of the triangle's plane as a quotient, in doubles.
+    fn exact_distance(&self, corners: &[Vec3; 3]) -> (f64, f64) {
+        let [a, b, c] = [corners[0].as_dvec3(), corners[1].as_dvec3(), corners[2].as_dvec3()];
         let n = (b - a).cross(c - a);
-        let t = n.dot(a - self.ray.o.as_dvec3()) / n.dot(self.ray.d.as_dvec3());
-        (t > 0.0 && t.is_finite()).then_some(t as f32)
+        (n.dot(a - self.ray.o.as_dvec3()), n.dot(self.ray.d.as_dvec3()))
     }
 }
 

@@ -126,7 +126,13 @@ impl TriangleBlock {
 
     /// The corners of the triangle in a lane.
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        [0, 1, 2].map(|corner| Vec3::from(self.vertices.map(|axis| axis[self.vertex(lane, corner)])))
+        let [xs, ys, zs] = &self.vertices;
+        let mut corners = [Vec3::ZERO; 3];
+        for (corner, position) in corners.iter_mut().enumerate() {
+            let vertex = self.vertex(lane, corner);
+            *position = Vec3::new(xs[vertex], ys[vertex], zs[vertex]);
+        }
+        corners
     }
 
     /// Tests the ray against all triangles up to `t_max`.
