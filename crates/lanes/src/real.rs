@@ -82,14 +82,21 @@ pub trait Real:
     /// `a` where the mask is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
+    /// As [`Int::compress`].
+    #[inline(always)]
+    fn compress(self, mask: Self::Mask, to: &mut [f32]) -> usize {
+        let mut bits = [0; MAX_LANES];
+        let count = self.to_bits().compress(mask, &mut bits);
+        Self::from_bits(Self::Int::load(&bits)).store(to);
+        count
+    }
+
     /// Appends the lanes where the mask is true.
     #[inline(always)]
     fn append(self, mask: Self::Mask, to: &mut Vec<f32>) {
-        let mut bits = [0; MAX_LANES];
-        let count = self.to_bits().compress(mask, &mut bits);
         let len = to.len();
         to.resize(len + Self::LANES, 0.0);
-        Self::from_bits(Self::Int::load(&bits)).store(&mut to[len..]);
+        let count = self.compress(mask, &mut to[len..]);
         to.truncate(len + count);
     }
 

@@ -3,12 +3,14 @@
 use super::geometry::GeometryId;
 use super::hit::Hit;
 use super::instance::InstancePath;
-use lanes::{Int, Mask, Real};
+use lanes::{Int, MAX_LANES, Mask, Real};
 use math::{Ray, Vec2, Vec3, Vector3};
 
-/// Rays of a batch: a column for each of their numbers.
+/// Rays of a batch: a column for each of their numbers. Columns may be longer than needed.
 #[derive(Clone, Copy, Debug)]
 pub struct RayColumns<'a> {
+    /// The number of rays.
+    pub len: usize,
     /// Origins.
     pub o: [&'a [f32]; 3],
     /// Directions.
@@ -17,50 +19,45 @@ pub struct RayColumns<'a> {
     pub time: &'a [f32],
     /// Ends; `None` where no ray has any.
     pub t_max: Option<&'a [f32]>,
-    /// The rows that are the rays of the batch.
-    pub rows: &'a [u32],
 }
 
 impl RayColumns<'_> {
     /// The number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.rows.len()
+        self.len
     }
 
     /// Whether there is no ray.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.len == 0
     }
 
     /// The ray at a place in the batch.
     #[inline(always)]
     pub fn ray(&self, place: usize) -> Ray {
-        let row = self.rows[place] as usize;
-        let vector = |columns: &[&[f32]; 3]| Vec3::new(columns[0][row], columns[1][row], columns[2][row]);
-        Ray::new(vector(&self.o), vector(&self.d), self.time[row])
+        let vector =
+            |columns: &[&[f32]; 3]| Vec3::new(columns[0][place], columns[1][place], columns[2][place]);
+        Ray::new(vector(&self.o), vector(&self.d), self.time[place])
     }
 
     /// Its end.
     #[inline(always)]
     pub fn t_max(&self, place: usize) -> f32 {
-        self.t_max.map_or(f32::INFINITY, |t_max| t_max[self.rows[place] as usize])
+        self.t_max.map_or(f32::INFINITY, |t_max| t_max[place])
     }
 
     /// The rays from a place on, one in each lane, and their ends; the last one is repeated.
     #[inline(always)]
     pub(super) fn lanes<R: Real>(&self, first: usize) -> (Vector3<R>, Vector3<R>, R) {
-        let rows = &self.rows[first..];
-        let last = rows.len() - 1;
-        let rows =
-            if last < R::LANES { R::Int::from_fn(|lane| rows[lane.min(last)]) } else { R::Int::load(rows) };
+        let places = (first, self.len);
         let [ox, oy, oz] = self.o;
         let [dx, dy, dz] = self.d;
-        let o = Vec3::new(R::gather(ox, rows), R::gather(oy, rows), R::gather(oz, rows));
-        let d = Vec3::new(R::gather(dx, rows), R::gather(dy, rows), R::gather(dz, rows));
+        let o = Vec3::new(load(ox, places), load(oy, places), load(oz, places));
+        let d = Vec3::new(load(dx, places), load(dy, places), load(dz, places));
         let t_max = match self.t_max {
-            Some(t_max) => R::gather(t_max, rows),
+            Some(t_max) => load(t_max, places),
             None => R::splat(f32::INFINITY),
         };
         (o, d, t_max)
@@ -69,11 +66,23 @@ impl RayColumns<'_> {
     /// Prefetches a ray.
     #[inline(always)]
     pub(super) fn prefetch(&self, place: usize) {
-        let row = self.rows[place] as usize;
         for column in self.o.iter().chain(&self.d) {
-            lanes::prefetch(&raw const column[row]);
+            lanes::prefetch(&raw const column[place]);
         }
     }
+}
+
+/// The numbers of a column from a place on, where the column has `len`; the last one is repeated.
+#[inline(always)]
+fn load<R: Real>(column: &[f32], (first, len): (usize, usize)) -> R {
+    if first + R::LANES <= len {
+        return R::load(&column[first..]);
+    }
+    let (mut numbers, rest) = ([0.0; MAX_LANES], &column[first..len]);
+    for (lane, number) in numbers.iter_mut().enumerate() {
+        *number = rest[lane.min(rest.len() - 1)];
+    }
+    R::load(&numbers)
 }
 
 /// Rays that are collected for a batch.
@@ -83,13 +92,11 @@ pub struct RayBuffer {
     d: [Vec<f32>; 3],
     time: Vec<f32>,
     t_max: Vec<f32>,
-    rows: Vec<u32>,
 }
 
 impl RayBuffer {
     /// Adds a ray that ends at `t_max`.
     pub fn push(&mut self, ray: &Ray, t_max: f32) {
-        self.rows.push(self.rows.len() as u32);
         for (column, x) in self.o.iter_mut().zip(ray.o.to_array()) {
             column.push(x);
         }
@@ -103,8 +110,6 @@ impl RayBuffer {
     /// Adds the rays of a mask's lanes.
     #[inline(always)]
     pub fn append<R: Real>(&mut self, ray: &Ray<R>, t_max: R, mask: R::Mask) {
-        let first = self.rows.len() as u32;
-        self.rows.extend(first..first + mask.bits().count_ones());
         for (column, x) in self.o.iter_mut().zip([ray.o.x, ray.o.y, ray.o.z]) {
             x.append(mask, column);
         }
@@ -119,7 +124,6 @@ impl RayBuffer {
     pub fn clear(&mut self) {
         self.o.iter_mut().chain(&mut self.d).for_each(Vec::clear);
         [&mut self.time, &mut self.t_max].into_iter().for_each(Vec::clear);
-        self.rows.clear();
     }
 
     /// All rays.
@@ -127,11 +131,11 @@ impl RayBuffer {
         let [ox, oy, oz] = &self.o;
         let [dx, dy, dz] = &self.d;
         RayColumns {
+            len: self.time.len(),
             o: [ox, oy, oz],
             d: [dx, dy, dz],
             time: &self.time,
             t_max: Some(&self.t_max),
-            rows: &self.rows,
         }
     }
 }

@@ -12,6 +12,7 @@ use super::numbers::draw_2d;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
+use super::segments::Segments;
 use crate::AmbientOcclusion;
 
 impl WaveIntegrator for AmbientOcclusion {
@@ -20,7 +21,7 @@ impl WaveIntegrator for AmbientOcclusion {
     fn shade(&self, batch: &mut Batch) {
         let scene = batch.pass.pixels.scene;
         let (mut turns, mut rows) = (Vec::new(), Vec::new());
-        for (turn, (&row, &geometry)) in batch.active.iter().zip(&batch.hits.geometry).enumerate() {
+        for (turn, (&row, &geometry)) in batch.segments.rows.iter().zip(&batch.hits.geometry).enumerate() {
             let Some(entry) = scene.geometries().get(geometry as usize) else { continue };
             if let Material::Interface | Material::Mix(_) =
                 scene.materials()[entry.material.0 as usize].material
@@ -38,10 +39,11 @@ impl WaveIntegrator for AmbientOcclusion {
             points: &batch.points,
             turns: &turns,
             rows: &rows,
+            segments: &batch.segments,
             paths: &batch.paths,
             queues: &mut batch.queues,
         });
-        batch.shade_others(|batch, path, hit| self.shade_path(batch, path, hit));
+        batch.shade_others(|batch, place, hit| self.shade_path(batch, place, hit));
     }
 }
 
@@ -54,6 +56,7 @@ struct Occlude<'a, 'b> {
     /// Indices of hits, and their paths.
     turns: &'b [u32],
     rows: &'b [u32],
+    segments: &'b Segments,
     paths: &'b Paths,
     queues: &'b mut Queues,
 }
@@ -63,7 +66,7 @@ impl Kernel for Occlude<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { pass, algorithm, points, turns, rows, paths, queues } = self;
+        let Self { pass, algorithm, points, turns, rows, segments, paths, queues } = self;
         let t_max = R::splat(algorithm.max_distance());
         for (part, queue) in rows.chunks(R::LANES).enumerate() {
             let first = part * R::LANES;
@@ -73,9 +76,10 @@ impl Kernel for Occlude<'_, '_> {
                 queues.scalar.push((row as u32, turns[first + lane]));
             });
             let u = draw_2d::<R>(&pass, &mut paths.address(rows, pass.pixels.index));
-            let time = R::gather(&paths.time, rows.indices);
+            let places = Rows::<R>::first(&turns[first..first + queue.len()]);
+            let time = R::gather(&segments.time, places.indices);
             let point = LightSampleContext { p, n, ns, time };
-            let wo = -paths.direction.vector(rows);
+            let wo = -segments.direction.vector(places);
             let (ray, l) = algorithm.sample((&point, wo), u, &paths.lambda_lanes(rows));
             let [shadows, _] = &mut queues.shadows;
             shadows.append(rows, rows.active & found & !l.is_black(), &Shadow { l, ray, t_max });
@@ -85,14 +89,15 @@ impl Kernel for Occlude<'_, '_> {
 
 impl AmbientOcclusion {
     /// Continues one path from its hit.
-    fn shade_path(&self, batch: &mut Batch, path: u32, hit: &Hit) {
-        let Batch { pass, paths, sampler, queues, .. } = batch;
+    fn shade_path(&self, batch: &mut Batch, (path, turn): (u32, u32), hit: &Hit) {
+        let Batch { pass, paths, segments, sampler, queues, .. } = batch;
         let (scene, row) = (pass.pixels.scene, path as usize);
-        let ray = paths.ray(row);
+        let mut state = segments.state(turn as usize);
+        let ray = state.ray.ray;
         let surface = scene.interaction(hit, scene.world().surface(&ray, hit));
         if scene.is_interface(hit, &ray) {
-            paths.set_ray(row, &surface.spawn_ray(ray.d));
-            queues.next.push(path);
+            state.ray.ray = surface.spawn_ray(ray.d);
+            queues.next.push(path, &state);
             return;
         }
         paths.resume(sampler, row, pass.pixels.index);

@@ -18,6 +18,7 @@ use super::materials::Shading;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
+use super::segments::Segments;
 use super::shade::{AtVertices, Shade};
 use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
@@ -32,13 +33,13 @@ pub struct Batch<'a> {
     pub(super) paths: Paths,
     pub(super) queues: Queues,
     /// The paths whose rays are traced, in the order of their hits.
-    pub(super) active: Vec<u32>,
+    pub(super) segments: Segments,
     pub(super) hits: HitColumns,
     /// Surface points of some of the hits.
     pub(super) points: PointColumns,
     /// Hits to be shaded in lanes.
     pub(super) lanes: Groups,
-    /// The paths that have left the scene.
+    /// The turns of paths that have left the scene.
     escaped: Vec<u32>,
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
@@ -64,7 +65,7 @@ impl<'a> Batch<'a> {
             sampler: pass.pixels.sampler.clone(),
             paths: Paths::default(),
             queues: Queues::default(),
-            active: Vec::new(),
+            segments: Segments::default(),
             hits: HitColumns::default(),
             points: PointColumns::default(),
             lanes: Groups::default(),
@@ -80,20 +81,26 @@ impl<'a> Batch<'a> {
     pub(super) fn begin(&mut self, tiles: &[FilmTile], with_differentials: bool) {
         let instruction_set = self.pass.instruction_set;
         let with_weights = !self.pass.pixels.view.camera.is_unweighted();
-        self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials, with_weights);
-        instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
-        self.queues.waiting.clear();
-        self.active.clear();
-        self.active.extend(0..self.paths.len() as u32);
+        let Self { pass, paths, segments, queues, .. } = self;
+        paths.start(tiles.iter().map(FilmTile::bounds), with_weights);
+        segments.start_from_camera(paths.len(), with_differentials);
+        queues.next.start(paths.len(), with_differentials);
+        instruction_set.dispatch(Begin { pass: *pass, paths, segments, with_differentials });
+        queues.waiting.clear();
         if with_weights {
             // Rays that the camera's lens blocks are not traced.
-            self.active.retain(|&row| self.paths.camera_weight[row as usize] > 0.0);
+            for row in 0..paths.len() {
+                if paths.camera_weight[row] > 0.0 {
+                    queues.next.push(row as u32, &segments.state(row));
+                }
+            }
+            self.go_on();
         }
     }
 
     /// Finds the nearest hit of each path's ray.
     pub(super) fn extend(&mut self) {
-        let rays = self.paths.rays(&self.active);
+        let rays = self.segments.rays();
         self.pass.pixels.scene.hit_batch(rays, &mut self.hits, &mut self.stats);
     }
 
@@ -105,10 +112,10 @@ impl<'a> Batch<'a> {
         self.lanes.clear(scene.materials().len());
         self.lit.clear();
         self.escaped.clear();
-        for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
+        for (turn, (&row, &geometry)) in self.segments.rows.iter().zip(&self.hits.geometry).enumerate() {
             let turn = turn as u32;
             let Some(entry) = scene.geometries().get(geometry as usize) else {
-                self.escaped.push(row);
+                self.escaped.push(turn);
                 continue;
             };
             let light = match entry.first_light {
@@ -119,14 +126,14 @@ impl<'a> Batch<'a> {
                 self.lit.push(LightHit { row, turn, light });
             }
             let is_emitted = entry.first_light.is_none() || light.is_some();
-            let is_last = self.paths.depth[row as usize] == max_depth;
+            let is_last = self.segments.depth[turn as usize] == max_depth;
             if is_emitted
                 && is_last
                 && scene.materials()[entry.material.0 as usize].material.stops(scene.textures())
             {
                 continue;
             }
-            let shading = self.pass.materials.shading(entry.material, self.paths.has_differentials(row));
+            let shading = self.pass.materials.shading(entry.material, self.segments.has_differentials(turn));
             if is_emitted && !is_last && shading != Shading::Scalar {
                 self.lanes.push(entry.material, turn, row);
             } else {
@@ -145,6 +152,7 @@ impl<'a> Batch<'a> {
             direct,
             hits: &self.hits,
             found: &self.lit,
+            segments: &self.segments,
             paths: &mut self.paths,
         });
     }
@@ -152,13 +160,14 @@ impl<'a> Batch<'a> {
     /// Adds the light from infinity to the paths that have left the scene.
     fn escape(&mut self, direct: &DirectLighting) {
         let &PixelSamples { scene, .. } = self.pass.pixels;
-        let (queue, paths) = (&self.escaped, &mut self.paths);
+        let Self { escaped: queue, segments, paths, .. } = self;
         if Escape::is_enough(scene) {
-            self.pass.instruction_set.dispatch(Escape { scene, direct, queue, paths });
+            self.pass.instruction_set.dispatch(Escape { scene, direct, queue, segments, paths });
             return;
         }
-        for row in queue.iter().map(|&row| row as usize) {
-            let (state, lambda) = (paths.state(row), paths.lambda(row));
+        for turn in queue.iter().map(|&turn| turn as usize) {
+            let row = segments.rows[turn] as usize;
+            let (state, lambda) = (segments.state(turn), paths.lambda(row));
             let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
             paths.add_light(row, l);
         }
@@ -211,29 +220,35 @@ impl<'a> Batch<'a> {
             points: &self.points,
             turns,
             rows,
+            segments: &self.segments,
             paths: &mut self.paths,
             queues: &mut self.queues,
             light_samples: &mut self.light_samples,
         });
     }
 
-    /// Calls `shade` with each path whose hit is not shaded in lanes, and the hit.
-    pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, u32, &Hit)) {
+    /// Calls `shade` with each path whose hit is not shaded in lanes, its turn, and the hit.
+    pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, (u32, u32), &Hit)) {
         let mut scalar = std::mem::take(&mut self.queues.scalar);
         for (path, turn) in scalar.drain(..) {
             let hit = self.hits.get(turn as usize).expect("invariant: paths without hit have ended");
-            shade(self, path, &hit);
+            shade(self, (path, turn), &hit);
         }
         self.queues.scalar = scalar;
     }
 
     /// The vertex of a path at a hit, to which the batch's sampler has gone on. Adds emission.
     /// `None` where the ray passes through the surface.
-    pub(super) fn vertex(&mut self, path: u32, hit: &Hit, direct: &DirectLighting) -> Option<Vertex<'a>> {
-        let Self { pass, paths, sampler, queues, .. } = self;
+    pub(super) fn vertex(
+        &mut self,
+        (path, turn): (u32, u32),
+        hit: &Hit,
+        direct: &DirectLighting,
+    ) -> Option<Vertex<'a>> {
+        let Self { pass, paths, segments, sampler, queues, .. } = self;
         let &PixelSamples { scene, view, index, .. } = pass.pixels;
         let row = path as usize;
-        let mut state = paths.state(row);
+        let mut state = segments.state(turn as usize);
         let mut lambda = paths.lambda(row);
         let mut surface = scene.interaction(hit, scene.world().surface(&state.ray.ray, hit));
         if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
@@ -243,8 +258,7 @@ impl<'a> Batch<'a> {
         paths.resume(sampler, row, index);
         let Some(bsdf) = scene.bsdf(view, &mut surface, &state.ray, &mut lambda, sampler) else {
             state.pass_through(&surface, hit.t);
-            paths.set_state(row, &state);
-            queues.next.push(path);
+            queues.next.push(path, &state);
             return None;
         };
         paths.set_lambda(row, &lambda);
@@ -258,19 +272,18 @@ impl<'a> Batch<'a> {
             return;
         }
         let mut goes_on = vec![false; self.paths.len()];
-        next.iter().for_each(|&row| goes_on[row as usize] = true);
-        for &row in self.active.iter().filter(|&&row| !goes_on[row as usize]) {
+        next.rows.iter().for_each(|&row| goes_on[row as usize] = true);
+        for &row in self.segments.rows.iter().filter(|&&row| !goes_on[row as usize]) {
             if let Some(state) = waiting.get_mut(row as usize).and_then(Vec::pop) {
-                self.paths.set_state(row as usize, &state);
-                next.push(row);
+                next.push(row, &state);
             }
         }
     }
 
     /// Goes on with the paths that have a next ray.
     pub(super) fn go_on(&mut self) {
-        self.active.clear();
-        std::mem::swap(&mut self.active, &mut self.queues.next);
+        self.segments.rows.clear();
+        std::mem::swap(&mut self.segments, &mut self.queues.next);
     }
 
     /// Traces the shadow rays.

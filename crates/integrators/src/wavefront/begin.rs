@@ -6,13 +6,15 @@ use scene::camera::differential_scale;
 
 use super::numbers::CameraNumbers;
 use super::pass::Pass;
-use super::paths::{Paths, numbers_of};
+use super::paths::Paths;
+use super::segments::{Segments, numbers_of};
 use crate::transport::shutter_sample::ShutterSample;
 
 /// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
 pub(super) struct Begin<'a, 'b> {
     pub pass: Pass<'a>,
     pub paths: &'b mut Paths,
+    pub segments: &'b mut Segments,
     pub with_differentials: bool,
 }
 
@@ -39,7 +41,7 @@ impl Begin<'_, '_> {
         let lambda = ShutterSample::wavelengths(pixels.view, numbers.wavelength);
         let time = ShutterSample::shutter(pixels.view, numbers.time);
         let sample = pixels.camera_sample(pixel, numbers.place, time, numbers.lens);
-        let paths = &mut *self.paths;
+        let (paths, segments) = (&mut *self.paths, &mut *self.segments);
         address.dimension.store(&mut paths.dimension[first..]);
         sample.filter_weight.store(&mut paths.filter_weight[first..]);
         let ([a, b, c, d], [p, q, r, s]) = (*lambda.lambda(), lambda.pdf().0);
@@ -48,8 +50,8 @@ impl Begin<'_, '_> {
         let (ray, weight) = if self.with_differentials {
             let (ray, mut differentials, weight) = camera.ray_and_neighbours(&sample);
             differentials.scale(&ray, R::splat(differential_scale(pixels.view.samples_per_pixel)));
-            paths.differentials.store(first, numbers_of(&differentials));
-            R::Int::splat(1).store(&mut paths.are_differentials[first..]);
+            segments.differentials.store(first, numbers_of(&differentials));
+            R::Int::splat(1).store(&mut segments.are_differentials[first..]);
             (ray, weight)
         } else {
             camera.ray(&sample)
@@ -57,8 +59,8 @@ impl Begin<'_, '_> {
         if !paths.camera_weight.is_empty() {
             weight.store(&mut paths.camera_weight[first..]);
         }
-        ray.time.store(&mut paths.time[first..]);
-        paths.origin.store(first, ray.o.to_array());
-        paths.direction.store(first, ray.d.to_array());
+        ray.time.store(&mut segments.time[first..]);
+        segments.origin.store(first, ray.o.to_array());
+        segments.direction.store(first, ray.d.to_array());
     }
 }

@@ -121,6 +121,14 @@ impl<const C: usize> Columns<C> {
         }
     }
 
+    /// Changes successive rows to the lanes of a mask; rows after them may be overwritten.
+    #[inline(always)]
+    pub fn compress<R: Real>(&mut self, first: usize, mask: R::Mask, values: [R; C]) {
+        for (column, value) in self.0.iter_mut().zip(values) {
+            value.compress(mask, &mut column[first..]);
+        }
+    }
+
     /// Rows in lanes.
     #[inline(always)]
     pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {

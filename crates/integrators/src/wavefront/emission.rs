@@ -3,14 +3,15 @@
 
 use geometry::HitColumns;
 use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
-use math::{Point3Error, Vec2, Vector3};
+use math::{Vec2, Vector3};
 use scene::Scene;
-use scene::light::{ImageInfiniteLight, Light, LightId, LightSampleContext};
+use scene::light::{ImageInfiniteLight, Light, LightId};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
 use super::pass::Pass;
 use super::paths::Paths;
+use super::segments::Segments;
 use crate::transport::direct::{DirectLighting, power_heuristic};
 
 /// A hit of a light of the table.
@@ -30,6 +31,7 @@ pub(super) struct Emit<'a, 'b> {
     pub direct: &'b DirectLighting,
     pub hits: &'b HitColumns,
     pub found: &'b [LightHit],
+    pub segments: &'b Segments,
     pub paths: &'b mut Paths,
 }
 
@@ -47,35 +49,38 @@ impl Kernel for Emit<'_, '_> {
 impl Emit<'_, '_> {
     #[inline(always)]
     fn add<R: Real>(&mut self, found: &[LightHit]) {
-        let ([mut x, mut y], mut queue, mut lights) = ([[0.0; MAX_LANES]; 2], [0; MAX_LANES], [0; MAX_LANES]);
+        let [mut x, mut y] = [[0.0; MAX_LANES]; 2];
+        let [mut queue, mut turns, mut lights] = [[0; MAX_LANES]; 3];
         for (lane, &LightHit { row, turn, light }) in found.iter().enumerate() {
             let [u, v] = self.hits.uv.each_ref().map(|column| column[turn as usize]);
             (x[lane], y[lane]) = (u, v);
-            (queue[lane], lights[lane]) = (row, light);
+            (queue[lane], turns[lane], lights[lane]) = (row, turn, light);
         }
         let rows = Rows::<R>::first(&queue[..found.len()]);
+        let turns = Rows::<R>::first(&turns[..found.len()]);
         let uv = Vec2::new(R::load(&x), R::load(&y));
         let lights = R::Int::load(&lights);
 
-        let (Pass { area_lights, pixels, .. }, paths) = (self.pass, &mut *self.paths);
+        let (Pass { area_lights, pixels, .. }, segments, paths) =
+            (self.pass, self.segments, &mut *self.paths);
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
         let (shapes, scale) = area_lights.shapes::<R>(table_rows);
         let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
         let lambda = SampledWavelengths::new([a, b, c, d], pdf);
-        let wo = -paths.direction.vector(rows);
+        let wo = -segments.direction.vector(turns);
         let l = area_lights.radiance(pixels.scene, (table_rows, scale), (shapes.n, wo), &lambda, active);
         let is_lit = active & !l.is_black();
 
-        let pdf = R::gather(&paths.pdf, rows.indices);
+        let pdf = R::gather(&segments.pdf, turns.indices);
         let is_weighted = is_lit & pdf.gt(R::zero());
         let mut weight = R::one();
         if is_weighted.any() {
-            let context = vertex(paths, rows);
+            let context = segments.last_vertex(turns);
             let pmf = self.direct.lights().pmf_lanes(&context, lights, is_weighted);
             let other = pmf * shapes.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
         }
-        let beta = paths.beta.spectrum::<R>(rows);
+        let beta = segments.beta.spectrum::<R>(turns);
         let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + beta * (l * weight);
         paths.l.set(rows, is_lit, sum.0);
     }
@@ -86,7 +91,9 @@ impl Emit<'_, '_> {
 pub(super) struct Escape<'a, 'b> {
     pub scene: &'a Scene,
     pub direct: &'a DirectLighting,
+    /// The turns of paths.
     pub queue: &'b [u32],
+    pub segments: &'b Segments,
     pub paths: &'b mut Paths,
 }
 
@@ -107,25 +114,27 @@ impl Kernel for Escape<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { scene, direct, queue, paths } = self;
+        let Self { scene, direct, queue, segments, paths } = self;
         for queue in queue.chunks(R::LANES) {
-            let rows = Rows::<R>::first(queue);
+            let turns = Rows::<R>::first(queue);
+            let indices = R::Int::gather(&segments.rows, turns.indices);
+            let rows = Rows { indices, active: turns.active };
             let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
             let lambda = SampledWavelengths::new([a, b, c, d], pdf);
-            let w = paths.direction.vector(rows);
+            let w = segments.direction.vector(turns);
             let mut l = SampledSpectrum::splat(R::zero());
             for &id in scene.infinite_lights() {
                 match scene.light(id).row() {
                     // Light samples leave these lights out, so that their light counts fully.
                     Light::UniformInfinite(light) => l += light.radiance.sample(&lambda),
                     Light::ImageInfinite(sky) => {
-                        let weight = sky_weight(direct, (id, sky), paths, (rows, w));
+                        let weight = sky_weight(direct, (id, sky), segments, (turns, w));
                         l += sky.le_at_rest(w, &lambda) * weight;
                     }
                     _ => unreachable!("invariant: other lights are not infinite"),
                 }
             }
-            let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + paths.beta.spectrum::<R>(rows) * l;
+            let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + segments.beta.spectrum::<R>(turns) * l;
             paths.l.set(rows, rows.active, sum.0);
         }
     }
@@ -136,23 +145,14 @@ impl Kernel for Escape<'_, '_> {
 fn sky_weight<R: Real>(
     direct: &DirectLighting,
     (LightId(id), sky): (LightId, &ImageInfiniteLight),
-    paths: &Paths,
-    (rows, w): (Rows<R>, Vector3<R>),
+    segments: &Segments,
+    (turns, w): (Rows<R>, Vector3<R>),
 ) -> R {
-    let pdf = R::gather(&paths.pdf, rows.indices);
-    let is_weighted = rows.active & pdf.gt(R::zero());
+    let pdf = R::gather(&segments.pdf, turns.indices);
+    let is_weighted = turns.active & pdf.gt(R::zero());
     if !is_weighted.any() {
         return R::one();
     }
-    let pmf = direct.lights().pmf_lanes(&vertex(paths, rows), R::Int::splat(id), is_weighted);
+    let pmf = direct.lights().pmf_lanes(&segments.last_vertex(turns), R::Int::splat(id), is_weighted);
     R::select(is_weighted, power_heuristic(pdf, pmf * sky.pdf_at_rest(w, true)), R::one())
-}
-
-/// The last vertices of paths.
-#[inline(always)]
-fn vertex<R: Real>(paths: &Paths, rows: Rows<R>) -> LightSampleContext<R> {
-    let [p, error, n, ns] = &paths.vertex;
-    let p = Point3Error::new(p.vector(rows), error.vector(rows));
-    let time = R::gather(&paths.time, rows.indices);
-    LightSampleContext { p, n: n.vector(rows), ns: ns.vector(rows), time }
 }

@@ -33,6 +33,7 @@ mod path;
 mod paths;
 mod queues;
 mod ray_casting;
+mod segments;
 mod shade;
 mod whitted;
 
@@ -99,7 +100,7 @@ impl<A: WaveIntegrator> Wavefront<A> {
         let control = batch.pass.control;
         let PixelSamples { scene, view, .. } = batch.pass.pixels;
         batch.begin(&tiles, A::READS_TEXTURES && scene.needs_footprints(view));
-        while !batch.active.is_empty() {
+        while !batch.segments.rows.is_empty() {
             control.check()?;
             batch.extend();
             self.algorithm.shade(batch);

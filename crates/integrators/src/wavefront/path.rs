@@ -2,18 +2,18 @@
 
 use geometry::{Hit, PatchPoints};
 use lanes::{Int, Mask, Real};
-use math::{Vec2, offset_ray_origin};
+use math::{Ray, Vec2, offset_ray_origin};
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
-use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, Vertex};
 use super::lights::{self, LightLanes};
 use super::numbers::{VertexNumbers, draw_1d};
 use super::queues::Shadow;
+use super::segments::Segment;
 use super::shade::{AtVertices, Shade, Vertices};
 use crate::Path;
 use crate::transport::direct::{Connection, light_context, power_heuristic};
@@ -24,20 +24,20 @@ impl WaveIntegrator for Path {
     fn shade(&self, batch: &mut Batch) {
         batch.classify(self.settings.max_depth, &self.direct);
         batch.shade_in_lanes(self);
-        batch.shade_others(|batch, path, hit| self.shade_path(batch, path, hit));
+        batch.shade_others(|batch, place, hit| self.shade_path(batch, place, hit));
     }
 }
 
 impl Path {
     /// Shades one path.
-    fn shade_path(&self, batch: &mut Batch, path: u32, hit: &Hit) {
-        let Some(vertex) = batch.vertex(path, hit, &self.direct) else { return };
+    fn shade_path(&self, batch: &mut Batch, place: (u32, u32), hit: &Hit) {
+        let Some(vertex) = batch.vertex(place, hit, &self.direct) else { return };
         let Vertex { mut state, lambda, surface, mut bsdf } = vertex;
         if state.depth == self.settings.max_depth {
             return;
         }
         let Batch { pass, paths, sampler, queues, .. } = batch;
-        let (scene, row) = (pass.pixels.scene, path as usize);
+        let (scene, path, row) = (pass.pixels.scene, place.0, place.0 as usize);
         state.depth += 1;
         bsdf.regularize(self.settings.regularize && paths.rough_before[row]);
         let context = light_context(&surface, bsdf.flags());
@@ -57,8 +57,7 @@ impl Path {
         state.scatter(&surface, context, &scattered);
         if state.survives(sampler) {
             paths.dimension[row] = sampler.dimension();
-            paths.set_state(row, &state);
-            queues.next.push(path);
+            queues.next.push(path, &state);
         }
     }
 }
@@ -124,7 +123,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         contexts: &LightSampleContext<R>,
         (uc, u): (R, Vec2<R>),
     ) {
-        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
+        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
@@ -133,12 +132,12 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         } else {
             pdf
         };
-        let eta_scale = R::gather(&self.paths.eta_scale, rows.indices);
+        let eta_scale = R::gather(&self.segments.eta_scale, turns.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let valid = valid & vertices.active;
 
         // The first scattering event is never the last by roulette.
-        let depth = R::Int::gather(&self.paths.depth, rows.indices);
+        let depth = R::Int::gather(&self.segments.depth, turns.indices);
         let is_first = depth.eq(R::Int::splat(0));
         let probability = (beta * eta_scale).max_component();
         let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
@@ -148,30 +147,24 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
             let u = draw_1d::<R>(&self.pass, &mut { vertices.address });
             survives = survives | (draws & u.lt(probability));
         }
-        let beta = SampledSpectrum::select(plays, beta / probability, beta);
+        let beta = beta * R::select(plays, R::one() / probability, R::one());
 
-        let paths = &mut *self.paths;
-        paths.beta.set(rows, survives, beta.0);
-        paths.origin.set(rows, survives, offset_ray_origin(p, n, wi).to_array());
-        paths.direction.set(rows, survives, wi.to_array());
-        let vectors = [contexts.p.p, contexts.p.error, contexts.n, contexts.ns];
-        for (columns, v) in paths.vertex.iter_mut().zip(vectors) {
-            columns.set(rows, survives, v.to_array());
-        }
-        let is_specular = flags.is_specular();
-        R::select(is_specular, R::zero(), pdf).scatter(survives, &mut paths.pdf, rows.indices);
-        eta_scale.scatter(survives, &mut paths.eta_scale, rows.indices);
         let one = R::Int::splat(1);
-        depth.wrapping_add(one).scatter(survives, &mut paths.depth, rows.indices);
         let dimension = vertices.address.dimension;
         let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
-        dimension.scatter(survives, &mut paths.dimension, rows.indices);
+        dimension.scatter(survives, &mut self.paths.dimension, rows.indices);
+        let is_specular = flags.is_specular();
         if self.algorithm.settings.regularize {
-            rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
+            rows.each_of(survives & !is_specular, |_, row| self.paths.rough_before[row] = true);
         }
-        if !paths.are_differentials.is_empty() {
-            R::Int::splat(0).scatter(survives, &mut paths.are_differentials, rows.indices);
-        }
-        rows.indices.append(survives, &mut self.queues.next);
+        let segment = Segment {
+            ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
+            beta,
+            eta_scale,
+            depth: depth.wrapping_add(one),
+            vertex: *contexts,
+            pdf: R::select(is_specular, R::zero(), pdf),
+        };
+        self.queues.next.append(rows.indices, survives, &segment);
     }
 }

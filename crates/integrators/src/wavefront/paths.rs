@@ -1,19 +1,15 @@
 //! The paths of a batch, in columns.
 
-use film::FirstEvent;
-use geometry::RayColumns;
 use lanes::{Int, MAX_LANES, Real};
-use math::{Bounds2i, Differentials, Point3Error, Ray, RayDifferential, Vec3};
+use math::Bounds2i;
 use sampling::Sampler;
 use sampling::sampler::Address;
-use scene::light::LightSampleContext;
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::columns::{Column, Columns, Rows, fill, grow};
-use crate::transport::path_state::{Origin, PathState};
 
-/// The paths of a batch; a path is a row. Columns are longer, so that a vector can begin at any
-/// row.
+/// What the paths of a batch have from their start to their end; a path is a row. Columns are
+/// longer, so that a vector can begin at any row.
 #[derive(Default)]
 pub(super) struct Paths {
     count: usize,
@@ -28,30 +24,10 @@ pub(super) struct Paths {
     pub dimension: Vec<u32>,
     /// Wavelengths, and their densities.
     pub wavelengths: Columns<{ 2 * N }>,
-    /// Shutter time, the same for all rays of a path.
-    pub time: Column,
-    /// Origin of the ray to the next vertex.
-    pub origin: Columns<3>,
-    /// Its direction.
-    pub direction: Columns<3>,
-    /// Its differentials: of the rays to the right and down, origin and direction each.
-    pub differentials: Columns<12>,
-    /// 1 for paths that have differentials, else 0; empty where nothing needs them.
-    pub are_differentials: Vec<u32>,
-    /// Path throughput.
-    pub beta: Columns<N>,
     /// The light so far.
     pub l: Columns<N>,
-    /// The product of η² over the refractions.
-    pub eta_scale: Column,
-    /// Scattering events so far.
-    pub depth: Vec<u32>,
     /// Whether a rough surface scattered it before.
     pub rough_before: Vec<bool>,
-    /// The last vertex: position, its error, geometric and shading normal.
-    pub vertex: [Columns<3>; 4],
-    /// The density of the ray's direction at that vertex; 0 after specular scattering.
-    pub pdf: Column,
 }
 
 impl Paths {
@@ -61,13 +37,8 @@ impl Paths {
     }
 
     /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
-    /// wavelengths, weights and rays yet.
-    pub fn start(
-        &mut self,
-        pixels: impl Iterator<Item = Bounds2i>,
-        with_differentials: bool,
-        with_weights: bool,
-    ) {
+    /// wavelengths and weights yet.
+    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_weights: bool) {
         let [x, y] = &mut self.pixel;
         x.clear();
         y.clear();
@@ -82,45 +53,12 @@ impl Paths {
         let rows = self.count + MAX_LANES;
         x.resize(rows, 0);
         y.resize(rows, 0);
-        [&mut self.filter_weight, &mut self.time].into_iter().for_each(|column| grow(column, rows));
+        grow(&mut self.filter_weight, rows);
         fill(&mut self.camera_weight, if with_weights { rows } else { 0 }, 0.0);
         self.dimension.resize(rows, 0);
         self.wavelengths.grow(rows);
-        [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(rows));
-        self.vertex.iter_mut().for_each(|columns| columns.grow(rows));
-        fill(&mut self.are_differentials, if with_differentials { rows } else { 0 }, 0);
-        self.differentials.grow(self.are_differentials.len());
-        self.beta.fill(rows, 1.0);
         self.l.fill(rows, 0.0);
-        fill(&mut self.eta_scale, rows, 1.0);
-        fill(&mut self.depth, rows, 0);
         fill(&mut self.rough_before, rows, false);
-        fill(&mut self.pdf, rows, 0.0);
-    }
-
-    /// Whether a path has ray differentials.
-    #[inline]
-    pub fn has_differentials(&self, row: u32) -> bool {
-        self.are_differentials.get(row as usize).is_some_and(|&is| is == 1)
-    }
-
-    /// The ray of a path.
-    #[inline]
-    pub fn ray(&self, row: usize) -> Ray {
-        let [o, d] = [&self.origin, &self.direction].map(|columns| Vec3::from_array(columns.row(row)));
-        Ray::new(o, d, self.time[row])
-    }
-
-    /// Changes the ray of a path.
-    pub fn set_ray(&mut self, row: usize, ray: &Ray) {
-        self.origin.set_row(row, ray.o.to_array());
-        self.direction.set_row(row, ray.d.to_array());
-    }
-
-    /// The rays of paths.
-    pub fn rays<'a>(&'a self, rows: &'a [u32]) -> RayColumns<'a> {
-        let (o, d) = (self.origin.slices(), self.direction.slices());
-        RayColumns { o, d, time: &self.time, t_max: None, rows }
     }
 
     /// The next address of the sampler of each path, at the sample of an index.
@@ -174,63 +112,5 @@ impl Paths {
             let l = SampledSpectrum(self.l.row(row)) * weight;
             self.l.set_row(row, l.0);
         }
-    }
-
-    /// A path between two vertices.
-    pub fn state(&self, row: usize) -> PathState {
-        let has_differentials = self.has_differentials(row as u32);
-        let differentials = has_differentials.then(|| differentials_of(self.differentials.row(row)));
-        let [p, error, n, ns] = [0, 1, 2, 3].map(|i: usize| Vec3::from_array(self.vertex[i].row(row)));
-        let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[row] };
-        let pdf = self.pdf[row];
-        PathState {
-            medium: None,
-            ray: RayDifferential { ray: self.ray(row), differentials },
-            beta: SampledSpectrum(self.beta.row(row)),
-            depth: self.depth[row],
-            origin: (pdf > 0.0).then_some(Origin { context, pdf }),
-            eta_scale: self.eta_scale[row],
-            first: FirstEvent::None,
-        }
-    }
-
-    /// Changes a path between two vertices.
-    pub fn set_state(&mut self, row: usize, state: &PathState) {
-        let RayDifferential { ray, differentials } = state.ray;
-        self.set_ray(row, &ray);
-        if let Some(is) = self.are_differentials.get_mut(row) {
-            *is = differentials.is_some().into();
-        }
-        if let Some(differentials) = &differentials {
-            self.differentials.set_row(row, numbers_of(differentials));
-        }
-        self.beta.set_row(row, state.beta.0);
-        self.depth[row] = state.depth;
-        self.eta_scale[row] = state.eta_scale;
-        self.pdf[row] = 0.0;
-        if let Some(Origin { context, pdf }) = &state.origin {
-            self.pdf[row] = *pdf;
-            let vectors = [context.p.p, context.p.error, context.n, context.ns];
-            self.vertex.iter_mut().zip(vectors).for_each(|(columns, v)| columns.set_row(row, v.to_array()));
-        }
-    }
-}
-
-/// The numbers of differentials.
-#[inline(always)]
-pub(super) fn numbers_of<R: Real>(differentials: &Differentials<R>) -> [R; 12] {
-    let Differentials { rx_origin: a, rx_direction: b, ry_origin: c, ry_direction: d } = differentials;
-    [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z]
-}
-
-/// The differentials of these numbers.
-#[inline(always)]
-pub(super) fn differentials_of<R: Real>(numbers: [R; 12]) -> Differentials<R> {
-    let [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz] = numbers;
-    Differentials {
-        rx_origin: Vec3::new(ax, ay, az),
-        rx_direction: Vec3::new(bx, by, bz),
-        ry_origin: Vec3::new(cx, cy, cz),
-        ry_direction: Vec3::new(dx, dy, dz),
     }
 }

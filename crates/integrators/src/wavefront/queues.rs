@@ -6,13 +6,14 @@ use math::Ray;
 use spectrum::{N, SampledSpectrum};
 
 use super::columns::{Columns, Rows};
+use super::segments::Segments;
 use crate::transport::path_state::PathState;
 
 /// The queues of a batch.
 #[derive(Default)]
 pub(super) struct Queues {
     /// The paths that go on.
-    pub next: Vec<u32>,
+    pub next: Segments,
     /// Hits to be shaded one by one: path, and index of its hit.
     pub scalar: Vec<(u32, u32)>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.

@@ -11,12 +11,12 @@ impl WaveIntegrator for RayCasting {
         let lights = AllLights::new(false);
         batch.classify(u32::MAX, lights.direct());
         batch.shade_in_lanes(&lights);
-        batch.shade_others(|batch, path, hit| {
-            let Some(vertex) = batch.vertex(path, hit, lights.direct()) else { return };
+        batch.shade_others(|batch, place, hit| {
+            let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
             let Vertex { state, lambda, surface, bsdf } = vertex;
             let Batch { pass, paths, sampler, .. } = batch;
             connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
-                paths.add_light(path as usize, state.beta * light.l);
+                paths.add_light(place.0 as usize, state.beta * light.l);
             });
         });
     }

@@ -14,8 +14,9 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::columns::Rows;
 use super::lights::Samples;
 use super::pass::Pass;
-use super::paths::{Paths, differentials_of};
+use super::paths::Paths;
 use super::queues::Queues;
+use super::segments::{Segments, differentials_of};
 
 /// What an algorithm does at vertices.
 pub(super) trait AtVertices: Sized {
@@ -45,6 +46,7 @@ pub(super) struct Shade<'a, 'b, M, A> {
     /// Indices of hits, and their paths.
     pub turns: &'b [u32],
     pub rows: &'b [u32],
+    pub segments: &'b Segments,
     pub paths: &'b mut Paths,
     pub queues: &'b mut Queues,
     pub light_samples: &'b mut Samples,
@@ -64,6 +66,8 @@ impl<M: MaterialModel, A: AtVertices> Kernel for Shade<'_, '_, M, A> {
 /// The vertices of the paths in the lanes.
 pub(super) struct Vertices<R: Real> {
     pub rows: Rows<R>,
+    /// Their turns.
+    pub turns: Rows<R>,
     /// The lanes that have a vertex.
     pub active: R::Mask,
     /// The place of the first one in the queue.
@@ -105,20 +109,22 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     #[inline(always)]
     fn vertices<R: Real>(&mut self, first: usize, queue: &[u32]) -> Vertices<R> {
         let rows = Rows::<R>::first(queue);
+        let turns = Rows::<R>::first(&self.turns[first..first + queue.len()]);
         let (surface, found) = self.points.get::<R>(first);
         rows.each_of(rows.active & !found, |lane, row| {
             self.queues.scalar.push((row as u32, self.turns[first + lane]));
         });
-        let paths = &*self.paths;
+        let (paths, segments) = (&*self.paths, self.segments);
         Vertices {
             rows,
+            turns,
             active: rows.active & found,
             first,
             surface,
-            wo: -paths.direction.vector(rows).normalize(),
-            time: R::gather(&paths.time, rows.indices),
+            wo: -segments.direction.vector(turns).normalize(),
+            time: R::gather(&segments.time, turns.indices),
             lambda: paths.lambda_lanes(rows),
-            beta: paths.beta.spectrum(rows),
+            beta: segments.beta.spectrum(turns),
             address: paths.address(rows, self.pass.pixels.index),
         }
     }
@@ -127,10 +133,10 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     #[inline(always)]
     fn footprint<R: Real>(&self, vertices: &Vertices<R>) -> Footprint<R> {
         let PatchPoints { p, n, dpdu, dpdv, .. } = vertices.surface;
-        let (view, rows) = (self.pass.pixels.view, vertices.rows);
-        let is = R::Int::gather(&self.paths.are_differentials, rows.indices).eq(R::Int::splat(1));
+        let (view, turns) = (self.pass.pixels.view, vertices.turns);
+        let is = R::Int::gather(&self.segments.are_differentials, turns.indices).eq(R::Int::splat(1));
         let across = if is.any() {
-            let differentials = differentials_of(self.paths.differentials.get(rows));
+            let differentials = differentials_of(self.segments.differentials.get(turns));
             view.pixel_on_plane(Some((&differentials, is)), p.p, n, vertices.time)
         } else {
             view.pixel_on_plane(None, p.p, n, vertices.time)

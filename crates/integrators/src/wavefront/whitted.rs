@@ -20,17 +20,18 @@ impl WaveIntegrator for Whitted {
         let lights = AllLights::new(true);
         batch.classify(self.0.max_depth, lights.direct());
         batch.shade_in_lanes(&lights);
-        batch.shade_others(|batch, path, hit| self.shade_path(batch, &lights, path, hit));
+        batch.shade_others(|batch, place, hit| self.shade_path(batch, &lights, place, hit));
         batch.go_on_with_waiting();
     }
 }
 
 impl Whitted {
     /// Shades one path.
-    fn shade_path(&self, batch: &mut Batch, lights: &AllLights, path: u32, hit: &Hit) {
-        let Some(vertex) = batch.vertex(path, hit, lights.direct()) else { return };
+    fn shade_path(&self, batch: &mut Batch, lights: &AllLights, place: (u32, u32), hit: &Hit) {
+        let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
         let Vertex { state, lambda, surface, bsdf } = vertex;
         let Batch { pass, paths, sampler, queues, .. } = batch;
+        let (path, _) = place;
         let PathState { ray, beta, depth, .. } = state;
         if depth < self.0.max_depth {
             connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {

@@ -1,0 +1,191 @@
+//! Paths between two vertices, in columns, in the order of their rays.
+//!
+//! What changes at each vertex is here, and is appended to the columns of the next wave; what stays
+//! is in [`Paths`](super::paths::Paths). So rays are read, and paths written, without gathers and
+//! scatters, which take several times as long.
+
+use film::FirstEvent;
+use geometry::RayColumns;
+use lanes::{Int, MAX_LANES, Real};
+use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
+use scene::light::LightSampleContext;
+use spectrum::{N, SampledSpectrum};
+
+use super::columns::{Column, Columns, Rows, fill, grow};
+use crate::transport::path_state::{Origin, PathState};
+
+/// The paths of a wave, of which each has a ray. Columns are longer, so that a vector can begin at
+/// any of them.
+#[derive(Default)]
+pub(super) struct Segments {
+    /// The row of each path.
+    pub rows: Vec<u32>,
+    /// Shutter time, the same for all rays of a path.
+    pub time: Column,
+    /// Origin of the ray to the next vertex.
+    pub origin: Columns<3>,
+    /// Its direction.
+    pub direction: Columns<3>,
+    /// Its differentials: of the rays to the right and down, origin and direction each.
+    pub differentials: Columns<12>,
+    /// 1 for paths that have differentials, else 0; empty where nothing needs them.
+    pub are_differentials: Vec<u32>,
+    /// Path throughput.
+    pub beta: Columns<N>,
+    /// The product of η² over the refractions.
+    pub eta_scale: Column,
+    /// Scattering events so far.
+    pub depth: Vec<u32>,
+    /// The last vertex: position, its error, geometric and shading normal.
+    pub vertex: [Columns<3>; 4],
+    /// The density of the ray's direction at that vertex; 0 after specular scattering.
+    pub pdf: Column,
+}
+
+/// Segments in lanes, without differentials.
+pub(super) struct Segment<R: Real> {
+    pub ray: Ray<R>,
+    pub beta: SampledSpectrum<R>,
+    pub eta_scale: R,
+    pub depth: R::Int,
+    pub vertex: LightSampleContext<R>,
+    pub pdf: R,
+}
+
+impl Segments {
+    /// Makes room for as many paths, and has none.
+    pub fn start(&mut self, count: usize, with_differentials: bool) {
+        let len = count + MAX_LANES;
+        self.rows.clear();
+        [&mut self.time, &mut self.eta_scale, &mut self.pdf].into_iter().for_each(|column| grow(column, len));
+        [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(len));
+        self.vertex.iter_mut().for_each(|columns| columns.grow(len));
+        self.beta.grow(len);
+        self.depth.resize(len, 0);
+        fill(&mut self.are_differentials, if with_differentials { len } else { 0 }, 0);
+        self.differentials.grow(self.are_differentials.len());
+    }
+
+    /// Has one camera ray for each row below `count`, which has no numbers yet, and is not
+    /// scattered.
+    pub fn start_from_camera(&mut self, count: usize, with_differentials: bool) {
+        self.start(count, with_differentials);
+        self.rows.extend(0..count as u32);
+        self.beta.fill(count + MAX_LANES, 1.0);
+        fill(&mut self.eta_scale, count + MAX_LANES, 1.0);
+        fill(&mut self.depth, count + MAX_LANES, 0);
+        fill(&mut self.pdf, count + MAX_LANES, 0.0);
+    }
+
+    /// Whether a path has ray differentials.
+    #[inline]
+    pub fn has_differentials(&self, turn: u32) -> bool {
+        self.are_differentials.get(turn as usize).is_some_and(|&is| is == 1)
+    }
+
+    /// The rays.
+    pub fn rays(&self) -> RayColumns<'_> {
+        let (o, d) = (self.origin.slices(), self.direction.slices());
+        RayColumns { len: self.rows.len(), o, d, time: &self.time, t_max: None }
+    }
+
+    /// The ray of a path.
+    #[inline]
+    pub fn ray(&self, turn: usize) -> Ray {
+        let [o, d] = [&self.origin, &self.direction].map(|columns| Vec3::from_array(columns.row(turn)));
+        Ray::new(o, d, self.time[turn])
+    }
+
+    /// A path.
+    pub fn state(&self, turn: usize) -> PathState {
+        let has_differentials = self.has_differentials(turn as u32);
+        let differentials = has_differentials.then(|| differentials_of(self.differentials.row(turn)));
+        let [p, error, n, ns] = [0, 1, 2, 3].map(|i: usize| Vec3::from_array(self.vertex[i].row(turn)));
+        let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[turn] };
+        let pdf = self.pdf[turn];
+        PathState {
+            medium: None,
+            ray: RayDifferential { ray: self.ray(turn), differentials },
+            beta: SampledSpectrum(self.beta.row(turn)),
+            depth: self.depth[turn],
+            origin: (pdf > 0.0).then_some(Origin { context, pdf }),
+            eta_scale: self.eta_scale[turn],
+            first: FirstEvent::None,
+        }
+    }
+
+    /// Appends a path.
+    pub fn push(&mut self, row: u32, state: &PathState) {
+        let turn = self.rows.len();
+        self.rows.push(row);
+        let RayDifferential { ray, differentials } = state.ray;
+        self.time[turn] = ray.time;
+        self.origin.set_row(turn, ray.o.to_array());
+        self.direction.set_row(turn, ray.d.to_array());
+        if let Some(is) = self.are_differentials.get_mut(turn) {
+            *is = differentials.is_some().into();
+        }
+        if let Some(differentials) = &differentials {
+            self.differentials.set_row(turn, numbers_of(differentials));
+        }
+        self.beta.set_row(turn, state.beta.0);
+        self.depth[turn] = state.depth;
+        self.eta_scale[turn] = state.eta_scale;
+        self.pdf[turn] = 0.0;
+        if let Some(Origin { context, pdf }) = &state.origin {
+            self.pdf[turn] = *pdf;
+            let vectors = [context.p.p, context.p.error, context.n, context.ns];
+            self.vertex.iter_mut().zip(vectors).for_each(|(columns, v)| columns.set_row(turn, v.to_array()));
+        }
+    }
+
+    /// Appends the paths of a mask's lanes, which have no differentials.
+    #[inline(always)]
+    pub fn append<R: Real>(&mut self, rows: R::Int, mask: R::Mask, segment: &Segment<R>) {
+        let turn = self.rows.len();
+        let Segment { ray, beta, eta_scale, depth, vertex, pdf } = segment;
+        self.origin.compress(turn, mask, ray.o.to_array());
+        self.direction.compress(turn, mask, ray.d.to_array());
+        self.beta.compress(turn, mask, beta.0);
+        let vectors = [vertex.p.p, vertex.p.error, vertex.n, vertex.ns];
+        for (columns, v) in self.vertex.iter_mut().zip(vectors) {
+            columns.compress(turn, mask, v.to_array());
+        }
+        ray.time.compress(mask, &mut self.time[turn..]);
+        eta_scale.compress(mask, &mut self.eta_scale[turn..]);
+        pdf.compress(mask, &mut self.pdf[turn..]);
+        depth.compress(mask, &mut self.depth[turn..]);
+        if !self.are_differentials.is_empty() {
+            R::Int::splat(0).store(&mut self.are_differentials[turn..]);
+        }
+        rows.append(mask, &mut self.rows);
+    }
+
+    /// The last vertices of paths.
+    #[inline(always)]
+    pub fn last_vertex<R: Real>(&self, turns: Rows<R>) -> LightSampleContext<R> {
+        let [p, error, n, ns] = &self.vertex;
+        let p = Point3Error::new(p.vector(turns), error.vector(turns));
+        let time = R::gather(&self.time, turns.indices);
+        LightSampleContext { p, n: n.vector(turns), ns: ns.vector(turns), time }
+    }
+}
+
+/// The numbers of differentials.
+#[inline(always)]
+pub(super) fn numbers_of<R: Real>(differentials: &Differentials<R>) -> [R; 12] {
+    let Differentials { rx_origin: a, rx_direction: b, ry_origin: c, ry_direction: d } = differentials;
+    [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z]
+}
+
+/// The differentials of these numbers.
+#[inline(always)]
+pub(super) fn differentials_of<R: Real>(numbers: [R; 12]) -> Differentials<R> {
+    let [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz] = numbers;
+    Differentials {
+        rx_origin: Vec3::new(ax, ay, az),
+        rx_direction: Vec3::new(bx, by, bz),
+        ry_origin: Vec3::new(cx, cy, cz),
+        ry_direction: Vec3::new(dx, dy, dz),
+    }
+}
