@@ -12,7 +12,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::begin::Begin;
 use super::emission::{Emit, Escape, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
-use super::groups::Groups;
+use super::groups::{Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
 use super::pass::Pass;
@@ -41,6 +41,8 @@ pub struct Batch<'a> {
     pub(super) lanes: Groups,
     /// The turns of paths that have left the scene.
     escaped: Vec<u32>,
+    /// Hits whose group depends on more than their geometry.
+    left: Vec<u32>,
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
     occluded: Vec<bool>,
@@ -70,6 +72,7 @@ impl<'a> Batch<'a> {
             points: PointColumns::default(),
             lanes: Groups::default(),
             escaped: Vec::new(),
+            left: Vec::new(),
             lit: Vec::new(),
             occluded: Vec::new(),
             light_samples: Samples::default(),
@@ -112,12 +115,19 @@ impl<'a> Batch<'a> {
         self.lanes.clear(scene.materials().len());
         self.lit.clear();
         self.escaped.clear();
-        for (turn, (&row, &geometry)) in self.segments.rows.iter().zip(&self.hits.geometry).enumerate() {
-            let turn = turn as u32;
-            let Some(entry) = scene.geometries().get(geometry as usize) else {
-                self.escaped.push(turn);
-                continue;
-            };
+        let mut left = std::mem::take(&mut self.left);
+        self.pass.instruction_set.dispatch(Grouping {
+            materials: self.pass.materials,
+            segments: &self.segments,
+            geometries: &self.hits.geometry,
+            max_depth,
+            groups: &mut self.lanes,
+            escaped: &mut self.escaped,
+            left: &mut left,
+        });
+        for turn in left.drain(..) {
+            let (row, geometry) = (self.segments.rows[turn as usize], self.hits.geometry[turn as usize]);
+            let entry = &scene.geometries()[geometry as usize];
             let light = match entry.first_light {
                 Some(first) => self.pass.area_lights.light_of(first, &self.hits, turn),
                 None => None,
@@ -140,7 +150,7 @@ impl<'a> Batch<'a> {
                 self.queues.scalar.push((row, turn));
             }
         }
-        self.lanes.sort();
+        self.left = left;
         self.emit(direct);
         self.escape(direct);
     }

@@ -1,17 +1,25 @@
 //! Hits grouped by material.
 
+use lanes::{Int, Kernel, Mask, Real};
 use scene::material::MaterialId;
 
-/// Hits of a batch, grouped by material by a counting sort.
+use super::columns::Rows;
+use super::materials::LaneMaterials;
+use super::segments::Segments;
+
+/// Hits of a batch, grouped by material.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// Material, index of the hit, path.
-    hits: Vec<(MaterialId, u32, u32)>,
-    /// For each material the number of hits; once sorted, the end of its group.
-    ends: Vec<u32>,
+    /// By material.
+    groups: Vec<Group>,
     /// The materials that have hits.
     used: Vec<MaterialId>,
-    /// The sorted indices of the hits, and their paths.
+}
+
+/// The hits of a material.
+#[derive(Default)]
+struct Group {
+    /// Their indices, and their paths.
     turns: Vec<u32>,
     rows: Vec<u32>,
 }
@@ -19,48 +27,82 @@ pub(super) struct Groups {
 impl Groups {
     /// Removes all hits. Materials have ids below `materials`.
     pub fn clear(&mut self, materials: usize) {
-        self.hits.clear();
-        self.used.iter().for_each(|id| self.ends[id.0 as usize] = 0);
-        self.used.clear();
-        self.ends.resize(materials, 0);
+        for MaterialId(id) in self.used.drain(..) {
+            let Group { turns, rows } = &mut self.groups[id as usize];
+            turns.clear();
+            rows.clear();
+        }
+        self.groups.resize_with(materials, Group::default);
+    }
+
+    /// The group of a material, which will have a hit.
+    #[inline(always)]
+    fn group(&mut self, MaterialId(id): MaterialId) -> &mut Group {
+        let group = &mut self.groups[id as usize];
+        if group.turns.is_empty() {
+            self.used.push(MaterialId(id));
+        }
+        group
     }
 
     /// Adds a hit.
     #[inline]
     pub fn push(&mut self, material: MaterialId, turn: u32, row: u32) {
-        let count = &mut self.ends[material.0 as usize];
-        if *count == 0 {
-            self.used.push(material);
-        }
-        *count += 1;
-        self.hits.push((material, turn, row));
+        let Group { turns, rows } = self.group(material);
+        turns.push(turn);
+        rows.push(row);
     }
 
-    /// Sorts the hits.
-    pub fn sort(&mut self) {
-        let mut first = 0;
-        for id in &self.used {
-            let end = &mut self.ends[id.0 as usize];
-            first += std::mem::replace(end, first);
-        }
-        self.turns.resize(self.hits.len(), 0);
-        self.rows.resize(self.hits.len(), 0);
-        for &(material, turn, row) in &self.hits {
-            let end = &mut self.ends[material.0 as usize];
-            self.turns[*end as usize] = turn;
-            self.rows[*end as usize] = row;
-            *end += 1;
-        }
-    }
-
-    /// The groups of sorted hits: material, indices of the hits, and their paths.
+    /// The groups: material, indices of the hits, and their paths.
     pub fn iter(&self) -> impl Iterator<Item = (MaterialId, &[u32], &[u32])> {
-        let mut first = 0;
-        self.used.iter().map(move |&material| {
-            let end = self.ends[material.0 as usize] as usize;
-            let group = first..end;
-            first = end;
-            (material, &self.turns[group.clone()], &self.rows[group])
+        self.used.iter().map(|&material| {
+            let Group { turns, rows } = &self.groups[material.0 as usize];
+            (material, &turns[..], &rows[..])
         })
+    }
+}
+
+/// Groups the hits whose geometry alone tells their group, and finds the paths that have left the
+/// scene.
+pub(super) struct Grouping<'a> {
+    pub materials: &'a LaneMaterials,
+    pub segments: &'a Segments,
+    /// The geometry of each hit.
+    pub geometries: &'a [u32],
+    /// Paths of that many scattering events are left.
+    pub max_depth: u32,
+    pub groups: &'a mut Groups,
+    /// The turns of the paths that hit nothing.
+    pub escaped: &'a mut Vec<u32>,
+    /// Those that are left.
+    pub left: &'a mut Vec<u32>,
+}
+
+impl Kernel for Grouping<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self { materials, segments, geometries, max_depth, groups, escaped, left } = self;
+        let lanes = R::Int::from_fn(|lane| lane as u32);
+        for first in (0..geometries.len()).step_by(R::LANES) {
+            let Rows { indices: geometry, active } = Rows::<R>::first(&geometries[first..]);
+            let rows = Rows::<R>::first(&segments.rows[first..]);
+            let turns = lanes.wrapping_add(R::Int::splat(first as u32));
+            let material = materials.of_geometries::<R>(geometry);
+            let has_left = active & material.eq(R::Int::splat(LaneMaterials::NOTHING));
+            let is_last = R::Int::load(&segments.depth[first..]).eq(R::Int::splat(max_depth));
+            let mut grouped = active & !is_last & material.lt(R::Int::splat(LaneMaterials::DEPENDS));
+            turns.append(has_left, escaped);
+            turns.append(active & !has_left & !grouped, left);
+            while grouped.any() {
+                let id = material.to_array()[grouped.bits().trailing_zeros() as usize % R::LANES];
+                let same = grouped & material.eq(R::Int::splat(id));
+                grouped = grouped & !same;
+                let group = groups.group(MaterialId(id));
+                turns.append(same, &mut group.turns);
+                rows.indices.append(same, &mut group.rows);
+            }
+        }
     }
 }
