@@ -38,19 +38,24 @@ impl Coat {
         is_dispersive(&self.eta)
     }
 
-    /// The coat at a point, over the base that `base` gives for the index of refraction.
+    /// The coat's index of refraction.
+    #[inline(always)]
+    pub(super) fn index<R: Real>(&self, lambda: &mut SampledWavelengths<R>) -> R {
+        dispersed_index(&self.eta, lambda)
+    }
+
+    /// The coat of this index at a point, over a base.
     #[inline(always)]
     pub(super) fn over<B, R: Real>(
         &self,
         textures: &Textures,
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
-        base: impl FnOnce(R) -> B,
+        (eta, base): (R, B),
     ) -> Layered<B, R> {
-        let eta = dispersed_index(&self.eta, lambda);
         let limit = R::splat(0.999);
         Layered {
-            base: base(eta),
+            base,
             interface: Dielectric { eta, distribution: self.roughness.distribution(textures, context) },
             thickness: textures.float(self.thickness, context).max(R::zero()),
             albedo: textures.spectrum(self.albedo, context, lambda).clamp(R::zero(), R::one()),

@@ -28,9 +28,9 @@ impl MaterialModel for CoatedConductorMaterial {
         lambda: &mut SampledWavelengths<R>,
     ) -> Self::Bxdf<R> {
         let base = self.base.bxdf(textures, context, lambda);
-        self.coat.over(textures, context, lambda, |index| {
-            // Seen from within the coat.
-            Conductor { eta: base.eta / index, k: base.k / index, ..base }
-        })
+        let index = self.coat.index(lambda);
+        // Seen from within the coat.
+        let base = Conductor { eta: base.eta / index, k: base.k / index, ..base };
+        self.coat.over(textures, context, lambda, (index, base))
     }
 }

@@ -28,6 +28,7 @@ impl MaterialModel for CoatedDiffuseMaterial {
         lambda: &mut SampledWavelengths<R>,
     ) -> Self::Bxdf<R> {
         let base = self.base.bxdf(textures, context, lambda);
-        self.coat.over(textures, context, lambda, |_| base)
+        let index = self.coat.index(lambda);
+        self.coat.over(textures, context, lambda, (index, base))
     }
 }

@@ -163,8 +163,8 @@ impl Mapping3d {
     #[inline(always)]
     pub fn map<R: Real>(&self, ctx: &TextureContext<R>) -> TexCoord3d<R> {
         let t = &self.texture_from_render;
-        let [dpdx, dpdy] = [ctx.footprint.dpdx, ctx.footprint.dpdy].each(|v| t.vector_lanes(v));
-        TexCoord3d { p: t.point_lanes(ctx.p), dpdx, dpdy }
+        let (dpdx, dpdy) = (ctx.footprint.dpdx, ctx.footprint.dpdy);
+        TexCoord3d { p: t.point_lanes(ctx.p), dpdx: t.vector_lanes(dpdx), dpdy: t.vector_lanes(dpdy) }
     }
 }
 
