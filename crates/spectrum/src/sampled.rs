@@ -310,8 +310,10 @@ impl<R: Real> SampledWavelengths<R> {
         // A loop, because functions of this size that are passed to others may not be inlined.
         let (mut lambda, mut pdf) = (rotations(u), [R::zero(); N]);
         for i in 0..N {
-            lambda[i] = sample_visible_wavelength(lambda[i]);
-            pdf[i] = visible_wavelength_pdf(lambda[i]);
+            let tanh = visible_tanh(lambda[i]);
+            lambda[i] = wavelength_of_tanh(tanh);
+            // sech² = 1 − tanh²
+            pdf[i] = R::splat(VISIBLE_PEAK) * (R::one() - tanh * tanh);
         }
         Self { lambda, pdf }
     }
@@ -375,7 +377,20 @@ fn rotations<R: Real>(u: R) -> [R; N] {
 /// A wavelength with the density of [`visible_wavelength_pdf`].
 #[inline(always)]
 pub fn sample_visible_wavelength<R: Real>(u: R) -> R {
-    let tanh = R::splat(0.856_910_62) - u * R::splat(1.827_502);
+    wavelength_of_tanh(visible_tanh(u))
+}
+
+/// The largest density of [`visible_wavelength_pdf`].
+const VISIBLE_PEAK: f32 = 0.003_939_804;
+
+/// tanh(0.0072 (538 − λ)) of the wavelength that `u` samples.
+#[inline(always)]
+fn visible_tanh<R: Real>(u: R) -> R {
+    R::splat(0.856_910_62) - u * R::splat(1.827_502)
+}
+
+#[inline(always)]
+fn wavelength_of_tanh<R: Real>(tanh: R) -> R {
     let log = math::ln((R::one() + tanh) / (R::one() - tanh));
     (R::splat(538.0) - log * R::splat(69.444_44)).clamp(R::splat(LAMBDA_MIN), R::splat(LAMBDA_MAX))
 }
@@ -386,7 +401,7 @@ pub fn visible_wavelength_pdf<R: Real>(lambda: R) -> R {
     let inside = lambda.ge(R::splat(LAMBDA_MIN)) & lambda.le(R::splat(LAMBDA_MAX));
     // sech² x = 4e²ˣ / (1 + e²ˣ)²
     let e = math::exp((lambda - R::splat(538.0)) * R::splat(0.0144));
-    let pdf = e * R::splat(4.0 * 0.003_939_804) / ((e + R::one()) * (e + R::one()));
+    let pdf = e * R::splat(4.0 * VISIBLE_PEAK) / ((e + R::one()) * (e + R::one()));
     R::select(inside, pdf, R::zero())
 }
 
@@ -414,7 +429,9 @@ mod tests {
                 .unwrap();
         }
         let lambda = SampledWavelengths::sample_visible(0.7);
-        assert_eq!(lambda.pdf().0, lambda.lambda().map(visible_wavelength_pdf));
+        for (pdf, &lambda) in lambda.pdf().0.iter().zip(lambda.lambda()) {
+            assert!((pdf / visible_wavelength_pdf(lambda) - 1.0).abs() < 1e-5, "{lambda}");
+        }
     }
 
     #[test]
