@@ -24,12 +24,12 @@ use std::path::Path;
 pub use archive::{Manifest, is_archive};
 pub use assets::{AssetSource, Files, MemoryAssets};
 pub use imported::Imported;
-pub use mesh::{Mesh, MeshError, read_obj, read_ply};
+pub use mesh::{Mesh, MeshError, read_obj, read_ply, read_stl};
 pub use pbrt::{Argument, ArgumentValues, Motion, Placement, SceneBuilder};
 pub use suggest::closest;
 
 /// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), a
-/// glTF file, after whose name `#` and settings may follow (`walk.glb#time=0.5`), a PLY or OBJ
+/// glTF file, after whose name `#` and settings may follow (`walk.glb#time=0.5`), a PLY, OBJ or STL
 /// file, which becomes a scene of one object with a camera and light that show it, or a ZIP archive
 /// of a scene and its files.
 pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {

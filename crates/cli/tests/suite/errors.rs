@@ -60,11 +60,13 @@ fn scene_check_does_not_render() {
 fn a_missing_or_foreign_scene_is_wrong_input() {
     let folder = Folder::new("missing");
     folder.write("a.stl", "solid a");
+    folder.write("a.pbrt", "solid a");
     folder.write("a.usda", "#usda 1.0");
     folder.write("a.xml", "<scene version=\"3.0.0\"></scene>");
     for (file, problem) in [
         ("none.pbrt", "none.pbrt"),
-        ("a.stl", "an STL mesh"),
+        ("a.stl", "cannot read the mesh `a.stl`: invalid mesh: the file ends before"),
+        ("a.pbrt", "an STL mesh"),
         ("a.usda", "a USD scene"),
         ("a.xml", "a Mitsuba scene"),
     ] {

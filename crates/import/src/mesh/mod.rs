@@ -5,6 +5,7 @@ mod obj;
 mod ply;
 mod polygon;
 pub(crate) mod scene;
+mod stl;
 pub(crate) mod studio;
 
 use std::fmt;
@@ -15,12 +16,14 @@ use math::{Normal3, Point2, Point3};
 pub use obj::read_obj;
 pub(crate) use obj::{Obj, ObjMaterial, read_materials, read_obj_parts};
 pub use ply::read_ply;
+pub use stl::read_stl;
 
 /// The mesh formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     Ply,
     Obj,
+    Stl,
 }
 
 impl Format {
@@ -31,6 +34,7 @@ impl Format {
         match name.rsplit_once('.')?.1 {
             "ply" => Some(Self::Ply),
             "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
             _ => None,
         }
     }
@@ -40,6 +44,7 @@ impl Format {
         match self {
             Self::Ply => read_ply(bytes),
             Self::Obj => read_obj(bytes),
+            Self::Stl => read_stl(bytes),
         }
     }
 }

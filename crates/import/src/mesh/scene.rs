@@ -7,9 +7,9 @@ use std::sync::Arc;
 use description::{
     AreaLightDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic, Handle,
     ImageTextureDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SourceMap,
-    Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind,
+    Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
-use math::DVec3;
+use math::{DMat4, DVec3};
 
 use super::{Format, Mesh, Obj, ObjMaterial, read_materials, read_obj_parts, studio};
 use crate::Imported;
@@ -23,14 +23,15 @@ pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imp
     let name = path.to_string_lossy();
     let parts = read_unpacked(assets, path).map_err(|error| error.to_string()).and_then(|bytes| {
         let parts = match format {
-            Format::Ply => super::read_ply(&bytes)
-                .map(|mesh| Obj { libraries: Vec::new(), parts: vec![(String::new(), mesh)] }),
             Format::Obj => read_obj_parts(&bytes),
+            Format::Ply | Format::Stl => format
+                .read(&bytes)
+                .map(|mesh| Obj { libraries: Vec::new(), parts: vec![(String::new(), mesh)] }),
         };
         parts.map_err(|error| error.to_string())
     });
     match parts {
-        Ok(obj) => fill(&mut desc, obj, path, assets, &mut report),
+        Ok(obj) => fill(&mut desc, obj, format, (path, assets), &mut report),
         Err(message) => {
             report.error("unreadable-mesh", format!("cannot read the mesh `{name}`: {message}"), Span::NONE)
         }
@@ -38,7 +39,18 @@ pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imp
     Imported { desc, sources: SourceMap::default(), diagnostics: report.finish() }
 }
 
-fn fill(desc: &mut SceneDesc, obj: Obj, path: &Path, assets: &dyn AssetSource, report: &mut Report) {
+fn fill(
+    desc: &mut SceneDesc,
+    obj: Obj,
+    format: Format,
+    (path, assets): (&Path, &dyn AssetSource),
+    report: &mut Report,
+) {
+    let world_from_mesh = match format {
+        Format::Ply | Format::Obj => DMat4::IDENTITY,
+        // What is made layer by layer has z up.
+        Format::Stl => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
+    };
     let mut materials = HashMap::new();
     for library in &obj.libraries {
         let path = resolve(assets, library, &path.to_string_lossy(), "");
@@ -57,9 +69,11 @@ fn fill(desc: &mut SceneDesc, obj: Obj, path: &Path, assets: &dyn AssetSource, r
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (name, mesh) in obj.parts {
         for position in &mesh.positions {
-            (low, high) = (low.min(position.as_dvec3()), high.max(position.as_dvec3()));
+            let position = world_from_mesh.transform_point3(position.as_dvec3());
+            (low, high) = (low.min(position), high.max(position));
         }
         let mut shape = ShapeDesc::from(shape_kind(mesh));
+        shape.world_from_object = TransformDesc::fixed(world_from_mesh);
         if let Some(material) = materials.get(&name) {
             shape.material = Some(add_material(desc, material, path, assets, report));
             shape.area_light = material

@@ -360,7 +360,7 @@ impl<'a> Interpreter<'a> {
                 if let Some(what) = foreign::recognise(&shown, &text) {
                     let message = format!("`{shown}` is {what}, not one of pbrt-v4");
                     let diagnostic = Diagnostic::error("foreign-format", message, span);
-                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, glTF, PLY or OBJ files"));
+                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, glTF, PLY, OBJ or STL files"));
                     return None;
                 }
                 let file = self.sources.add(shown, text);

@@ -196,7 +196,7 @@ fn damaged_meshes_end_in_a_message() {
 #[test]
 fn good_meshes_are_read() {
     let Some(folder) = data("meshes") else { return };
-    for path in files(&folder, "ply").into_iter().chain(files(&folder, "obj")) {
+    for path in ["ply", "obj", "stl"].into_iter().flat_map(|extension| files(&folder, extension)) {
         let scene = import(&path, &Files);
         assert!(!scene.has_errors(), "{}:\n{}", path.display(), shown(&scene));
         assert_eq!(scene.desc.lights.len(), 1);

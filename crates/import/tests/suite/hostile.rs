@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use alhazen_import::{MemoryAssets, import, read_obj, read_ply};
+use alhazen_import::{MemoryAssets, import, read_obj, read_ply, read_stl};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -37,8 +37,16 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\npr
 
 const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3 -4\n";
 
+const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid a";
+
 const IES: &str = "IESNA:LM-63-1995\n[TEST] made up\nTILT=INCLUDE\n1\n2\n0 90\n1 0.9\n\
     1 1000 1 3 2 1 2 0 0 0\n1 1 60\n0 45 90\n0 90\n100 50 0\n90 40 1\n";
+
+/// Bytes as the triangles of a binary STL file that says how many it holds.
+fn binary_stl(triangles: Vec<u8>) -> Vec<u8> {
+    let count = (triangles.len() / 50) as u32;
+    [&[0; 80][..], &count.to_le_bytes(), &triangles].concat()
+}
 
 /// Whether a photometric file is refused.
 fn refuses_lamp(bytes: Vec<u8>) -> bool {
@@ -109,6 +117,7 @@ fn import_bytes(bytes: Vec<u8>) -> bool {
 fn the_unchanged_texts_are_read() {
     assert!(!import_bytes(SCENE.into()));
     assert!(read_ply(PLY.as_bytes()).is_ok() && read_obj(OBJ.as_bytes()).is_ok());
+    assert!(read_stl(STL.as_bytes()).is_ok() && read_stl(&binary_stl(STL.into())).is_ok());
     assert!(!refuses_lamp(IES.into()));
 }
 
@@ -152,7 +161,8 @@ proptest! {
 
     #[test]
     fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        let _ = (read_ply(&bytes).is_ok(), read_obj(&bytes).is_ok(), import_bytes(bytes));
+        let _ = (read_ply(&bytes).is_ok(), read_obj(&bytes).is_ok(), read_stl(&bytes).is_ok());
+        let _ = (read_stl(&binary_stl(bytes.clone())).is_ok(), import_bytes(bytes));
     }
 
     #[test]
@@ -168,8 +178,8 @@ proptest! {
     }
 
     #[test]
-    fn damaged_meshes_do_not_panic(ply in mutated(PLY), obj in mutated(OBJ)) {
-        let _ = (read_ply(&ply).is_ok(), read_obj(&obj).is_ok());
+    fn damaged_meshes_do_not_panic(ply in mutated(PLY), obj in mutated(OBJ), stl in mutated(STL)) {
+        let _ = (read_ply(&ply).is_ok(), read_obj(&obj).is_ok(), read_stl(&stl).is_ok());
     }
 
     #[test]

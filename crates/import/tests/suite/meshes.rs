@@ -194,6 +194,30 @@ fn packed_files_are_read_wherever_they_are_named() {
 }
 
 #[test]
+fn an_stl_file_stands_in_the_studio_and_is_a_shape_of_scenes() {
+    let facet = |a: &str, b: &str, c: &str| {
+        format!("facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n")
+    };
+    let stl =
+        format!("solid\n{}{}endsolid", facet("0 0 0", "1 0 0", "0 0 2"), facet("0 0 2", "1 0 0", "1 0 2"));
+    let scene = "WorldBegin Shape \"plymesh\" \"string filename\" \"a.stl\"";
+    let assets = MemoryAssets::default().with("a.stl", stl).with("a.pbrt", scene);
+    let shape = |path: &str| {
+        let imported = import(path, &assets);
+        assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+        imported.desc.shapes.iter().next().expect("a shape").1.value.clone()
+    };
+    let (alone, part) = (shape("a.stl"), shape("a.pbrt"));
+    for shape in [&alone, &part] {
+        let ShapeKind::PlyMesh { triangles, .. } = &shape.kind else { panic!("{:?}", shape.kind) };
+        assert_eq!(triangles.indices[..], [[0, 1, 2], [2, 1, 3]]);
+    }
+    // z of the file is up in the studio.
+    let top = alone.world_from_object.start.transform_point3(Vec3::new(0.0, 0.0, 2.0).as_dvec3());
+    assert!((top - Vec3::new(0.0, 2.0, 0.0).as_dvec3()).length() < 1e-12, "{top}");
+}
+
+#[test]
 fn an_obj_file_is_a_scene_with_its_materials() {
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\nusemtl glass\nf 3 2 1\n";
     assert_eq!(read_obj(obj.as_bytes()).unwrap().triangles.len(), 2);
