@@ -117,6 +117,45 @@ fn volumes_absorb_by_beers_law() {
     close(seen(&[lamp, glass], "", nodes), [2.0 * 0.5_f32.powf(1.5); 3]);
 }
 
+/// A sheet of glass over a lamp of 2 cd/m².
+fn sheet(roughness: f32, color: [f32; 3], nodes: &str) -> [f32; 3] {
+    let lamp = r#"{
+        "emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}
+    }"#;
+    let [r, g, b] = color;
+    let glass = format!(
+        r#"{{
+        "pbrMetallicRoughness": {{
+            "metallicFactor": 0, "roughnessFactor": {roughness}, "baseColorFactor": [{r}, {g}, {b}, 1]
+        }},
+        "extensions": {{"KHR_materials_transmission": {{"transmissionFactor": 1}}}}
+    }}"#
+    );
+    seen(&[lamp, &glass], "", &format!(r#"{nodes}, {{"name": "at", "mesh": 1}}"#))
+}
+
+#[test]
+fn thin_glass_transmits_what_its_sides_do_not_reflect() {
+    // With the reflectance F of a side and the factor a of the crossing, a (1 − F)²/(1 − a² F²).
+    let f = 0.04_f32;
+    let color = [1.0, 0.5, 0.25];
+    let expected = color.map(|a| 2.0 * a * (1.0 - f) * (1.0 - f) / (1.0 - a * a * f * f));
+    close(sheet(0.0, color, r#"{"name": "at", "mesh": 0, "translation": [0, 0, -2]}"#), expected);
+}
+
+#[test]
+fn rough_thin_glass_spreads_light_and_loses_none() {
+    // In light that is the same from everywhere it is not to be seen.
+    let around = r#"{"name": "at", "mesh": 0, "translation": [0, 0, -2], "scale": [1000, 1000, 1]},
+        {"name": "at", "mesh": 0, "translation": [0, 0, 6], "scale": [1000, 1000, 1], "rotation": [0, 1, 0, 0]}"#;
+    close(sheet(0.7, [1.0; 3], around), [2.0; 3]);
+    // A lamp of a half-angle of 1° is spread wider than that.
+    let far = r#"{"name": "at", "mesh": 0, "translation": [0, 0, -2], "scale": [0.035, 0.035, 1]}"#;
+    let [smooth, rough] = [0.0, 0.7].map(|roughness| sheet(roughness, [1.0; 3], far)[0]);
+    assert!(smooth > 1.8 && rough > 1e-4 && rough < 0.05 * smooth, "{smooth} {rough}");
+}
+
 #[test]
 fn samples_render() {
     let Some(folder) = data("gltf") else { return };

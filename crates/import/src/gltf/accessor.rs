@@ -7,7 +7,7 @@ use super::json::{Place, Result};
 
 /// The type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Component {
+pub(super) enum Component {
     I8,
     U8,
     I16,
@@ -30,7 +30,8 @@ impl Component {
         })
     }
 
-    fn size(self) -> usize {
+    /// Its bytes.
+    pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -78,8 +79,10 @@ pub(super) struct Accessor<'a> {
     /// Numbers of a vector.
     pub width: usize,
     /// What its numbers are.
-    component: Component,
+    pub component: Component,
     normalized: bool,
+    /// Its data, where they are not in a view.
+    unpacked: Option<Vec<u8>>,
 }
 
 const TYPES: [(&str, usize); 7] =
@@ -112,7 +115,12 @@ impl<'a> Accessor<'a> {
             return Err(place.invalid_member("componentType", "matrices are read as floats only"));
         }
         let normalized = place.boolean("normalized", false)?;
-        Ok(Self { count, width, component, normalized, place })
+        Ok(Self { count, width, component, normalized, unpacked: None, place })
+    }
+
+    /// The same with data that are not in a view, but were unpacked.
+    pub fn with_data(self, unpacked: Vec<u8>) -> Self {
+        Self { unpacked: Some(unpacked), ..self }
     }
 
     /// Whether any of its numbers are in the file; else all are zero.
@@ -172,12 +180,13 @@ impl<'a> Accessor<'a> {
     fn read<T: Copy>(&self, buffers: &Buffers, zero: T, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>> {
         let size = self.width * self.component.size();
         buffers.spend(&self.place, self.count as u64 * size_of::<T>() as u64)?;
-        let mut values = match buffers.view(&self.place, "bufferView")? {
-            Some(view) => {
+        let mut values = match (&self.unpacked, buffers.view(&self.place, "bufferView")?) {
+            (Some(unpacked), _) => unpacked.chunks_exact(size).map(&read).collect(),
+            (None, Some(view)) => {
                 let elements = Elements::new(&self.place, view, self.count, size)?;
                 (0..self.count).map(|index| read(elements.get(index))).collect()
             }
-            None => vec![zero; self.count],
+            (None, None) => vec![zero; self.count],
         };
         if let Some(sparse) = self.place.object("sparse")? {
             self.change(&sparse, buffers, &mut values, size, read)?;

@@ -6,10 +6,11 @@ use super::json::{Fault, Place, Result};
 use super::log::Log;
 
 /// The extensions that are read, or that change nothing for a renderer that does not cull.
-const EXTENSIONS: [&str; 26] = [
+const EXTENSIONS: [&str; 28] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -30,6 +31,7 @@ const EXTENSIONS: [&str; 26] = [
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_xmp",
     "KHR_xmp_json_ld",

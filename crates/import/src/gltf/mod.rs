@@ -7,11 +7,14 @@
 
 mod accessor;
 mod animation;
+mod basis;
 mod buffer;
 mod camera;
+mod charts;
 mod colors;
 mod container;
 mod document;
+mod draco;
 mod emission;
 mod json;
 mod light;

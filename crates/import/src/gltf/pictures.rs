@@ -9,6 +9,7 @@ use description::{Arena, Handle, ImageDesc};
 use image::{ColorEncoding, Image, Pixels, ReadOptions};
 use rayon::prelude::*;
 
+use super::basis;
 use super::buffer::Buffers;
 use super::document::Document;
 use super::json::{Fault, Place, Result};
@@ -83,6 +84,9 @@ impl Pictures {
                     Encoding::Color => ColorEncoding::Srgb,
                     Encoding::Data => ColorEncoding::Linear,
                 };
+                if basis::is_named_by(bytes) {
+                    return basis::read(bytes, encoding);
+                }
                 let options = ReadOptions { encoding: Some(encoding), ..ReadOptions::default() };
                 image::read(bytes, "", &options)
             })

@@ -5,6 +5,7 @@ use math::{Point2, Vec3};
 use super::accessor::Accessor;
 use super::buffer::Buffers;
 use super::document::Document;
+use super::draco::Packed;
 use super::json::{Place, Result};
 
 /// The triangles of a primitive. Arrays are empty, or as long as `positions`.
@@ -17,6 +18,8 @@ pub(super) struct Primitive {
     pub tangents: Vec<[f32; 4]>,
     /// With v down, as in the file.
     pub uvs: Vec<Point2>,
+    /// The same of other sets, by their numbers.
+    pub other_uvs: Vec<(usize, Vec<Point2>)>,
     /// Linear colours.
     pub colors: Vec<[f32; 3]>,
     /// The joints that move each vertex, with their weights.
@@ -60,25 +63,50 @@ pub(super) fn not_drawn(place: &Place) -> Result<Option<&'static str>> {
     }
 }
 
-/// Reads primitives of a text.
+/// Reads a primitive of a text.
 pub(super) struct Reader<'r, 'a> {
-    pub document: &'r Document<'a>,
-    pub buffers: &'r Buffers,
+    document: &'r Document<'a>,
+    buffers: &'r Buffers,
+    packed: Option<Packed<'a>>,
 }
 
-impl Reader<'_, '_> {
-    /// A primitive with the texture coordinates of a set.
-    pub fn primitive(&self, place: &Place, set: usize) -> Result<Primitive> {
+impl<'r, 'a> Reader<'r, 'a> {
+    /// A reader of one primitive, whose data may be packed.
+    pub fn new(document: &'r Document<'a>, buffers: &'r Buffers, place: &Place<'a>) -> Result<Self> {
+        let attributes =
+            place.object("attributes")?.ok_or_else(|| place.invalid("`attributes` is missing"))?;
+        let (positions, indices) =
+            (Accessor::of(document, &attributes, "POSITION")?, Accessor::of(document, place, "indices")?);
+        let packed = match (positions, indices) {
+            (Some(positions), Some(indices)) if !positions.has_data() => {
+                Packed::of(place, buffers, positions.count, indices.count)?
+            }
+            _ => None,
+        };
+        Ok(Self { document, buffers, packed })
+    }
+
+    /// The accessor of an attribute; `None` if it is absent.
+    fn accessor(&self, attributes: &Place, name: &str) -> Result<Option<Accessor<'a>>> {
+        let Some(accessor) = Accessor::of(self.document, attributes, name)? else { return Ok(None) };
+        let unpacked = match &self.packed {
+            Some(packed) if !accessor.has_data() => packed.attribute(name, &accessor)?,
+            _ => None,
+        };
+        Ok(Some(match unpacked {
+            Some(unpacked) => accessor.with_data(unpacked),
+            None => accessor,
+        }))
+    }
+
+    /// A primitive with the texture coordinates of a set, and of others that it has.
+    pub fn primitive(&self, place: &Place, set: usize, others: &[usize]) -> Result<Primitive> {
         let attributes =
             place.object("attributes")?.ok_or_else(|| place.invalid("`attributes` is missing"))?;
         check_names(&attributes)?;
-        let Some(accessor) = Accessor::of(self.document, &attributes, "POSITION")? else {
+        let Some(accessor) = self.accessor(&attributes, "POSITION")? else {
             return Err(attributes.invalid("`POSITION` is missing"));
         };
-        if place.extension("KHR_draco_mesh_compression")?.is_some() && !accessor.has_data() {
-            let message = "the primitive is packed by KHR_draco_mesh_compression, which is not read";
-            return Err(place.invalid(message));
-        }
         let positions =
             points(accessor.vectors(self.buffers).map_err(|fault| within(&attributes, "POSITION", fault))?);
         let count = positions.len();
@@ -91,6 +119,12 @@ impl Reader<'_, '_> {
             positions,
             ..Primitive::default()
         };
+        for &other in others {
+            let uvs = self.coordinates(&attributes, other, count)?;
+            if !uvs.is_empty() {
+                primitive.other_uvs.push((other, uvs));
+            }
+        }
         // Flat normals have no tangents of their own.
         if primitive.normals.is_empty() {
             primitive.tangents.clear();
@@ -113,7 +147,7 @@ impl Reader<'_, '_> {
         name: &str,
         count: usize,
     ) -> Result<Vec<[f32; N]>> {
-        let Some(accessor) = Accessor::of(self.document, attributes, name)? else { return Ok(Vec::new()) };
+        let Some(accessor) = self.accessor(attributes, name)? else { return Ok(Vec::new()) };
         if accessor.count != count {
             let message = format!("there are {} for {count} vertices", accessor.count);
             return Err(attributes.invalid_member(name, message));
@@ -127,7 +161,7 @@ impl Reader<'_, '_> {
     }
 
     fn colors(&self, attributes: &Place, count: usize) -> Result<Vec<[f32; 3]>> {
-        match Accessor::of(self.document, attributes, "COLOR_0")? {
+        match self.accessor(attributes, "COLOR_0")? {
             Some(accessor) if accessor.width == 4 => {
                 let colors = self.attribute(attributes, "COLOR_0", count)?;
                 Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
@@ -138,7 +172,7 @@ impl Reader<'_, '_> {
     }
 
     fn influences(&self, attributes: &Place, count: usize) -> Result<Vec<[(u32, f32); 4]>> {
-        let Some(accessor) = Accessor::of(self.document, attributes, "JOINTS_0")? else {
+        let Some(accessor) = self.accessor(attributes, "JOINTS_0")? else {
             return Ok(Vec::new());
         };
         let joints =
@@ -154,13 +188,14 @@ impl Reader<'_, '_> {
     }
 
     fn triangles(&self, place: &Place, count: usize) -> Result<Vec<[u32; 3]>> {
-        let indices: Vec<u32> = match Accessor::of(self.document, place, "indices")? {
-            Some(accessor) => {
+        let indices: Vec<u32> = match (&self.packed, Accessor::of(self.document, place, "indices")?) {
+            (Some(packed), Some(accessor)) if !accessor.has_data() => packed.indices(),
+            (_, Some(accessor)) => {
                 let indices =
                     accessor.integers::<1>(self.buffers).map_err(|fault| within(place, "indices", fault))?;
                 indices.into_iter().map(|[index]| index).collect()
             }
-            None => {
+            (_, None) => {
                 self.buffers.spend(place, 16 * count as u64)?;
                 (0..count as u32).collect()
             }

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use description::{ImageDesc, InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
-use math::{DMat4, DQuat, DVec3};
+use math::{DAffine2, DMat4, DQuat, DVec3};
 
 use super::accessor::Accessor;
 use super::buffer::Buffers;
+use super::charts::Chart;
 use super::colors;
 use super::document::Document;
 use super::json::{Place, Result};
@@ -297,9 +298,13 @@ impl<'s, 'a> Assembly<'s, 'a> {
             }
             let index = drawn.material(&place)?;
             let Some(material) = drawn.materials.get(index).and_then(Option::as_ref) else { continue };
-            let reader = Reader { document: &drawn.document, buffers: drawn.buffers };
             let set = Coordinates::of(material).set;
-            let primitive = match reader.primitive(&place, set) {
+            let mut others: Vec<_> = material.textures().iter().map(|(texture, _)| texture.set).collect();
+            others.sort_unstable();
+            others.dedup();
+            others.retain(|&other| other != set);
+            let reader = Reader::new(&drawn.document, drawn.buffers, &place);
+            let primitive = match reader.and_then(|reader| reader.primitive(&place, set, &others)) {
                 Ok(primitive) => primitive,
                 Err(fault) => {
                     self.log.fault(fault);
@@ -329,27 +334,46 @@ impl<'s, 'a> Assembly<'s, 'a> {
         mut vertices: Vertices,
     ) -> Vec<ShapeDesc> {
         let colors = &vertices.start.colors;
-        let Some(&first) = colors.iter().find(|color| **color != [1.0; 3]) else {
-            let surfaces = self.surfaces(index, material);
-            return look(material, &surfaces).shapes(&vertices, self.desc);
-        };
-        let mut image = None;
-        let mut tinted = material.clone();
-        if colors.iter().all(|color| *color == first) {
-            tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * first[i]);
-        } else if material.textures().is_empty() {
-            let (start, picture) = colors::unwrapped(&vertices.start, material.base.factor);
-            vertices.end = vertices.end.map(|end| colors::unwrapped(&end, [1.0; 3]).0);
-            vertices.start = start;
-            let name = place.pointer_to("attributes/COLOR_0");
-            image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
-        } else {
-            let message = "colours of vertices are not drawn on surfaces with textures";
-            self.log.warn("not-drawn", format!("{}/attributes/COLOR_0", place.pointer), message);
+        let first = colors.iter().find(|color| **color != [1.0; 3]).copied();
+        let (mut tinted, mut image) = (None, None);
+        if let Some(first) = first {
+            let tinted = tinted.insert(material.clone());
+            if colors.iter().all(|color| *color == first) {
+                tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * first[i]);
+            } else if material.textures().is_empty() {
+                let (start, picture) = colors::unwrapped(&vertices.start, material.base.factor);
+                vertices.end = vertices.end.map(|end| colors::unwrapped(&end, [1.0; 3]).0);
+                vertices.start = start;
+                let name = place.pointer_to("attributes/COLOR_0");
+                image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
+            } else {
+                let message = "colours of vertices are not drawn on surfaces with textures";
+                self.log.warn("not-drawn", format!("{}/attributes/COLOR_0", place.pointer), message);
+            }
         }
-        let mut builder = Builder { desc: self.desc, pictures: self.pictures, log: self.log };
-        let surfaces = builder.both(&tinted, image);
-        look(&tinted, &surfaces).shapes(&vertices, self.desc)
+        let charts = Chart::of(&vertices.start).unwrap_or_else(|| {
+            let message =
+                "sets of texture coordinates that belong to each other in too many ways are drawn as one";
+            self.log.warn("not-drawn", format!("{}/attributes", place.pointer), message);
+            vec![Chart { triangles: vertices.start.triangles.clone(), maps: BTreeMap::new() }]
+        });
+        let parts = charts.into_iter().map(|Chart { triangles, maps }| {
+            let surfaces = match &tinted {
+                None if maps.is_empty() => self.surfaces(index, material),
+                _ => {
+                    let material = tinted.as_ref().unwrap_or(material);
+                    self.builder(&maps).both(material, image)
+                }
+            };
+            (triangles, surfaces)
+        });
+        let parts = parts.collect();
+        Look { material: tinted.as_ref().unwrap_or(material), parts }.shapes(&vertices, self.desc)
+    }
+
+    /// Makes surfaces of triangles with maps between sets of texture coordinates.
+    fn builder<'b>(&'b mut self, maps: &'b BTreeMap<usize, DAffine2>) -> Builder<'b> {
+        Builder { desc: self.desc, pictures: self.pictures, log: self.log, maps }
     }
 
     /// The surfaces of a material.
@@ -357,8 +381,7 @@ impl<'s, 'a> Assembly<'s, 'a> {
         if let Some(known) = self.surfaces.get(&index) {
             return known.clone();
         }
-        let mut builder = Builder { desc: self.desc, pictures: self.pictures, log: self.log };
-        let surfaces = builder.both(material, None);
+        let surfaces = self.builder(&BTreeMap::new()).both(material, None);
         self.surfaces.insert(index, surfaces.clone());
         surfaces
     }
@@ -370,8 +393,14 @@ impl<'s, 'a> Assembly<'s, 'a> {
             let message = "more than four joints of a vertex are not followed";
             self.log.warn("not-drawn", attribute.pointer, message);
         }
-        if primitive.uvs.is_empty() && !material.textures().is_empty() {
-            let message = format!("there is no `TEXCOORD_{set}` for the textures of the material");
+        let mut missing: Vec<_> = material.textures().iter().map(|(texture, _)| texture.set).collect();
+        let is_there = |wanted: usize| match wanted == set {
+            true => !primitive.uvs.is_empty(),
+            false => primitive.other_uvs.iter().any(|&(other, _)| other == wanted),
+        };
+        missing.retain(|&wanted| !is_there(wanted));
+        if let Some(missing) = missing.first() {
+            let message = format!("there is no `TEXCOORD_{missing}` for the textures of the material");
             self.log.warn("not-drawn", attributes.pointer, message);
         }
     }
@@ -391,10 +420,6 @@ impl<'s, 'a> Assembly<'s, 'a> {
             self.bounds = [self.bounds[0].min(point), self.bounds[1].max(point)];
         }
     }
-}
-
-fn look<'m>(material: &'m Material, [surface, mirrored]: &'m [Surface; 2]) -> Look<'m> {
-    Look { material, surfaces: [surface, mirrored] }
 }
 
 /// Whether a transform has an inverse.

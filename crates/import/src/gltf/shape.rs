@@ -20,34 +20,49 @@ pub(super) struct Vertices {
 /// What shapes are made with.
 pub(super) struct Look<'a> {
     pub material: &'a Material,
-    /// The surface, and that where texture coordinates are mirrored.
-    pub surfaces: [&'a Surface; 2],
+    /// Triangles with their surface, and with that where texture coordinates are mirrored. All
+    /// surfaces are of one material.
+    pub parts: Vec<(Vec<[u32; 3]>, [Surface; 2])>,
 }
 
 impl Look<'_> {
-    /// The shapes of a primitive: one for each of the parts that emit or do not, and that have
-    /// mirrored texture coordinates or not.
+    /// The shapes of a primitive: of each part one for each of the triangles that emit or do not,
+    /// and that have mirrored texture coordinates or not.
     pub fn shapes(&self, vertices: &Vertices, desc: &SceneDesc) -> Vec<ShapeDesc> {
         let primitive = &vertices.start;
-        let uvs = mapped(&primitive.uvs, &self.surfaces[0].coordinates);
-        let emission = self.surfaces[0].area_light.and_then(|light| desc.area_lights[light].image);
+        let Some((_, [surface, _])) = self.parts.first() else { return Vec::new() };
+        let uvs = mapped(&primitive.uvs, &surface.coordinates);
+        let emission = surface.area_light.and_then(|light| desc.area_lights[light].image);
         let emitting =
             emission.filter(|_| !uvs.is_empty()).map(|image| Emitting::of(&desc.images[image].image));
+        let shared = self.mesh(vertices, uvs.clone(), surface.tangent_rotation);
+        let parts = self.parts.iter();
+        parts.flat_map(|part| self.part(part, primitive, &uvs, emitting.as_ref(), &shared)).collect()
+    }
+
+    /// The shapes of a part.
+    fn part(
+        &self,
+        (triangles, surfaces): &(Vec<[u32; 3]>, [Surface; 2]),
+        primitive: &Primitive,
+        uvs: &[Point2],
+        emitting: Option<&Emitting>,
+        shared: &MeshDesc,
+    ) -> Vec<ShapeDesc> {
         let mut parts = [const { Vec::new() }; 4];
-        for triangle in &primitive.triangles {
+        for triangle in triangles {
             let corners = (!uvs.is_empty()).then(|| triangle.map(|vertex| uvs[vertex as usize]));
             let is_mirrored = self.material.normals.is_some() && is_mirrored(primitive, triangle, corners);
-            let is_dark = match (&emitting, corners) {
+            let is_dark = match (emitting, corners) {
                 (Some(emitting), Some(corners)) => !emitting.is_met(corners),
                 _ => false,
             };
             parts[usize::from(is_mirrored) + 2 * usize::from(is_dark)].push(*triangle);
         }
-        let shared = self.mesh(vertices, uvs);
         let parts = parts.into_iter().enumerate().filter(|(_, triangles)| !triangles.is_empty());
         parts
             .map(|(part, triangles)| {
-                let surface = self.surfaces[part % 2];
+                let surface = &surfaces[part % 2];
                 let mesh = MeshDesc { indices: triangles.into(), ..shared.clone() };
                 ShapeDesc {
                     material: Some(surface.material),
@@ -61,7 +76,7 @@ impl Look<'_> {
     }
 
     /// The vertices as a mesh without triangles.
-    fn mesh(&self, vertices: &Vertices, uvs: Vec<Point2>) -> MeshDesc {
+    fn mesh(&self, vertices: &Vertices, uvs: Vec<Point2>, tangent_rotation: f32) -> MeshDesc {
         let primitive = &vertices.start;
         let later = vertices.end.as_ref().map(|end| MeshKey {
             positions: end.positions.as_slice().into(),
@@ -71,7 +86,7 @@ impl Look<'_> {
             indices: Arc::default(),
             positions: primitive.positions.as_slice().into(),
             normals: primitive.normals.as_slice().into(),
-            tangents: self.tangents(primitive, &uvs).into(),
+            tangents: self.tangents(primitive, &uvs, tangent_rotation).into(),
             uvs: uvs.into(),
             face_indices: Arc::default(),
             later: later.into_iter().collect(),
@@ -79,8 +94,7 @@ impl Look<'_> {
     }
 
     /// The tangents that shading needs besides the directions of increasing u.
-    fn tangents(&self, primitive: &Primitive, uvs: &[Point2]) -> Vec<Vec3> {
-        let angle = self.surfaces[0].tangent_rotation;
+    fn tangents(&self, primitive: &Primitive, uvs: &[Point2], angle: f32) -> Vec<Vec3> {
         let is_used = self.material.normals.is_some() || self.material.anisotropy.is_some();
         if !is_used || primitive.normals.is_empty() || (angle == 0.0 && primitive.tangents.is_empty()) {
             return Vec::new();

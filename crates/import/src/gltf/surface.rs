@@ -1,6 +1,8 @@
 //! Materials of the file as principled surfaces of a scene: OpenPBR, with opacity, emission and the
 //! medium inside. `docs/formats/gltf.md` has the table of what becomes what.
 
+use std::collections::BTreeMap;
+
 use description::{
     AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc,
     MappingDesc, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, SceneDesc,
@@ -59,10 +61,9 @@ pub(super) struct Builder<'a> {
     pub desc: &'a mut SceneDesc,
     pub pictures: &'a mut Pictures,
     pub log: &'a mut Log,
+    /// From the texture coordinates of meshes to those of other sets; v is up in both.
+    pub maps: &'a BTreeMap<usize, DAffine2>,
 }
-
-/// Roughness below this is drawn smooth in a thin sheet of glass.
-const NEARLY_SMOOTH: f32 = 0.05;
 
 impl Builder<'_> {
     /// The surface of a material, and that where texture coordinates are mirrored, which is the
@@ -122,6 +123,13 @@ impl Part<'_, '_, '_> {
         self.builder.log.warn("not-drawn", pointer, message);
     }
 
+    /// The coordinates of a texture, by the set that meshes have.
+    fn placed(&self, texture: &TextureRef) -> Coordinates {
+        let set = self.coordinates.set;
+        let map = self.builder.maps.get(&texture.set).filter(|_| texture.set != set);
+        Coordinates { set, transform: map.map_or(texture.transform, |map| texture.transform * *map) }
+    }
+
     /// An image as a texture; `None` if it cannot be decoded.
     fn image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<ImageTextureDesc> {
         let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
@@ -131,12 +139,7 @@ impl Part<'_, '_, '_> {
                 "a texture that is clamped in one direction only is repeated in both",
             );
         }
-        if texture.set != self.coordinates.set {
-            let message =
-                "a material with textures at several sets of texture coordinates has one set for all";
-            self.warn(&texture.pointer, message);
-        }
-        let from_mesh = texture.transform * self.coordinates.transform.inverse();
+        let from_mesh = self.placed(texture).transform * self.coordinates.transform.inverse();
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {
             MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
@@ -255,8 +258,7 @@ impl Part<'_, '_, '_> {
         if let Some(texture) = &color.texture {
             let image = self.builder.pictures.image(texture, Encoding::Color)?;
             let edit = if tint == [1.0; 3] && image.is_color() { Edit::None } else { Edit::Tint(tint) };
-            let placed = Coordinates { set: texture.set, transform: texture.transform };
-            if placed != self.coordinates {
+            if self.placed(texture) != self.coordinates {
                 let message =
                     "emission at other texture coordinates than those of the normal map is drawn at the same";
                 self.warn(&texture.pointer, message);
@@ -520,25 +522,7 @@ impl Part<'_, '_, '_> {
                 (20.0 / material.dispersion.max(1.0)).max(1.0).into(),
             );
         }
-        if self.is_thick() {
-            return;
-        }
-        if material.roughness > NEARLY_SMOOTH {
-            self.warn(&material.pointer, "rough glass without a thickness is drawn as the surface of a body");
-            return;
-        }
-        // A thin sheet does not bend light: a coat reflects, over a base of the index of air.
-        surface.number("specular_ior", 1.0.into());
-        surface.number("specular_roughness", 0.0.into());
-        let is_all = material.transmission.factor == 1.0 && material.transmission.texture.is_none();
-        // The lower side of the sheet reflects, too, unless it is that of an opaque base.
-        surface.number("specular_weight", if is_all { 1.0 } else { 0.0 }.into());
-        if material.clearcoat.is_none() {
-            surface.number("coat_weight", 1.0.into());
-            let ior = self.ior(material.ior);
-            surface.number("coat_ior", ior);
-            surface.number("coat_darkening", 0.0.into());
-        }
+        surface.0.thin_walled = !self.is_thick();
     }
 }
 

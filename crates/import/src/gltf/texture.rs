@@ -81,13 +81,12 @@ fn image(document: &Document, texture: &Place) -> Result<usize> {
     {
         return Ok(index);
     }
-    match document.index(texture, "source", "images")? {
-        Some(index) => Ok(index),
-        None if texture.extension("KHR_texture_basisu")?.is_some() => {
-            Err(texture.invalid("images of KHR_texture_basisu are not read, and there is no other"))
-        }
-        None => Err(texture.invalid("`source` is missing")),
+    if let Some(index) = document.index(texture, "source", "images")? {
+        return Ok(index);
     }
+    let packed = texture.extension("KHR_texture_basisu")?;
+    let index = packed.map_or(Ok(None), |packed| document.index(&packed, "source", "images"))?;
+    index.ok_or_else(|| texture.invalid("`source` is missing"))
 }
 
 const CLAMP_TO_EDGE: usize = 33071;

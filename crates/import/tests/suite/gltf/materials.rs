@@ -1,6 +1,6 @@
 //! Materials and their extensions as principled surfaces.
 
-use super::File;
+use super::{File, mesh};
 use description::{
     CoefficientsDesc, FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, MediumKind,
     OpenPbrDesc, Parameter, SceneDesc, Severity, SpectrumDesc, SpectrumParameter, TextureFilter, TextureKind,
@@ -143,6 +143,47 @@ fn samplers_and_transforms_place_textures() {
 }
 
 #[test]
+fn textures_of_several_sets_are_placed_by_each() {
+    let mut file = File::quad(json!({
+        "normalTexture": {"index": 0},
+        "pbrMetallicRoughness": {"metallicRoughnessTexture": {
+            "index": 0, "texCoord": 2, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}},
+        }},
+    }))
+    .textured(&[[255; 4], [0; 4]]);
+    let warns = |file: &File, what: &str| file.messages(Severity::Warning).iter().any(|m| m.contains(what));
+    assert!(warns(&file, "there is no `TEXCOORD_2`"));
+    // Two triangles that share two corners, whose coordinates of the second set are not the same
+    // function of those of the first.
+    let other = [[0.0, 0.0], [0.5, 0.25], [0.75, 1.0], [2.0, 0.125]];
+    let other_index = file.floats("VEC2", other.as_flattened());
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_2"] = json!(other_index);
+    assert!(!warns(&file, "TEXCOORD") && !warns(&file, "sets of texture coordinates"));
+    let desc = file.scene();
+    let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| &shape.value).collect();
+    assert_eq!(shapes.len(), 2);
+    for (shape, corners) in shapes.iter().zip([[0, 1, 2], [0, 2, 3]]) {
+        assert_eq!(mesh(shape).indices[..], [corners]);
+        let MaterialKind::OpenPbr(surface) = &desc.materials[shape.material.expect("one")].kind else {
+            panic!("another material")
+        };
+        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == "specular_roughness");
+        let MappingDesc::Affine { columns: [x, y, delta] } =
+            texture(&desc, &surface.numbers[index.expect("a name")]).mapping
+        else {
+            panic!("no affine map")
+        };
+        for corner in corners {
+            let uv = mesh(shape).uvs[corner as usize];
+            let found = [0, 1].map(|i| uv.x * x[i] + uv.y * y[i] + delta[i]);
+            let [u, v] = other[corner as usize];
+            let expected = [u + 0.5, 1.0 - v];
+            assert!((0..2).all(|i| (found[i] - expected[i]).abs() < 1e-5), "{found:?}, not {expected:?}");
+        }
+    }
+}
+
+#[test]
 fn opacity_cuts_out_or_blends() {
     let alpha = |mode: &str| {
         let file = File::quad(json!({
@@ -247,19 +288,18 @@ fn indices_specular_and_dispersion() {
 }
 
 #[test]
-fn volumes_absorb_and_thin_glass_does_not_bend() {
+fn volumes_absorb_and_thin_glass_is_a_sheet() {
     let mut material = extended("KHR_materials_transmission", json!({"transmissionFactor": 1}));
+    material["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.5);
     let desc = File::quad(material.clone()).scene();
-    for (name, value) in
-        [("specular_ior", 1.0), ("coat_weight", 1.0), ("coat_ior", 1.5), ("transmission_weight", 1.0)]
-    {
+    for (name, value) in [("specular_ior", 1.5), ("specular_roughness", 0.5), ("transmission_weight", 1.0)] {
         assert_eq!(number(&desc, name), value, "{name}");
     }
-    assert!(desc.media.is_empty());
+    assert!(surface(&desc).thin_walled && desc.media.is_empty());
     material["extensions"]["KHR_materials_volume"] =
         json!({"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 0.25]});
     let desc = File::quad(material).scene();
-    assert_eq!((number(&desc, "specular_ior"), number(&desc, "coat_weight")), (1.5, 0.0));
+    assert!(!surface(&desc).thin_walled);
     let (_, shape) = desc.shapes.iter().next().expect("a shape");
     let inside = shape.medium_interface.expect("media").inside.expect("a medium");
     let MediumKind::Homogeneous { coefficients, .. } = &desc.media[inside].kind else { panic!("a grid") };

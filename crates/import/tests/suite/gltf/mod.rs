@@ -7,6 +7,7 @@ mod geometry;
 mod lights;
 mod materials;
 mod motion;
+mod packed;
 
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{Diagnostic, SceneDesc, Severity};
