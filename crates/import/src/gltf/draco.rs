@@ -1,6 +1,7 @@
 //! Primitives packed by Draco (`KHR_draco_mesh_compression`), decoded by the crate `draco-core`.
 
 use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
@@ -43,10 +44,17 @@ impl<'a> Packed<'a> {
             .with_max_points(vertices as u64)
             .with_max_faces(indices as u64 / 3)
             .with_max_decoded_bytes(bytes);
-        let mut mesh = Mesh::new();
-        MeshDecoder::new()
-            .decode(&mut DecoderBuffer::new(view.bytes()).with_limits(limits), &mut mesh)
-            .map_err(|error| place.invalid(format!("cannot unpack the primitive: {error}")))?;
+        let unpack = || {
+            let mut mesh = Mesh::new();
+            let mut buffer = DecoderBuffer::new(view.bytes()).with_limits(limits);
+            MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
+        };
+        let mesh = match catch_unwind(AssertUnwindSafe(unpack)) {
+            Ok(Ok(mesh)) => mesh,
+            Ok(Err(error)) => return Err(place.invalid(format!("cannot unpack the primitive: {error}"))),
+            // A panic in another crate must not end a render.
+            Err(_) => return Err(place.invalid("the packed primitive is damaged")),
+        };
         if mesh.num_points() != vertices || 3 * mesh.num_faces() != indices {
             let message = format!(
                 "{} vertices and {} indices are packed, where the accessors say {vertices} and {indices}",

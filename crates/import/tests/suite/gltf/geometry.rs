@@ -199,8 +199,8 @@ fn faults_name_their_place() {
         (|json| json["accessors"][0]["type"] = json!("VEC5"), "/accessors/0/type: `VEC5` is not a type"),
         (|json| json["asset"]["version"] = json!("1.0"), "/asset/version: this is glTF of version `1.0`"),
         (
-            |json| json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]),
-            "/extensionsRequired/0: the file requires the extension `KHR_draco_mesh_compression`, which is not read",
+            |json| json["extensionsRequired"] = json!(["EXT_lights_image_based"]),
+            "/extensionsRequired/0: the file requires the extension `EXT_lights_image_based`, which is not read",
         ),
         (
             |json| json["bufferViews"][0]["byteLength"] = json!(100_000),

@@ -161,7 +161,7 @@ fn textures_of_several_sets_are_placed_by_each() {
     assert!(!warns(&file, "TEXCOORD") && !warns(&file, "sets of texture coordinates"));
     let desc = file.scene();
     let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| &shape.value).collect();
-    assert_eq!(shapes.len(), 2);
+    assert_eq!(shapes.len(), 3, "two parts, and the ground");
     for (shape, corners) in shapes.iter().zip([[0, 1, 2], [0, 2, 3]]) {
         assert_eq!(mesh(shape).indices[..], [corners]);
         let MaterialKind::OpenPbr(surface) = &desc.materials[shape.material.expect("one")].kind else {
