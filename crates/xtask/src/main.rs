@@ -8,6 +8,7 @@ mod python;
 mod rgb_table;
 mod test;
 mod tidy;
+mod wgsl;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -26,7 +27,8 @@ usage: cargo xtask TASK
              archives of the program, and on Debian a package, into target/dist
   gallery [NAME…]
              the pages of docs/gallery with these in their names, with their pictures
-  rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
+  rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate
+  wgsl       translate the laws that the GPU engine shares into its shaders";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
         ["gallery", ref names @ ..] => gallery::make(workspace(), names),
+        ["wgsl"] => wgsl::run(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

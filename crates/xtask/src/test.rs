@@ -1,7 +1,7 @@
 //! All checks and tests, cheapest first; the first failure ends the run.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use super::command::{cargo, succeed};
@@ -46,6 +46,7 @@ const STEPS: [Step; 4] = [
 pub fn run(root: &Path) -> Result<(), String> {
     let start = Instant::now();
     install_components(root)?;
+    install_vulkan();
     step("source rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
         step(name, || succeed(cargo(root).args(arguments).env("RUSTDOCFLAGS", "-D warnings")))?;
@@ -75,4 +76,26 @@ fn install_components(root: &Path) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Installs a Vulkan driver in software, for the tests of the GPU engine, where there is no driver
+/// and this may install one; else those tests say that they are skipped.
+fn install_vulkan() {
+    let drivers = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"].map(Path::new);
+    if !cfg!(target_os = "linux") || drivers.iter().any(|folder| folder.exists()) {
+        return;
+    }
+    println!("== installing Vulkan in software");
+    let packages = ["mesa-vulkan-drivers", "libvulkan1"];
+    let install = |arguments: &[&str]| {
+        let mut command = Command::new("apt-get");
+        succeed(command.args(arguments).stdout(Stdio::null()).env("DEBIAN_FRONTEND", "noninteractive"))
+    };
+    let installed = install(&["install", "--yes", packages[0], packages[1]]).or_else(|_| {
+        install(&["update"])?;
+        install(&["install", "--yes", packages[0], packages[1]])
+    });
+    if let Err(error) = installed {
+        println!("== no Vulkan: {error}");
+    }
 }

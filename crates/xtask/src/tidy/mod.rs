@@ -8,6 +8,7 @@ mod cycles;
 mod documents;
 mod rust;
 mod text;
+mod translations;
 mod tree;
 
 use std::fmt;
@@ -42,8 +43,15 @@ impl fmt::Display for Finding {
 }
 
 /// All checks.
-const CHECKS: [fn(&Tree) -> Vec<Finding>; 6] =
-    [text::check, code::check, crates::check, cycles::check, citations::check, documents::check];
+const CHECKS: [fn(&Tree) -> Vec<Finding>; 7] = [
+    text::check,
+    code::check,
+    crates::check,
+    cycles::check,
+    citations::check,
+    documents::check,
+    translations::check,
+];
 
 /// Checks the workspace at `root`; findings go to standard error.
 pub fn run(root: &Path) -> Result<(), String> {

@@ -1,0 +1,66 @@
+// Translated from crates/scattering/src/flags.rs by `cargo xtask wgsl`, which translates it again.
+
+const BxdfFlags_NONE: u32 = 0;
+
+const BxdfFlags_REFLECTION: u32 = 1;
+
+const BxdfFlags_TRANSMISSION: u32 = 1 << 1;
+
+const BxdfFlags_DIFFUSE: u32 = 1 << 2;
+
+const BxdfFlags_GLOSSY: u32 = 1 << 3;
+
+const BxdfFlags_SPECULAR: u32 = 1 << 4;
+
+const BxdfFlags_DIFFUSE_REFLECTION: u32 = BxdfFlags_DIFFUSE | BxdfFlags_REFLECTION;
+
+const BxdfFlags_DIFFUSE_TRANSMISSION: u32 = BxdfFlags_DIFFUSE | BxdfFlags_TRANSMISSION;
+
+const BxdfFlags_GLOSSY_REFLECTION: u32 = BxdfFlags_GLOSSY | BxdfFlags_REFLECTION;
+
+const BxdfFlags_GLOSSY_TRANSMISSION: u32 = BxdfFlags_GLOSSY | BxdfFlags_TRANSMISSION;
+
+const BxdfFlags_SPECULAR_REFLECTION: u32 = BxdfFlags_SPECULAR | BxdfFlags_REFLECTION;
+
+const BxdfFlags_SPECULAR_TRANSMISSION: u32 = BxdfFlags_SPECULAR | BxdfFlags_TRANSMISSION;
+
+// The same set in all lanes.
+fn BxdfFlags_splat(flags: u32) -> u32 {
+    return u32(flags);
+}
+
+// `a` where the mask is true, else `b`.
+fn BxdfFlags_select(mask: bool, a: u32, b: u32) -> u32 {
+    return select(b, a, mask);
+}
+
+// `a` where the mask is true, else `b`, each the same in all lanes.
+fn BxdfFlags_choose(mask: bool, a: u32, b: u32) -> u32 {
+    return BxdfFlags_select(mask, BxdfFlags_splat(a), BxdfFlags_splat(b));
+}
+
+const Directions_All = 0u;
+const Directions_Reflection = 1u;
+const Directions_Transmission = 2u;
+
+// Whether reflection may be sampled.
+fn Directions_reflection(this_: u32) -> bool {
+    return !(this_ == Directions_Transmission);
+}
+
+// Whether transmission may be sampled.
+fn Directions_transmission(this_: u32) -> bool {
+    return !(this_ == Directions_Reflection);
+}
+
+// The probability of reflection, where reflection has the weight `r` and transmission `t`, and
+// lobes that are not requested the weight 0; and where there is one: not where all weights are
+// 0.
+fn Directions_probability_of_reflection(this_: u32, r: f32, t: f32) -> Tuple_f32_bool {
+    let r_1 = select(0.0f, r, Directions_reflection(this_));
+    let t_1 = select(0.0f, t, Directions_transmission(this_));
+    return Tuple_f32_bool(r_1 / (r_1 + t_1), (r_1 + t_1) > 0.0f);
+}
+
+const TransportMode_Radiance = 0u;
+const TransportMode_Importance = 1u;

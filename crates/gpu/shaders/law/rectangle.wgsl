@@ -1,0 +1,78 @@
+// Translated from crates/sampling/src/warp/rectangle.rs by `cargo xtask wgsl`, which translates it again.
+
+// A rectangle as seen from a point, for each lane.
+struct SphericalRectangle {
+    origin: vec3f,
+    axes: array<vec3f, 3>,
+    x: vec2f,
+    y: vec2f,
+    z: f32,
+    phi: vec2f,
+}
+
+// The rectangle with a corner and two sides at right angles, seen from `p`.
+fn SphericalRectangle_new(p: vec3f, corner: vec3f, side_x: vec3f, side_y: vec3f) -> SphericalRectangle {
+    let length_x = Vec3_length(side_x);
+    let length_y = Vec3_length(side_y);
+    let axis_x = side_x * (1.0f / length_x);
+    let axis_y = side_y * (1.0f / length_y);
+    let axis_z = Vec3_cross(axis_x, axis_y);
+    let d = corner - p;
+    let z = Vec3_dot(d, axis_z);
+    let is_behind = z > 0.0f;
+    let axis_z_1 = select(axis_z, -axis_z, is_behind);
+    let x = Vec3_dot(d, axis_x);
+    let y = Vec3_dot(d, axis_y);
+    var rectangle = SphericalRectangle(p, array<vec3f, 3>(axis_x, axis_y, axis_z_1), vec2f(x, x + length_x), vec2f(y, y + length_y), -abs(z), vec2f(0.0f, 0.0f));
+    rectangle.phi = vec2f(SphericalRectangle_phi_at(rectangle, rectangle.x.x), SphericalRectangle_phi_at(rectangle, rectangle.x.y));
+    return rectangle;
+}
+
+// Where it has a solid angle. Elsewhere all else is meaningless.
+fn SphericalRectangle_is_valid(this_: SphericalRectangle) -> bool {
+    return (this_.z < 0.0f) & (this_.phi.y > this_.phi.x);
+}
+
+// The density of [`sample`](Self::sample) per solid angle.
+fn SphericalRectangle_pdf(this_: SphericalRectangle) -> f32 {
+    return 1.0f / (this_.phi.y - this_.phi.x);
+}
+
+// A point of the rectangle, by its distances from the corner along the sides.
+fn SphericalRectangle_sample(this_: SphericalRectangle, u: vec2f) -> vec2f {
+    let parts = this_.x;
+    let x0 = parts.x;
+    let x1 = parts.y;
+    let parts_1 = this_.y;
+    let y0 = parts_1.x;
+    let y1 = parts_1.y;
+    let z = this_.z;
+    let z2 = z * z;
+    let b0 = (-y0) / sqrt((y0 * y0) + z2);
+    let b1 = y1 / sqrt((y1 * y1) + z2);
+    let parts_2 = sin_cos(this_.phi.x + (u.x * (this_.phi.y - this_.phi.x)));
+    let sin_1 = parts_2.v0;
+    let cos_1 = parts_2.v1;
+    let f = ((cos_1 * b0) + b1) / sin_1;
+    let rest = z2 / ((y0 * y0) + z2);
+    let x = real_min(real_max(copysign(-z, f) / sqrt(real_max((f * f) - rest, 1.1754944e-38f)), x0), x1);
+    let distance2 = (x * x) + z2;
+    let h0 = y0 / sqrt(distance2 + (y0 * y0));
+    let h1 = y1 / sqrt(distance2 + (y1 * y1));
+    let h = h0 + (u.y * (h1 - h0));
+    let y = real_min(real_max(h * sqrt(distance2 / real_max(1.0f - (h * h), 1.1754944e-38f)), y0), y1);
+    return vec2f(x - x0, y - y0);
+}
+
+// φ(x), both arctangents as one.
+fn SphericalRectangle_phi_at(this_: SphericalRectangle, x: f32) -> f32 {
+    let parts = this_.y;
+    let y0 = parts.x;
+    let y1 = parts.y;
+    let square = (x * x) + (this_.z * this_.z);
+    let sin0 = x * y0;
+    let cos0 = (-this_.z) * sqrt(square + (y0 * y0));
+    let sin1 = x * y1;
+    let cos1 = (-this_.z) * sqrt(square + (y1 * y1));
+    return arc_atan2((sin1 * cos0) - (cos1 * sin0), (cos1 * cos0) + (sin1 * sin0));
+}

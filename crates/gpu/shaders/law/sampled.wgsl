@@ -1,0 +1,102 @@
+// Translated from crates/spectrum/src/sampled.rs by `cargo xtask wgsl`, which translates it again.
+
+const sampled_N: u32 = 4;
+
+const sampled_LAMBDA_MIN: f32 = 360.0f;
+
+const sampled_LAMBDA_MAX: f32 = 830.0f;
+
+// The same value at every wavelength.
+fn SampledSpectrum_splat(value: f32) -> vec4f {
+    return vec4f(value, value, value, value);
+}
+
+// Zero at every wavelength.
+fn SampledSpectrum_zero() -> vec4f {
+    return SampledSpectrum_splat(0.0f);
+}
+
+// `a` where the mask is true, else `b`.
+fn SampledSpectrum_select(mask: bool, a: vec4f, b: vec4f) -> vec4f {
+    let a_1 = a.x;
+    let b_1 = a.y;
+    let c = a.z;
+    let d = a.w;
+    let p = b.x;
+    let q = b.y;
+    let r = b.z;
+    let s = b.w;
+    return vec4f(select(p, a_1, mask), select(q, b_1, mask), select(r, c, mask), select(s, d, mask));
+}
+
+// The largest value.
+fn SampledSpectrum_max_component(this_: vec4f) -> f32 {
+    let a = this_.x;
+    let b = this_.y;
+    let c = this_.z;
+    let d = this_.w;
+    return real_max(d, real_max(c, real_max(b, real_max(a, -infinity()))));
+}
+
+// The wavelengths of a path, in nanometres, and their sampling densities, per nanometre.
+struct SampledWavelengths {
+    lambda: vec4f,
+    pdf: vec4f,
+}
+
+// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
+fn SampledWavelengths_sample_visible(u: f32) -> SampledWavelengths {
+    var lambda = rotations(u);
+    var pdf = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
+    for (var i = 0u; i < sampled_N; i++) {
+        lambda[i] = sample_visible_wavelength(lambda[i]);
+        pdf[i] = visible_wavelength_pdf(lambda[i]);
+    }
+    return SampledWavelengths(lambda, pdf);
+}
+
+// Keeps only the first wavelength, for dispersion, and divides its density by N.
+fn SampledWavelengths_terminate_secondary(this_: ptr<function, SampledWavelengths>) {
+    let terminated = SampledWavelengths_secondary_terminated(*this_);
+    let parts = (*this_).pdf;
+    let hero = parts.x;
+    (*this_).pdf = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
+    (*this_).pdf.x = select(hero / f32(sampled_N), hero, terminated);
+}
+
+// Whether the secondary wavelengths are terminated.
+fn SampledWavelengths_secondary_terminated(this_: SampledWavelengths) -> bool {
+    let parts = this_.pdf;
+    let p = parts.x;
+    let p_1 = parts.y;
+    let p_2 = parts.z;
+    let p_3 = parts.w;
+    let a = p_1 == 0.0f;
+    let b = p_2 == 0.0f;
+    let c = p_3 == 0.0f;
+    return (a & b) & c;
+}
+
+// `u` and its rotations by 1/4, 2/4 and 3/4 within [0, 1).
+fn rotations(u: f32) -> vec4f {
+    let rotated = u + 0.0f;
+    let rotated_1 = u + 0.25f;
+    let rotated_2 = u + 0.5f;
+    let rotated_3 = u + 0.75f;
+    return vec4f(select(rotated, rotated - 1.0f, rotated >= 1.0f), select(rotated_1, rotated_1 - 1.0f, rotated_1 >= 1.0f), select(rotated_2, rotated_2 - 1.0f, rotated_2 >= 1.0f), select(rotated_3, rotated_3 - 1.0f, rotated_3 >= 1.0f));
+}
+
+// A wavelength with the density of [`visible_wavelength_pdf`].
+fn sample_visible_wavelength(u: f32) -> f32 {
+    let tanh = 0.85691062f - (u * 1.827502f);
+    let log_1 = ln((1.0f + tanh) / (1.0f - tanh));
+    return real_min(real_max(538.0f - (log_1 * 69.44444f), sampled_LAMBDA_MIN), sampled_LAMBDA_MAX);
+}
+
+// p(λ) ∝ sech²(0.0072 (λ − 538)) on the range of wavelengths, per nanometre.
+fn visible_wavelength_pdf(lambda: f32) -> f32 {
+    let inside = (lambda >= sampled_LAMBDA_MIN) & (lambda <= sampled_LAMBDA_MAX);
+    let e = exponential_exp((lambda - 538.0f) * 0.0144f);
+    let pdf = (e * (4.0f * 0.003939804f)) / ((e + 1.0f) * (e + 1.0f));
+    return select(0.0f, pdf, inside);
+}

@@ -1,0 +1,48 @@
+// Translated from crates/math/src/vector.rs by `cargo xtask wgsl`, which translates it again.
+
+// The square of the length.
+fn Vec2_length_squared(this_: vec2f) -> f32 {
+    return Vec2_dot(this_, this_);
+}
+
+// The Euclidean length.
+fn Vec3_length(this_: vec3f) -> f32 {
+    return sqrt(Vec3_dot(this_, this_));
+}
+
+// The square of the length.
+fn Vec3_length_squared(this_: vec3f) -> f32 {
+    return Vec3_dot(this_, this_);
+}
+
+// The vector of length one with the same direction; not finite for the zero vector.
+fn Vec3_normalize(this_: vec3f) -> vec3f {
+    return this_ * (1.0f / Vec3_length(this_));
+}
+
+// The vector of length one with the same direction, and where there is one: not where
+// the length is zero or not finite, or nearly so.
+fn Vec3_normalize_masked(this_: vec3f) -> Tuple_Vec3_bool {
+    let inverse = 1.0f / Vec3_length(this_);
+    let valid = (inverse > 0.0f) & (inverse < infinity());
+    return Tuple_Vec3_bool(this_ * inverse, valid);
+}
+
+// The scalar product.
+fn Vec2_dot(this_: vec2f, b: vec2f) -> f32 {
+    return (this_.x * b.x) + (this_.y * b.y);
+}
+
+// The scalar product.
+fn Vec3_dot(this_: vec3f, b: vec3f) -> f32 {
+    return ((this_.x * b.x) + (this_.y * b.y)) + (this_.z * b.z);
+}
+
+// The vector product.
+fn Vec3_cross(this_: vec3f, b: vec3f) -> vec3f {
+    return vec3f((this_.y * b.z) - (b.y * this_.z), (this_.z * b.x) - (b.z * this_.x), (this_.x * b.y) - (b.x * this_.y));
+}
+
+const Vec3_X: vec3f = vec3f(1.0f, 0.0f, 0.0f);
+
+const Vec3_Z: vec3f = vec3f(0.0f, 0.0f, 1.0f);

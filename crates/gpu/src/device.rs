@@ -1,0 +1,209 @@
+//! The GPU: which one, its buffers, and kernels that it runs.
+//!
+//! Nothing here panics for what a machine or a driver does: faults that drivers report at any time
+//! are kept, and the next call returns them.
+
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use wgpu::util::DeviceExt;
+use wgpu::{BufferUsages, DeviceType, Limits};
+
+/// Why the GPU cannot do what was asked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum GpuError {
+    /// No adapter can be used; the names of those that were found.
+    NoDevice(Vec<String>),
+    /// The driver gives no device.
+    Refused(String),
+    /// The device is gone: reset, unplugged or crashed. Open another.
+    Lost(String),
+    /// The device has too little memory.
+    OutOfMemory(String),
+    /// A buffer is larger than the device can bind: its name, bytes, and the limit.
+    TooLarge(&'static str, u64, u64),
+    /// The driver takes a call or a shader for invalid, which is a fault of this crate.
+    Invalid(String),
+}
+
+impl fmt::Display for GpuError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::NoDevice(found) if found.is_empty() => {
+                f.write_str("no GPU: Vulkan is not installed, or has no driver")
+            }
+            Self::NoDevice(found) => write!(f, "no such GPU; there are: {}", found.join(", ")),
+            Self::Refused(reason) => write!(f, "the GPU cannot be opened: {reason}"),
+            Self::Lost(reason) => write!(f, "the GPU is lost: {reason}"),
+            Self::OutOfMemory(reason) => write!(f, "the GPU is out of memory: {reason}"),
+            Self::TooLarge(name, bytes, limit) => {
+                write!(f, "the {name} take {bytes} bytes, and the GPU can bind {limit} bytes")
+            }
+            Self::Invalid(reason) => write!(f, "the GPU's driver refuses a call: {reason}"),
+        }
+    }
+}
+
+impl std::error::Error for GpuError {}
+
+/// A GPU that is open.
+#[derive(Debug)]
+pub struct Device {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    name: String,
+    /// The first fault that the driver has reported.
+    fault: Arc<Mutex<Option<GpuError>>>,
+}
+
+/// A compute shader that is compiled. Its bindings are buffers of group 0, numbered from 0.
+#[derive(Debug)]
+pub struct Kernel {
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// Memory of the GPU.
+#[derive(Debug)]
+pub struct Buffer(wgpu::Buffer);
+
+impl Device {
+    /// Opens the GPU whose name contains `name`, without regard to case; the fastest kind there is
+    /// if that is empty. A software renderer is the last choice.
+    pub fn open(name: &str) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+            DeviceType::DiscreteGpu => 0,
+            DeviceType::IntegratedGpu => 1,
+            DeviceType::VirtualGpu => 2,
+            DeviceType::Other => 3,
+            DeviceType::Cpu => 4,
+        });
+        let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+        let is_it = |known: &String| known.to_lowercase().contains(&name.to_lowercase());
+        let Some(index) = names.iter().position(is_it) else { return Err(GpuError::NoDevice(names)) };
+        let (adapter, name) = (&adapters[index], names[index].clone());
+        // The limits of WebGPU, so that what runs on one GPU runs on all, but for sizes.
+        let limits = adapter.limits();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("alhazen"),
+            required_limits: Limits {
+                max_buffer_size: limits.max_buffer_size,
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                ..Limits::default()
+            },
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| GpuError::Refused(format!("{name}: {error}")))?;
+        let fault = Arc::new(Mutex::new(None));
+        let keep = |fault: &Arc<Mutex<Option<GpuError>>>| {
+            let fault = fault.clone();
+            move |error| {
+                if let Ok(mut fault) = fault.lock() {
+                    fault.get_or_insert(error);
+                }
+            }
+        };
+        let (keep_error, keep_loss) = (keep(&fault), keep(&fault));
+        device.on_uncaptured_error(Arc::new(move |error| {
+            keep_error(match error {
+                wgpu::Error::OutOfMemory { source } => GpuError::OutOfMemory(source.to_string()),
+                error => GpuError::Invalid(error.to_string()),
+            });
+        }));
+        device.set_device_lost_callback(move |_, reason| keep_loss(GpuError::Lost(reason)));
+        Ok(Self { device, queue, name, fault })
+    }
+
+    /// The GPU's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// A buffer with these contents, which kernels may read and write. The name is a plural, for
+    /// messages.
+    pub fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        name: &'static str,
+        contents: &[T],
+    ) -> Result<Buffer, GpuError> {
+        // Bindings are not empty.
+        let bytes: &[u8] = if contents.is_empty() { &[0; 16] } else { bytemuck::cast_slice(contents) };
+        let (size, limit) = (bytes.len() as u64, self.device.limits().max_storage_buffer_binding_size);
+        if size > limit {
+            return Err(GpuError::TooLarge(name, size, limit));
+        }
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage };
+        let buffer = self.device.create_buffer_init(&descriptor);
+        self.checked(Buffer(buffer))
+    }
+
+    /// Compiles the function `main` of a shader.
+    pub fn kernel(&self, name: &str, source: &str) -> Result<Kernel, GpuError> {
+        let source = wgpu::ShaderSource::Wgsl(source.into());
+        let module =
+            self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        self.checked(Kernel { pipeline })
+    }
+
+    /// Starts a kernel in this many workgroups, after all that was started before.
+    pub fn run(&self, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 3]) -> Result<(), GpuError> {
+        let entries = buffers.iter().zip(0..).map(|(buffer, binding)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.0.as_entire_binding(),
+        });
+        let bindings = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &kernel.pipeline.get_bind_group_layout(0),
+            entries: &entries.collect::<Vec<_>>(),
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&kernel.pipeline);
+        pass.set_bind_group(0, &bindings, &[]);
+        let [x, y, z] = workgroups;
+        pass.dispatch_workgroups(x, y, z);
+        drop(pass);
+        self.queue.submit([encoder.finish()]);
+        self.checked(())
+    }
+
+    /// The contents of a buffer, when all that was started is done.
+    pub fn read<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
+        let size = buffer.0.size();
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("copies"),
+            size,
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&buffer.0, 0, &copy, 0, size);
+        self.queue.submit([encoder.finish()]);
+        copy.map_async(wgpu::MapMode::Read, .., |_| ());
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.checked(())?;
+        waited.map_err(|error| GpuError::Lost(error.to_string()))?;
+        let mapped = copy.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
+        Ok(bytemuck::pod_collect_to_vec(&mapped))
+    }
+
+    /// A result, unless the driver has reported a fault.
+    fn checked<T>(&self, result: T) -> Result<T, GpuError> {
+        match self.fault.lock() {
+            Ok(fault) if fault.is_none() => Ok(result),
+            Ok(fault) => Err(fault.clone().unwrap_or(GpuError::Lost(String::new()))),
+            Err(_) => Err(GpuError::Lost("a report of the driver failed".into())),
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! The sources of the shaders. WGSL has no modules: a shader is the concatenation of texts, in any
+//! order.
+
+/// What translated laws use and WGSL has not.
+const PRELUDE: &str = include_str!("../shaders/prelude.wgsl");
+
+/// The laws, translated from Rust by `cargo xtask wgsl`.
+macro_rules! laws {
+    ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
+}
+
+const LAWS: [&str; 30] = laws! {
+    "arc" "circular" "conductor" "dielectric" "diffuse" "diffuse_transmission" "disk" "exponential" "flags"
+    "float" "frame" "fresnel" "function" "hash" "hash_sequence" "interval" "logarithm" "microfacet" "octahedral" "phase" "rectangle"
+    "sampled" "scatter" "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "vector"
+};
+
+/// A shader: the laws, and what uses them.
+pub fn with_laws(parts: &[&str]) -> String {
+    let all = [PRELUDE].iter().chain(&LAWS).chain(parts);
+    all.copied().collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,272 @@
+//! The laws that are compared. Most have the bits of Rust on Mesa's software renderer; bounds allow
+//! for the errors that WGSL permits of division, square root and fused multiply-add.
+
+use crate::twins::{INPUTS, Law};
+use math::{Frame, Vec2, Vec3, Vector3};
+use sampling::HashSequence;
+use sampling::warp::*;
+use scattering::*;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+type Row = [f32; INPUTS];
+
+fn wo(x: &Row) -> Vector3 {
+    Vec3::new(x[0], x[1], x[2])
+}
+
+fn wi(x: &Row) -> Vector3 {
+    Vec3::new(x[3], x[4], x[5])
+}
+
+fn u(x: &Row) -> Vec2 {
+    Vec2::new(x[6], x[7])
+}
+
+fn spectrum(x: &Row, scale: f32) -> SampledSpectrum {
+    SampledSpectrum::new([x[6], x[7], x[8], x[9]]) * scale
+}
+
+fn distribution(x: &Row) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(0.02 + x[9], 0.02 + x[10])
+}
+
+fn dielectric(x: &Row) -> Dielectric {
+    Dielectric { eta: 0.5 + 2.0 * x[11], distribution: distribution(x) }
+}
+
+fn conductor(x: &Row) -> Conductor {
+    Conductor { distribution: distribution(x), eta: spectrum(x, 3.0), k: spectrum(x, 5.0) }
+}
+
+/// All numbers of a sample, if there is one.
+fn sample(sample: BsdfSample) -> Vec<f32> {
+    let BsdfSample { f, wi, pdf, eta, valid, .. } = sample;
+    if !valid {
+        return Vec::new();
+    }
+    vec![1.0, f[0] * wi.z, f[3] * wi.z, wi.x, wi.y, wi.z, pdf, eta]
+}
+
+/// A value for both directions of light, and the density.
+fn value(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
+    let (wo, wi) = (wo(x), wi(x));
+    let f = bxdf.f(wo, wi, TransportMode::Radiance);
+    let g = bxdf.f(wo, wi, TransportMode::Importance);
+    vec![f[0], f[1], f[2], f[3], g[0], bxdf.pdf(wo, wi, TransportMode::Radiance, Directions::All)]
+}
+
+fn sampled(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
+    sample(bxdf.sample_f(wo(x), x[8], u(x), TransportMode::Radiance, Directions::All))
+}
+
+/// A law by its name, bound, flips and both sides.
+macro_rules! law {
+    ($name:literal $bound:literal $flips:literal, $x:ident => $rust:expr, $wgsl:expr) => {
+        Law { name: $name, bound: $bound, flips: $flips, rust: |$x| $rust.into(), wgsl: $wgsl }
+    };
+}
+
+/// WGSL that compares value and density of a BxDF.
+macro_rules! value {
+    ($name:literal, $bxdf:literal) => {
+        concat!(
+            "let b = ",
+            $bxdf,
+            ";
+            let f = ",
+            $name,
+            "_f(b, wo, wi, TransportMode_Radiance);
+            let g = ",
+            $name,
+            "_f(b, wo, wi, TransportMode_Importance);
+            let p = ",
+            $name,
+            "_pdf(b, wo, wi, TransportMode_Radiance, Directions_All);
+            y = array(f.x, f.y, f.z, f.w, g.x, p, 0, 0);"
+        )
+    };
+}
+
+/// WGSL that compares samples of a BxDF.
+macro_rules! sampled {
+    ($name:literal, $bxdf:literal) => {
+        concat!(
+            "let b = ",
+            $bxdf,
+            ";
+            let s = ",
+            $name,
+            "_sample_f(b, wo, x[8], u, TransportMode_Radiance, Directions_All);
+            if (s.valid) {
+                y = array(1, s.f.x * s.wi.z, s.f.w * s.wi.z, s.wi.x, s.wi.y, s.wi.z, s.pdf, s.eta);
+            }"
+        )
+    };
+}
+
+pub const LAWS: [Law; 33] = [
+    law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
+        "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
+    law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
+        "y[0] = exponential_exp(x[6] * 20.0 - 10.0); y[1] = ln(x[7]);"),
+    law!("arcs" 1e-6 0.0,
+        x => vec![lanes::asin(x[0]), lanes::acos(x[1]), lanes::atan(x[6] * 9.0), lanes::atan2(x[0], x[1])],
+        "y[0] = arc_asin(x[0]); y[1] = arc_acos(x[1]); y[2] = arc_atan(x[6] * 9.0); y[3] = arc_atan2(x[0], x[1]);"),
+    law!("difference_of_products" 3e-5 0.0,
+        x => vec![math::difference_of_products(x[0], x[1], x[2], x[3]), math::sum_of_products(x[0], x[1], x[2], x[3])],
+        "y[0] = difference_of_products(x[0], x[1], x[2], x[3]); y[1] = sum_of_products(x[0], x[1], x[2], x[3]);"),
+    law!("Frame" 1e-5 0.0,
+        x => {
+            let (a, b) = (Frame::from_z(wo(x)).from_local(wi(x)), Frame::from_z_and_x(wo(x), wi(x)));
+            let b = b.to_local(Vec3::new(x[8], x[9], x[10]));
+            vec![a.x, a.y, a.z, b.x, b.y, b.z]
+        },
+        "let a = Frame_from_local(Frame_from_z(wo), wi);
+        let b = Frame_to_local(Frame_from_z_and_x(wo, wi), vec3f(x[8], x[9], x[10]));
+        y = array(a.x, a.y, a.z, b.x, b.y, b.z, 0, 0);"),
+    law!("equal-area sphere" 1e-5 0.0,
+        x => {
+            let (a, b) = (math::equal_area_square_to_sphere(u(x)), math::equal_area_sphere_to_square(wo(x)));
+            vec![a.x, a.y, a.z, b.x, b.y]
+        },
+        "let a = equal_area_square_to_sphere(u); let b = equal_area_sphere_to_square(wo);
+        y = array(a.x, a.y, a.z, b.x, b.y, 0, 0, 0);"),
+    law!("spherical" 1e-5 0.0,
+        x => { let w = math::face_forward(wo(x), wi(x)); vec![math::spherical_phi(wo(x)), w.x, w.y, w.z] },
+        "let w = face_forward(wo, wi); y = array(spherical_phi(wo), w.x, w.y, w.z, 0, 0, 0, 0);"),
+    law!("SampledWavelengths" 1e-5 0.0,
+        x => {
+            let mut lambda = SampledWavelengths::sample_visible(x[6]);
+            if x[7] < 0.5 {
+                lambda.terminate_secondary();
+            }
+            [*lambda.lambda(), lambda.pdf().0].concat()
+        },
+        "var w = SampledWavelengths_sample_visible(x[6]);
+        if (x[7] < 0.5) { SampledWavelengths_terminate_secondary(&w); }
+        y = array(w.lambda.x, w.lambda.y, w.lambda.z, w.lambda.w, w.pdf.x, w.pdf.y, w.pdf.z, w.pdf.w);"),
+    law!("disk" 1e-5 0.0,
+        x => [sample_uniform_disk_polar(u(x)).to_array(), sample_uniform_disk_concentric(u(x)).to_array()].concat(),
+        "let a = sample_uniform_disk_polar(u); let b = sample_uniform_disk_concentric(u);
+        y = array(a.x, a.y, b.x, b.y, 0, 0, 0, 0);"),
+    law!("linear and tent" 1e-5 0.0,
+        x => vec![sample_linear(x[6], x[7], x[8]), linear_pdf(x[6], x[7], x[8]), sample_tent(x[6], 2.0)],
+        "y[0] = sample_linear(x[6], x[7], x[8]); y[1] = linear_pdf(x[6], x[7], x[8]); y[2] = sample_tent(x[6], 2.0);"),
+    law!("sphere" 1e-5 0.0,
+        x => [sample_uniform_sphere(u(x)).to_array(), sample_uniform_hemisphere(u(x)).to_array()].concat(),
+        "let a = sample_uniform_sphere(u); let b = sample_uniform_hemisphere(u);
+        y = array(a.x, a.y, a.z, b.x, b.y, b.z, 0, 0);"),
+    law!("cosine hemisphere" 1e-5 0.0,
+        x => { let w = sample_cosine_hemisphere(u(x)); vec![w.x, w.y, w.z, cosine_hemisphere_pdf(w.z)] },
+        "let w = sample_cosine_hemisphere(u); y = array(w.x, w.y, w.z, cosine_hemisphere_pdf(w.z), 0, 0, 0, 0);"),
+    law!("cone" 1e-5 0.0,
+        x => { let w = sample_uniform_cone(u(x), x[8]); vec![w.x, w.y, w.z, uniform_cone_pdf(x[8])] },
+        "let w = sample_uniform_cone(u, x[8]); y = array(w.x, w.y, w.z, uniform_cone_pdf(x[8]), 0, 0, 0, 0);"),
+    law!("bilinear" 1e-5 0.0,
+        x => {
+            let w = [x[8], x[9], x[10], x[11]];
+            let p = sample_bilinear(u(x), w);
+            vec![p.x, p.y, bilinear_pdf(p, w)]
+        },
+        "let w = vec4f(x[8], x[9], x[10], x[11]); let p = sample_bilinear(u, w);
+        y = array(p.x, p.y, bilinear_pdf(p, w), 0, 0, 0, 0, 0);"),
+    law!("uniform triangle" 1e-6 0.0, x => sample_uniform_triangle(u(x)).to_vec(),
+        "let b = sample_uniform_triangle(u); y[0] = b.x; y[1] = b.y; y[2] = b.z;"),
+    law!("SphericalTriangle" 1e-4 1e-3,
+        x => {
+            let t = SphericalTriangle::new([wo(x), wi(x), Vec3::new(x[8], x[9], x[10])], Vec3::new(0.0, 0.0, 2.0));
+            let p = t.sample(u(x));
+            if t.is_valid() { vec![p.x, p.y, t.solid_angle()] } else { Vec::new() }
+        },
+        "let t = SphericalTriangle_new(array(wo, wi, vec3f(x[8], x[9], x[10])), vec3f(0, 0, 2));
+        let p = SphericalTriangle_sample(t, u);
+        if (SphericalTriangle_is_valid(t)) { y[0] = p.x; y[1] = p.y; y[2] = SphericalTriangle_solid_angle(t); }"),
+    law!("SphericalRectangle" 3e-4 1e-3,
+        x => {
+            let side = Vec3::new(-wo(x).y, wo(x).x, 0.0);
+            let r = SphericalRectangle::new(Vec3::ZERO, wi(x) * 2.0, wo(x), side);
+            let p = r.sample(u(x));
+            if r.is_valid() { vec![p.x, p.y, r.pdf()] } else { Vec::new() }
+        },
+        "let r = SphericalRectangle_new(vec3f(0), wi * 2.0, wo, vec3f(-wo.y, wo.x, 0.0));
+        let p = SphericalRectangle_sample(r, u);
+        if (SphericalRectangle_is_valid(r)) { y[0] = p.x; y[1] = p.y; y[2] = SphericalRectangle_pdf(r); }"),
+    law!("HashSequence" 0.0 0.0,
+        x => {
+            let mut random = HashSequence::new([x[6].to_bits(), x[7].to_bits()]);
+            let a = random.get_1d();
+            let b = random.get_2d();
+            vec![a, b.x, b.y]
+        },
+        "let first = mix_word(0x6a09e667u ^ bitcast<u32>(x[6])) + 0x3c6ef372u;
+        var random = HashSequence(mix_word(first ^ bitcast<u32>(x[7])) + 0x3c6ef372u);
+        y[0] = HashSequence_get_1d(&random);
+        let b = HashSequence_get_2d(&random); y[1] = b.x; y[2] = b.y;"),
+    law!("reflect and refract" 1e-5 0.0,
+        x => {
+            let (r, (t, eta, valid)) = (reflect(wo(x), wi(x)), refract(wo(x), wi(x), 0.5 + x[8]));
+            if valid { vec![r.x, r.y, r.z, t.x, t.y, t.z, eta] } else { vec![r.x, r.y, r.z] }
+        },
+        "let r = fresnel_reflect(wo, wi); let t = fresnel_refract(wo, wi, 0.5 + x[8]);
+        y = array(r.x, r.y, r.z, 0, 0, 0, 0, 0);
+        if (t.v2) { y = array(r.x, r.y, r.z, t.v0.x, t.v0.y, t.v0.z, t.v1, 0); }"),
+    law!("Fresnel, dielectric" 1e-5 0.0, x => vec![fr_dielectric(x[0], 0.5 + 2.0 * x[6])],
+        "y[0] = fr_dielectric(x[0], 0.5 + 2.0 * x[6]);"),
+    law!("Fresnel, conductor" 1e-5 0.0,
+        x => fr_conductor(x[11], spectrum(x, 3.0), spectrum(x, 5.0)).0.to_vec(),
+        "let s = vec4f(x[6], x[7], x[8], x[9]); let f = fr_conductor(x[11], s * 3.0, s * 5.0);
+        y = array(f.x, f.y, f.z, f.w, 0, 0, 0, 0);"),
+    law!("TrowbridgeReitz" 1e-4 1e-4,
+        x => {
+            let (d, w) = (distribution(x), wo(x));
+            if w.z == 0.0 {
+                return Vec::new();
+            }
+            let wm = d.sample_wm(w, u(x));
+            vec![wm.x, wm.y, wm.z, d.pdf(w, wm), d.g(w, wi(x))]
+        },
+        "let d = TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]);
+        if (wo.z != 0.0) {
+            let wm = TrowbridgeReitz_sample_wm(d, wo, u);
+            y = array(wm.x, wm.y, wm.z, TrowbridgeReitz_pdf(d, wo, wm), TrowbridgeReitz_g(d, wo, wi), 0, 0, 0);
+        }"),
+    law!("HenyeyGreenstein" 1e-3 0.0,
+        x => {
+            let phase = HenyeyGreenstein { g: 1.8 * x[8] - 0.9 };
+            let (w, pdf) = phase.sample_p(wo(x), u(x));
+            // At the poles the direction has few digits.
+            let cos = w.dot(wo(x));
+            let w = w * (1.0 - cos * cos);
+            vec![w.x, w.y, w.z, pdf, phase.p(wo(x), wi(x)), cos]
+        },
+        "let phase = HenyeyGreenstein(1.8 * x[8] - 0.9); let s = HenyeyGreenstein_sample_p(phase, wo, u);
+        let cos = dot(s.v0, wo); let w = s.v0 * (1.0 - cos * cos);
+        y = array(w.x, w.y, w.z, s.v1, HenyeyGreenstein_p(phase, wo, wi), cos, 0, 0);"),
+    law!("Diffuse" 3e-6 0.0, x => value(&Diffuse { reflectance: spectrum(x, 1.0) }, x),
+        value!("Diffuse", "Diffuse(vec4f(x[6], x[7], x[8], x[9]))")),
+    law!("Diffuse, sampled" 3e-6 0.0, x => sampled(&Diffuse { reflectance: spectrum(x, 1.0) }, x),
+        sampled!("Diffuse", "Diffuse(vec4f(x[6], x[7], x[8], x[9]))")),
+    law!("DiffuseTransmission" 3e-6 0.0,
+        x => value(&DiffuseTransmission { reflectance: spectrum(x, 0.4), transmittance: spectrum(x, 0.5) }, x),
+        value!("DiffuseTransmission",
+            "DiffuseTransmission(vec4f(x[6], x[7], x[8], x[9]) * 0.4, vec4f(x[6], x[7], x[8], x[9]) * 0.5)")),
+    law!("DiffuseTransmission, sampled" 3e-6 1e-4,
+        x => sampled(&DiffuseTransmission { reflectance: spectrum(x, 0.4), transmittance: spectrum(x, 0.5) }, x),
+        sampled!("DiffuseTransmission",
+            "DiffuseTransmission(vec4f(x[6], x[7], x[8], x[9]) * 0.4, vec4f(x[6], x[7], x[8], x[9]) * 0.5)")),
+    law!("Conductor" 1e-4 1e-4, x => value(&conductor(x), x),
+        value!("Conductor", "Conductor(TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]),
+            vec4f(x[6], x[7], x[8], x[9]) * 3.0, vec4f(x[6], x[7], x[8], x[9]) * 5.0)")),
+    law!("Conductor, sampled" 1e-4 1e-4, x => sampled(&conductor(x), x),
+        sampled!("Conductor", "Conductor(TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]),
+            vec4f(x[6], x[7], x[8], x[9]) * 3.0, vec4f(x[6], x[7], x[8], x[9]) * 5.0)")),
+    law!("Dielectric" 1e-4 1e-4, x => value(&dielectric(x), x),
+        value!("Dielectric", "Dielectric(0.5 + 2.0 * x[11], TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]))")),
+    law!("Dielectric, sampled" 1e-4 1e-4, x => sampled(&dielectric(x), x),
+        sampled!("Dielectric", "Dielectric(0.5 + 2.0 * x[11], TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]))")),
+    law!("Dielectric, smooth" 1e-5 1e-4,
+        x => sampled(&Dielectric { eta: 0.5 + 2.0 * x[11], distribution: TrowbridgeReitz::new(0.0, 0.0) }, x),
+        sampled!("Dielectric", "Dielectric(0.5 + 2.0 * x[11], TrowbridgeReitz_new(0.0, 0.0))")),
+    law!("ThinDielectric" 1e-5 1e-4, x => sampled(&ThinDielectric { eta: 0.5 + 2.0 * x[11] }, x),
+        sampled!("ThinDielectric", "ThinDielectric(0.5 + 2.0 * x[11])")),
+];

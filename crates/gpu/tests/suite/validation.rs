@@ -1,0 +1,21 @@
+//! Every shader is valid WGSL. Needs no GPU.
+
+use alhazen_gpu::shaders;
+use wgpu::naga::front::wgsl;
+use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+
+fn validate(source: &str) -> Result<(), String> {
+    let module = wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    validator.validate(&module).map(|_| ()).map_err(|error| error.emit_to_string(source))
+}
+
+#[test]
+fn all_laws_are_valid() {
+    validate(&shaders::with_laws(&[])).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn what_is_wrong_is_found() {
+    assert!(validate("fn f() -> f32 { return 1u; }").is_err());
+}

@@ -1,0 +1,152 @@
+//! Small sources and their translations.
+
+use super::library::Library;
+use super::translate;
+use super::translator::Translator;
+
+/// The translation of all functions named `f` and what they use, without empty lines.
+fn translated(source: &str) -> Result<String, String> {
+    let mut library = Library::default();
+    library.add("source", source)?;
+    let mut translator = Translator::new(&library);
+    translator.root(0, "f")?;
+    translate(&mut translator)?;
+    let items: Vec<&str> = translator.tuples().chain(translator.items(0)).collect();
+    Ok(items.concat())
+}
+
+/// Asserts the lines within `f`, the last function.
+#[track_caller]
+fn assert_body(source: &str, expected: &[&str]) {
+    let text = translated(source).unwrap();
+    let (_, body) = text.split_once("fn f").unwrap();
+    let lines: Vec<&str> = body.lines().skip(1).map(str::trim).collect();
+    assert_eq!(lines[..lines.len() - 1], *expected, "{text}");
+}
+
+#[test]
+fn lanes_become_numbers() {
+    let text =
+        translated("fn f<R: Real>(x: R, m: R::Mask) -> R { R::select(m, x.max(R::zero()).sqrt(), -x) }");
+    assert_eq!(
+        text.unwrap(),
+        "fn f(x: f32, m: bool) -> f32 {\n    return select(-x, sqrt(real_max(x, 0.0f)), m);\n}\n"
+    );
+}
+
+#[test]
+fn literals_keep_their_values() {
+    assert_body(
+        "fn f<R: Real>(x: R) -> R { x * R::splat(0.159_15) - R::splat(2.0 * PI) }",
+        &["return (x * 0.15915f) - (2.0f * 3.1415927f);"],
+    );
+    assert_body(
+        "fn f<I: Int>(v: I) -> I { (v ^ v.shr(16)).wrapping_mul(I::splat(0x7feb_352d)) }",
+        &["return (v ^ (v >> 16)) * 0x7feb352du;"],
+    );
+}
+
+#[test]
+fn shadowed_and_reserved_names_are_renamed() {
+    assert_body(
+        "fn f<R: Real>(x: R) -> R { let smooth = x + x; let x = smooth * x; x }",
+        &["let smooth_1 = x + x;", "let x_1 = smooth_1 * x;", "return x_1;"],
+    );
+}
+
+#[test]
+fn tuples_arrays_and_closures_are_resolved() {
+    assert_body(
+        "fn f<R: Real>(x: R) -> R {
+            let [a, b] = [1.0, 2.0].each(R::splat);
+            let (p, q) = (x + a, x * b);
+            let sum = |y: R| y + p;
+            sum(q)
+        }",
+        &["let p = x + 1.0f;", "let q = x * 2.0f;", "return q + p;"],
+    );
+}
+
+#[test]
+fn functions_of_functions_are_inlined() {
+    assert_body(
+        "struct S<R>([R; N]);
+        impl<R: Real> S<R> {
+            fn map(self, f: impl Fn(R) -> R) -> Self { Self(self.0.each(f)) }
+            fn twice(self) -> Self { self.map(|x| x + x) }
+        }
+        fn f<R: Real>(s: S<R>) -> S<R> { s.twice() }",
+        &["return S_twice(s);"],
+    );
+}
+
+#[test]
+fn results_of_several_values_are_structs() {
+    let text = translated(
+        "fn g<R: Real>(x: R) -> (R, R::Mask) { (x, x.lt(R::one())) }
+        fn f<R: Real>(x: R) -> R { let (y, valid) = g(x); if valid.any() { y } else { R::zero() } }",
+    );
+    let expected = "struct Tuple_f32_bool {\n    v0: f32,\n    v1: bool,\n}\n\
+        fn g(x: f32) -> Tuple_f32_bool {\n    return Tuple_f32_bool(x, x < 1.0f);\n}\n\
+        fn f(x: f32) -> f32 {\n    let parts = g(x);\n    let y = parts.v0;\n    let valid = parts.v1;\n    \
+        if (valid) {\n        return y;\n    } else {\n        return 0.0f;\n    }\n}\n";
+    assert_eq!(text.unwrap(), expected);
+}
+
+#[test]
+fn methods_change_what_they_are_called_on() {
+    assert_body(
+        "struct S<R> { x: R }
+        impl<R: Real> S<R> { fn step(&mut self) -> R { self.x += R::one(); self.x } }
+        fn f<R: Real>(x: R) -> R { let mut s = S { x }; s.step() * s.step() }",
+        &[
+            "var s = S(x);",
+            "let result = S_step(&s);",
+            "let result_1 = S_step(&s);",
+            "return result * result_1;",
+        ],
+    );
+}
+
+#[test]
+fn matches_and_loops_stay() {
+    assert_body(
+        "enum E { A, B }
+        fn f<R: Real>(e: E, n: u32, x: R) -> R {
+            let y = match e { E::A => x * x, E::B => x };
+            let mut sum = y;
+            for i in 0..n { if i == 3 { break; } sum += x; }
+            sum
+        }",
+        &[
+            "var chosen: f32;",
+            "if (e == E_A) {",
+            "chosen = x * x;",
+            "} else {",
+            "chosen = x;",
+            "}",
+            "let y = chosen;",
+            "var sum = y;",
+            "for (var i = 0u; i < n; i++) {",
+            "if (i == 3) {",
+            "break;",
+            "}",
+            "sum += x;",
+            "}",
+            "return sum;",
+        ],
+    );
+}
+
+#[test]
+fn what_is_not_in_the_subset_is_an_error() {
+    for source in [
+        "fn f(x: &[f32]) -> f32 { x[0] }",
+        "fn f<R: Real>(x: R) -> R { unknown(x) }",
+        "fn f<R: Real>(x: R) -> R { x.unknown() }",
+        "fn f<R: Real>(x: R) -> R { let g = |y| { return y; }; g(x) }",
+        "fn f<R: Real>(x: Option<R>) -> R { x.unwrap_or(R::zero()) }",
+    ] {
+        assert!(translated(source).is_err(), "{source}");
+    }
+}
