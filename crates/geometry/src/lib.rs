@@ -37,5 +37,6 @@ pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
     AcceptAll, Filter, Geometry, GeometryId, GroupId, Hit, HitColumns, Instance, InstanceId, InstancePath,
-    PointColumns, RayBuffer, RayColumns, RayStats, RefitError, World, WorldBuilder,
+    PlainChild, PlainTree, PlainTriangle, PointColumns, RayBuffer, RayColumns, RayStats, RefitError, World,
+    WorldBuilder,
 };

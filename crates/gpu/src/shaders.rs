@@ -4,6 +4,9 @@
 /// What translated laws use and WGSL has not.
 const PRELUDE: &str = include_str!("../shaders/prelude.wgsl");
 
+/// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
+pub const TRACE: &str = include_str!("../shaders/trace.wgsl");
+
 /// The laws, translated from Rust by `cargo xtask wgsl`.
 macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };

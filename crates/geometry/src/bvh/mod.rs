@@ -12,7 +12,7 @@ mod traverse;
 
 use math::Bounds3;
 use node::WideNode;
-pub(crate) use node::{RaySlabs, WIDTH};
+pub(crate) use node::{Child, RaySlabs, WIDTH};
 
 pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};
@@ -44,6 +44,11 @@ impl Bvh {
     /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
+    }
+
+    /// The nodes, of which the first is the root.
+    pub fn nodes(&self) -> &[WideNode] {
+        &self.nodes
     }
 
     /// The box around everything.

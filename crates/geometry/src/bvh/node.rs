@@ -280,7 +280,12 @@ impl WideNode {
         Bounds3 { min: [0, 1, 2].map(min).into(), max: [3, 4, 5].map(max).into() }
     }
 
-    #[cfg(test)]
+    /// The children with their boxes.
+    pub fn boxes(&self) -> impl Iterator<Item = (Bounds3, Child)> {
+        (0..self.len()).map(|lane| (self.bounds_of(lane), self.children[lane]))
+    }
+
+    /// The box of a child.
     pub fn bounds_of(&self, lane: usize) -> Bounds3 {
         let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
         Bounds3 { min: corner(0), max: corner(3) }

@@ -124,6 +124,11 @@ impl TriangleBlock {
         self.numbers.iter().map(|&number| (number != Self::UNUSED) as u32).sum::<u32>() as usize
     }
 
+    /// The numbers of the triangles, in the order of lanes.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.numbers.into_iter().take(self.len())
+    }
+
     /// The corners of the triangle in a lane.
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
         let [xs, ys, zs] = &self.vertices;

@@ -16,6 +16,12 @@ fn all_laws_are_valid() {
 }
 
 #[test]
+fn traversal_is_valid() {
+    let source = format!("{}{}", shaders::TRACE, crate::trace::KERNEL);
+    validate(&source).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
 fn what_is_wrong_is_found() {
     assert!(validate("fn f() -> f32 { return 1u; }").is_err());
 }

@@ -1,0 +1,217 @@
+//! Rays through the trees on a GPU, beside the CPU's.
+
+use std::f32::consts::{PI, TAU};
+
+use alhazen_gpu::{Bvh, BvhError, Device, GpuError, shaders};
+use geometry::*;
+use math::*;
+use sampling::warp::sample_uniform_sphere;
+use testkit::Random;
+
+/// A kernel that traces rays, of eight numbers each, to hits of eight words. The declarations are
+/// those that `trace.wgsl` needs.
+pub const KERNEL: &str = "
+    struct World { roots: vec2u, size: f32, unused: u32 }
+    @group(0) @binding(0) var<storage, read_write> world: World;
+    @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
+    @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
+    @group(0) @binding(3) var<storage, read_write> instances: array<vec4u>;
+    @group(0) @binding(4) var<storage, read_write> rays: array<array<vec4f, 2>>;
+    @group(0) @binding(5) var<storage, read_write> hits: array<array<u32, 8>>;
+    @compute @workgroup_size(64)
+    fn main(@builtin(global_invocation_id) id: vec3u) {
+        if (id.x >= arrayLength(&rays)) { return; }
+        let ray = rays[id.x];
+        let hit = trace(ray[0].xyz, ray[1].xyz, ray[0].w, false);
+        let any = trace(ray[0].xyz, ray[1].xyz, ray[0].w, true);
+        hits[id.x] = array(bitcast<u32>(hit.t), bitcast<u32>(hit.uv.x), bitcast<u32>(hit.uv.y),
+            hit.geometry, hit.primitive, hit.instance, u32(hit.found), u32(any.found));
+    }";
+
+/// A hit, or none, and whether there is any.
+type Traced = (Option<Hit>, bool);
+
+fn on_gpu(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
+    let bvh = Bvh::new(world).expect("a world of triangles");
+    let kernel = device.kernel("trace", &format!("{}{KERNEL}", shaders::TRACE))?;
+    let numbers = |(ray, end): &(Ray, f32)| [ray.o.x, ray.o.y, ray.o.z, *end, ray.d.x, ray.d.y, ray.d.z, 0.0];
+    let buffers = [
+        device.buffer("world", &[bvh.top])?,
+        device.buffer("nodes", &bvh.nodes)?,
+        device.buffer("triangles", &bvh.triangles)?,
+        device.buffer("instances", &bvh.instances)?,
+        device.buffer("rays", &rays.iter().map(numbers).collect::<Vec<_>>())?,
+        device.buffer("hits", &vec![[0u32; 8]; rays.len()])?,
+    ];
+    let [a, b, c, d, e, f] = &buffers;
+    device.run(&kernel, &[a, b, c, d, e, f], [rays.len().div_ceil(64) as u32, 1, 1])?;
+    let hit = |[t, u, v, geometry, primitive, instance, found, any]: [u32; 8]| {
+        let path = if instance == u32::MAX {
+            InstancePath::TOP
+        } else {
+            InstancePath::TOP.into(InstanceId(instance))
+        };
+        let uv = Vec2::new(f32::from_bits(u), f32::from_bits(v));
+        let (t, geometry) = (f32::from_bits(t), GeometryId(geometry));
+        ((found != 0).then_some(Hit { t, uv, geometry, primitive, instance: path }), any != 0)
+    };
+    Ok(device.read(f)?.into_iter().map(hit).collect())
+}
+
+/// How the hits of rays compare.
+#[derive(Debug, Default)]
+struct Comparison {
+    hits: usize,
+    /// Rays that meet another primitive, or none, on one side.
+    other: usize,
+    /// The largest difference of distances, relative to those above 1.
+    distance: f32,
+}
+
+fn compare(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Comparison {
+    let mut comparison = Comparison::default();
+    let results = on_gpu(device, world, rays).unwrap_or_else(|error| panic!("{error}"));
+    for ((ray, end), (hit, any)) in rays.iter().zip(results) {
+        let expected = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default());
+        assert_eq!(any, hit.is_some(), "{ray:?}");
+        let is_same =
+            |a: &Hit, b: &Hit| (a.geometry, a.primitive, a.instance) == (b.geometry, b.primitive, b.instance);
+        comparison.hits += expected.is_some() as usize;
+        match (expected, hit) {
+            (None, None) => {}
+            (Some(a), Some(b)) => {
+                comparison.distance = comparison.distance.max((a.t - b.t).abs() / a.t.max(1.0));
+                comparison.other += !is_same(&a, &b) as usize;
+            }
+            _ => comparison.other += 1,
+        }
+    }
+    println!("{} rays: {comparison:?}", rays.len());
+    comparison
+}
+
+fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> TriangleMesh {
+    let attributes = MeshAttributes::default();
+    TriangleMesh::new(positions.into(), indices.into(), attributes, &Transform::IDENTITY, false)
+        .expect("a mesh")
+}
+
+/// A closed, bumpy sphere.
+fn ball(n: u32) -> TriangleMesh {
+    let point = |i: u32, j: u32| {
+        // All vertices of a pole are at one place.
+        let turn = if i.is_multiple_of(n) { 0 } else { j };
+        let (theta, phi) = (i as f32 / n as f32 * PI, turn as f32 / n as f32 * TAU);
+        let r = 1.0 + 0.2 * (5.0 * theta).sin() * (7.0 * phi).cos();
+        spherical_direction(theta.sin(), theta.cos(), phi) * r
+    };
+    let positions = (0..=n).flat_map(|i| (0..n).map(move |j| point(i, j)));
+    let at = |i: u32, j: u32| i * n + j % n;
+    let quad = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let indices = (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).flat_map(quad);
+    mesh(positions.collect(), indices.collect())
+}
+
+/// A field of separate triangles, of which some are long and some tiny.
+fn soup(count: usize) -> TriangleMesh {
+    let mut random = Random::new(3);
+    let mut point = |scale: f32| {
+        let [a, b] = random.get_2d();
+        (Vec3::new(a, b, random.get_1d()) - Vec3::splat(0.5)) * scale
+    };
+    let mut positions = Vec::new();
+    for i in 0..count {
+        let center = point(3.0);
+        let size = [0.01, 0.1, 1.0][i % 3];
+        positions.extend([center, center + point(size), center + point(size)]);
+    }
+    let indices = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    mesh(positions, indices.collect())
+}
+
+fn random_rays(count: usize, scale: f32) -> Vec<(Ray, f32)> {
+    let mut random = Random::new(5);
+    let ray = |_| {
+        let [a, b] = random.get_2d();
+        let o = (Vec3::new(a, b, random.get_1d()) - Vec3::splat(0.5)) * scale;
+        let end = if random.get_1d() < 0.2 { random.get_1d() * scale } else { f32::INFINITY };
+        (Ray::new(o, sample_uniform_sphere(random.get_2d().into()), 0.0), end)
+    };
+    (0..count).map(ray).collect()
+}
+
+fn world(meshes: impl IntoIterator<Item = TriangleMesh>) -> World {
+    let mut builder = World::builder();
+    for mesh in meshes {
+        builder.add_geometry(GroupId::TOP, mesh);
+    }
+    builder.build()
+}
+
+#[test]
+fn random_rays_meet_the_triangles_that_they_meet_on_the_cpu() {
+    let Some(device) = crate::device() else { return };
+    for world in [world([ball(60)]), world([soup(5000), ball(10)]), world([soup(3)]), world([])] {
+        let found = compare(&device, &world, &random_rays(20_000, 4.0));
+        assert!(found.other <= 2 && found.distance < 1e-5, "{found:?}");
+    }
+}
+
+#[test]
+fn rays_through_edges_and_vertices_do_not_leak() {
+    let Some(device) = crate::device() else { return };
+    let mesh = ball(40);
+    let mut random = Random::new(7);
+    let ray = |i: usize| {
+        let corners = mesh.corners(i % mesh.len());
+        let t = if i.is_multiple_of(2) { 0.0 } else { random.get_1d() };
+        let (target, [a, b]) = (corners[0].lerp(corners[1], t), random.get_2d());
+        let o = (Vec3::new(a, b, random.get_1d()) - Vec3::splat(0.5)) * 0.2;
+        (Ray::new(o, target - o, 0.0), f32::INFINITY)
+    };
+    let rays: Vec<_> = (0..60_000).map(ray).collect();
+    let results = on_gpu(&device, &world([mesh.clone()]), &rays).unwrap_or_else(|error| panic!("{error}"));
+    for ((ray, _), (hit, any)) in rays.iter().zip(results) {
+        let hit = hit.unwrap_or_else(|| panic!("{ray:?} leaks"));
+        assert!(any && (hit.t - 1.0).abs() < 1e-4, "{ray:?}: {hit:?}");
+    }
+}
+
+#[test]
+fn of_triangles_at_one_place_the_first_is_hit() {
+    let Some(device) = crate::device() else { return };
+    let found = compare(&device, &world([ball(12), ball(12)]), &random_rays(5000, 4.0));
+    assert!(found.hits > 500 && found.other <= 2, "{found:?}");
+}
+
+#[test]
+fn instances_are_met() {
+    let Some(device) = crate::device() else { return };
+    let mut builder = World::builder();
+    builder.add_geometry(GroupId::TOP, soup(500));
+    let groups = [builder.add_group(), builder.add_group()];
+    builder.add_geometry(groups[0], ball(20));
+    builder.add_geometry(groups[1], soup(300));
+    for i in 0..40 {
+        let angle = i as f32;
+        let place = Transform::translate(Vec3::new(angle.sin(), angle.cos(), angle / 20.0 - 1.0) * 2.0);
+        let turn = Transform::rotate(angle, Vec3::new(1.0, 2.0, 3.0));
+        let transform = place.after(&turn).after(&Transform::scale(Vec3::new(0.3, 0.5, 0.2)));
+        let instance = Instance { group: groups[i % 2], render_from_instance: transform.into() };
+        builder.add_instance(GroupId::TOP, instance);
+    }
+    // The CPU transforms rays in doubles.
+    let found = compare(&device, &builder.build(), &random_rays(20_000, 6.0));
+    assert!(found.hits > 1000 && found.other <= 4 && found.distance < 1e-4, "{found:?}");
+}
+
+#[test]
+fn what_is_no_triangle_is_refused() {
+    let mut builder = World::builder();
+    let sphere = Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0));
+    builder.add_geometry(GroupId::TOP, sphere);
+    assert_eq!(Bvh::new(&builder.build()).err(), Some(BvhError::Shapes));
+}
