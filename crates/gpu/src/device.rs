@@ -4,7 +4,7 @@
 //! are kept, and the next call returns them.
 
 use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::util::DeviceExt;
 use wgpu::{BufferUsages, DeviceType, Limits};
@@ -121,6 +121,11 @@ impl Device {
         &self.name
     }
 
+    /// The most bytes of a buffer.
+    pub fn largest_buffer(&self) -> u64 {
+        self.device.limits().max_storage_buffer_binding_size
+    }
+
     /// A buffer with these contents, which kernels may read and write. The name is a plural, for
     /// messages.
     pub fn buffer<T: bytemuck::NoUninit>(
@@ -130,7 +135,7 @@ impl Device {
     ) -> Result<Buffer, GpuError> {
         // Bindings are not empty.
         let bytes: &[u8] = if contents.is_empty() { &[0; 16] } else { bytemuck::cast_slice(contents) };
-        let (size, limit) = (bytes.len() as u64, self.device.limits().max_storage_buffer_binding_size);
+        let (size, limit) = (bytes.len() as u64, self.largest_buffer());
         if size > limit {
             return Err(GpuError::TooLarge(name, size, limit));
         }
@@ -198,12 +203,14 @@ impl Device {
         Ok(bytemuck::pod_collect_to_vec(&mapped))
     }
 
-    /// A result, unless the driver has reported a fault.
+    /// A result, unless the driver has reported a fault since the last call. A device that is lost
+    /// stays so.
     fn checked<T>(&self, result: T) -> Result<T, GpuError> {
-        match self.fault.lock() {
-            Ok(fault) if fault.is_none() => Ok(result),
-            Ok(fault) => Err(fault.clone().unwrap_or(GpuError::Lost(String::new()))),
-            Err(_) => Err(GpuError::Lost("a report of the driver failed".into())),
+        let mut fault = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*fault {
+            None => Ok(result),
+            Some(lost @ GpuError::Lost(_)) => Err(lost.clone()),
+            Some(_) => fault.take().map_or(Ok(result), Err),
         }
     }
 }

@@ -12,10 +12,11 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 30] = laws! {
-    "arc" "circular" "conductor" "dielectric" "diffuse" "diffuse_transmission" "disk" "exponential" "flags"
-    "float" "frame" "fresnel" "function" "hash" "hash_sequence" "interval" "logarithm" "microfacet" "octahedral" "phase" "rectangle"
-    "sampled" "scatter" "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "vector"
+const LAWS: [&str; 36] = laws! {
+    "address" "arc" "circular" "conductor" "dielectric" "diffuse" "diffuse_transmission" "disk" "error"
+    "exponential" "flags" "float" "frame" "fresnel" "function" "hash" "hash_sequence" "independent"
+    "interval" "logarithm" "microfacet" "octahedral" "phase" "ray" "rectangle" "rgb_spectrum" "sampled"
+    "scatter" "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector"
 };
 
 /// A shader: the laws, and what uses them.

@@ -28,6 +28,11 @@ fn Vec3_normalize_masked(this_: vec3f) -> Tuple_Vec3_bool {
     return Tuple_Vec3_bool(this_ * inverse, valid);
 }
 
+// The magnitudes of `self` with the signs of `sign`.
+fn Vec3_copysign(this_: vec3f, sign_1: vec3f) -> vec3f {
+    return vec3f(copysign(this_.x, sign_1.x), copysign(this_.y, sign_1.y), copysign(this_.z, sign_1.z));
+}
+
 // The scalar product.
 fn Vec2_dot(this_: vec2f, b: vec2f) -> f32 {
     return (this_.x * b.x) + (this_.y * b.y);

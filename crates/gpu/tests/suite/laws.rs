@@ -1,12 +1,13 @@
 //! The laws that are compared. Most have the bits of Rust on Mesa's software renderer; bounds allow
 //! for the errors that WGSL permits of division, square root and fused multiply-add.
 
-use crate::twins::{INPUTS, Law};
-use math::{Frame, Vec2, Vec3, Vector3};
-use sampling::HashSequence;
+use crate::twins::{INPUTS, Law, OUTPUTS};
+use math::{Frame, Point3Error, Ray, Vec2, Vec3, Vector3};
+use sampling::sampler::{Address, Independent};
 use sampling::warp::*;
+use sampling::{HashSequence, Sampler};
 use scattering::*;
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::{RgbSigmoidPolynomial, SampledSpectrum, SampledWavelengths};
 
 type Row = [f32; INPUTS];
 
@@ -104,7 +105,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 33] = [
+pub const LAWS: [Law; 36] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -202,6 +203,39 @@ pub const LAWS: [Law; 33] = [
         var random = HashSequence(mix_word(first ^ bitcast<u32>(x[7])) + 0x3c6ef372u);
         y[0] = HashSequence_get_1d(&random);
         let b = HashSequence_get_2d(&random); y[1] = b.x; y[2] = b.y;"),
+    law!("Independent" 0.0 0.0,
+        x => {
+            let sampler = Sampler::Independent(Independent::new(1, 7));
+            let pixel = [(x[6] * 1000.0) as u32, (x[7] * 1000.0) as u32];
+            let mut address = Address { pixel, index: (x[8] * 9.0) as u32, dimension: (x[9] * 99.0) as u32 };
+            let mut u = sampler.at_2d::<f32>(&address).to_vec();
+            address.skip(2);
+            u.push(sampler.at_1d::<f32>(&address));
+            u
+        },
+        "var address = Address(array(u32(u.x * 1000.0), u32(u.y * 1000.0)), u32(x[8] * 9.0), u32(x[9] * 99.0));
+        let sampler_ = Independent(1, mix_word(7), address);
+        let a = Independent_at_2d(sampler_, address);
+        Address_skip(&address, 2);
+        y[0] = a.x; y[1] = a.y; y[2] = Independent_at_1d(sampler_, address);"),
+    law!("Ray" 1e-6 0.0,
+        x => {
+            let p = Point3Error::new(Vec3::new(x[6], x[7], x[8]), Vec3::new(x[9], x[10], x[11]) * 1e-4);
+            let ray = Ray::between(p, wo(x), Point3Error::exact(wi(x)), wi(x), 0.5);
+            let o = Ray::spawn(p, wo(x), wi(x), 0.5).o;
+            [ray.o.to_array(), ray.d.to_array(), [o.x, o.z, 0.0]].concat()[..OUTPUTS].to_vec()
+        },
+        "let p = Point3Error(vec3f(x[6], x[7], x[8]), vec3f(x[9], x[10], x[11]) * 1e-4);
+        let ray = Ray_between(p, wo, Point3Error(wi, vec3f()), wi, 0.5);
+        let o = Ray_spawn(p, wo, wi, 0.5).o;
+        y = array(ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, o.x, o.z);"),
+    law!("RgbSigmoidPolynomial" 3e-5 0.0,
+        x => {
+            let coefficients = [x[6] - 0.5, x[7] - 0.5, 4.0 * x[8] - 2.0];
+            vec![RgbSigmoidPolynomial { coefficients }.at(360.0 + 470.0 * x[9])]
+        },
+        "let c = vec3f(x[6] - 0.5, x[7] - 0.5, 4.0 * x[8] - 2.0);
+        y[0] = RgbSigmoidPolynomial_at(RgbSigmoidPolynomial(c), 360.0 + 470.0 * x[9]);"),
     law!("reflect and refract" 1e-5 0.0,
         x => {
             let (r, (t, eta, valid)) = (reflect(wo(x), wi(x)), refract(wo(x), wi(x), 0.5 + x[8]));

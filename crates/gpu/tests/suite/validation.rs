@@ -16,6 +16,16 @@ fn all_laws_are_valid() {
 }
 
 #[test]
+fn shaders_have_all_laws() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/law");
+    let all = shaders::with_laws(&[]);
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        assert!(all.contains(&std::fs::read_to_string(&path).unwrap()), "{}", path.display());
+    }
+}
+
+#[test]
 fn traversal_is_valid() {
     let source = format!("{}{}", shaders::TRACE, crate::trace::KERNEL);
     validate(&source).unwrap_or_else(|error| panic!("{error}"));

@@ -274,6 +274,10 @@ impl Body<'_, '_> {
     pub fn elements(&mut self, value: Value) -> Result<Vec<Value>> {
         match value {
             Value::Tuple(values) | Value::Array(values) => Ok(values),
+            // What is referred to has parts that may be changed.
+            Value::Place(text, Type::Array(ty, count)) => {
+                Ok((0..count).map(|i| Value::Place(format!("{text}[{i}]"), (*ty).clone())).collect())
+            }
             value => {
                 let value = self.stored("parts", value, false)?;
                 let (text, ty) = self.materialized(value)?;

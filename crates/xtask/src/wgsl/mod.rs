@@ -42,6 +42,8 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/lanes/src/function/exponential.rs", &["exp"]),
     ("crates/lanes/src/function/logarithm.rs", &["ln"]),
     ("crates/math/src/vector.rs", &[]),
+    ("crates/math/src/error.rs", &["offset_ray_origin"]),
+    ("crates/math/src/ray.rs", &["Ray::at", "Ray::spawn", "Ray::between"]),
     ("crates/math/src/float.rs", &["difference_of_products", "sum_of_products"]),
     (
         "crates/math/src/frame.rs",
@@ -53,8 +55,12 @@ const SOURCES: &[(&str, &[&str])] = &[
         "crates/spectrum/src/sampled.rs",
         &["SampledWavelengths::sample_visible", "SampledWavelengths::terminate_secondary"],
     ),
+    ("crates/spectrum/src/uplift.rs", &[]),
+    ("crates/spectrum/src/rgb_spectrum.rs", &["RgbAlbedoSpectrum::at", "RgbUnboundedSpectrum::at"]),
     ("crates/sampling/src/hash.rs", &[]),
     ("crates/sampling/src/hash_sequence.rs", &["HashSequence::get_1d", "HashSequence::get_2d"]),
+    ("crates/sampling/src/sampler/address.rs", &["Address::skip"]),
+    ("crates/sampling/src/sampler/independent.rs", &["Independent::at_1d", "Independent::at_2d"]),
     ("crates/sampling/src/warp/disk.rs", &["sample_uniform_disk_polar", "sample_uniform_disk_concentric"]),
     ("crates/sampling/src/warp/interval.rs", &["sample_linear", "linear_pdf", "sample_tent"]),
     (

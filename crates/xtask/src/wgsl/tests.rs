@@ -139,6 +139,27 @@ fn matches_and_loops_stay() {
 }
 
 #[test]
+fn loops_over_parts_are_unrolled() {
+    assert_body(
+        "fn f<I: Int>(words: [I; 2]) -> [I; 2] {
+            let mut mixed = words;
+            for v in &mut mixed { *v = v.wrapping_add(I::splat(1)); }
+            mixed
+        }",
+        &[
+            "var mixed = words;",
+            "{",
+            "mixed[0] = mixed[0] + 1u;",
+            "}",
+            "{",
+            "mixed[1] = mixed[1] + 1u;",
+            "}",
+            "return mixed;",
+        ],
+    );
+}
+
+#[test]
 fn what_is_not_in_the_subset_is_an_error() {
     for source in [
         "fn f(x: &[f32]) -> f32 { x[0] }",
