@@ -3,7 +3,7 @@
 // A kernel that traces declares the uniform or storage `world` and the buffers `nodes`, `triangles`
 // and `instances`; `bvh/mod.rs` and `bvh/node.rs` have their formats.
 
-const STACK = 64;
+const STACK = 128;
 const NO_HIT = 0xffffffffu;
 
 // The bits of references: leaves, leaves of instances, the number of primitives.

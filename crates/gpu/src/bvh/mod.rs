@@ -15,7 +15,7 @@ use math::Bounds3;
 use node::Writer;
 
 /// The entries of the stack of `shaders/trace.wgsl`.
-const STACK: usize = 64;
+const STACK: usize = 128;
 
 /// Four words of a buffer.
 pub type Words = [u32; 4];
@@ -100,7 +100,7 @@ impl Bvh {
             let group = world.group_of_instance(id).0 as usize;
             bvh.instances.push([roots[group], id.0, sizes[group].to_bits(), 0]);
         }
-        // One entry for each kind of root.
+        // Other roots and instances wait, too.
         if depth + 2 > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
     }
 }

@@ -36,7 +36,7 @@ pub struct Writer<'a> {
     leaf: u32,
     /// The index of the first primitive.
     first: usize,
-    /// The entries that a ray's stack needs below the root.
+    /// The entries that a ray's stack needs for the root and what is below.
     pub stack: usize,
 }
 
@@ -53,13 +53,14 @@ impl<'a> Writer<'a> {
         Some(reference)
     }
 
-    /// Writes what is below a binary node; its reference, and the entries that a ray's stack needs.
+    /// Writes what is below a binary node; its reference, and the entries that a ray's stack needs
+    /// for it.
     fn write(&mut self, tree: &Binary, index: usize) -> Option<(u32, usize)> {
         let halves = match &tree.node(index).below {
             Below::Primitives(range) => {
                 let (first, count) = (self.first + range.start, range.len());
                 let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
-                return fits.then_some((self.leaf | (first as u32) << COUNT_BITS | count as u32, 0));
+                return fits.then_some((self.leaf | (first as u32) << COUNT_BITS | count as u32, 1));
             }
             Below::Nodes(halves) => halves,
         };
@@ -86,7 +87,8 @@ impl<'a> Writer<'a> {
         }
         let words = quantised(&tree.node(index).bounds, &boxes, references);
         self.nodes[6 * node..].iter_mut().zip(words).for_each(|(place, words)| *place = words);
-        Some((node as u32, children.len() + stack))
+        // The last child is taken from the stack while the others wait.
+        Some((node as u32, children.len() - 1 + stack))
     }
 }
 

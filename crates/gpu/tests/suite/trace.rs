@@ -154,7 +154,7 @@ fn world(meshes: impl IntoIterator<Item = TriangleMesh>) -> World {
 #[test]
 fn random_rays_meet_the_triangles_that_they_meet_on_the_cpu() {
     let Some(device) = crate::device() else { return };
-    for world in [world([ball(60)]), world([soup(5000), ball(10)]), world([soup(3)]), world([])] {
+    for world in [world([ball(300)]), world([soup(5000), ball(10)]), world([soup(3)]), world([])] {
         let found = compare(&device, &world, &random_rays(20_000, 4.0));
         assert!(found.other <= 2 && found.distance < 1e-5, "{found:?}");
     }
