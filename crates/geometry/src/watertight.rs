@@ -109,8 +109,8 @@ impl<'a> Sheared<'a> {
         (t < t_max).then_some((t, uv))
     }
 
-    /// Resolves an uncertain hit in doubles. Most are on the triangle that the ray leaves, behind its
-    /// origin.
+    /// Resolves an uncertain hit in doubles. Most are on the triangle that the ray leaves, behind
+    /// its origin.
     #[cold]
     #[inline(never)]
     pub fn resolve(&self, corners: &[Vec3; 3]) -> Option<(f32, Vec2)> {

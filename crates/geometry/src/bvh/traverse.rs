@@ -40,8 +40,8 @@ pub(crate) trait PacketLeaves {
     /// All blocks.
     fn blocks(&self) -> &[Self::Block];
 
-    /// Tests blocks against the rays of the bits in `entering`, each before its end in `t_max`, which
-    /// it lowers: below zero to stop the ray.
+    /// Tests blocks against the rays of the bits in `entering`, each before its end in `t_max`,
+    /// which it lowers: below zero to stop the ray.
     ///
     /// # Safety
     /// As for [`Leaves::test`].
@@ -163,8 +163,8 @@ impl Bvh {
     }
 
     /// Traverses the tree with a packet of rays from one point. Passes `leaves` the blocks that any
-    /// ray may meet before its end. Returns the number of boxes tested. The rays must be finite, and
-    /// their directions must have the same signs.
+    /// ray may meet before its end. Returns the number of boxes tested. The rays must be finite,
+    /// and their directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instruction set.

@@ -4,6 +4,7 @@
 struct SphericalRectangle {
     origin: vec3f,
     axes: array<vec3f, 3>,
+    scales: vec2f,
     x: vec2f,
     y: vec2f,
     z: f32,
@@ -14,8 +15,10 @@ struct SphericalRectangle {
 fn SphericalRectangle_new(p: vec3f, corner: vec3f, side_x: vec3f, side_y: vec3f) -> SphericalRectangle {
     let length_x = Vec3_length(side_x);
     let length_y = Vec3_length(side_y);
-    let axis_x = side_x * (1.0f / length_x);
-    let axis_y = side_y * (1.0f / length_y);
+    let scales_0 = 1.0f / length_x;
+    let scales_1 = 1.0f / length_y;
+    let axis_x = side_x * scales_0;
+    let axis_y = side_y * scales_1;
     let axis_z = Vec3_cross(axis_x, axis_y);
     let d = corner - p;
     let z = Vec3_dot(d, axis_z);
@@ -23,7 +26,7 @@ fn SphericalRectangle_new(p: vec3f, corner: vec3f, side_x: vec3f, side_y: vec3f)
     let axis_z_1 = select(axis_z, -axis_z, is_behind);
     let x = Vec3_dot(d, axis_x);
     let y = Vec3_dot(d, axis_y);
-    var rectangle = SphericalRectangle(p, array<vec3f, 3>(axis_x, axis_y, axis_z_1), vec2f(x, x + length_x), vec2f(y, y + length_y), -abs(z), vec2f(0.0f, 0.0f));
+    var rectangle = SphericalRectangle(p, array<vec3f, 3>(axis_x, axis_y, axis_z_1), vec2f(scales_0, scales_1), vec2f(x, x + length_x), vec2f(y, y + length_y), -abs(z), vec2f(0.0f, 0.0f));
     rectangle.phi = vec2f(SphericalRectangle_phi_at(rectangle, rectangle.x.x), SphericalRectangle_phi_at(rectangle, rectangle.x.y));
     return rectangle;
 }
@@ -38,7 +41,8 @@ fn SphericalRectangle_pdf(this_: SphericalRectangle) -> f32 {
     return 1.0f / (this_.phi.y - this_.phi.x);
 }
 
-// A point of the rectangle, by its distances from the corner along the sides.
+// A point of the rectangle, by the parts of the sides that lead to it. Divisions are few, as
+// they take most of the time.
 fn SphericalRectangle_sample(this_: SphericalRectangle, u: vec2f) -> vec2f {
     let parts = this_.x;
     let x0 = parts.x;
@@ -47,21 +51,29 @@ fn SphericalRectangle_sample(this_: SphericalRectangle, u: vec2f) -> vec2f {
     let y0 = parts_1.x;
     let y1 = parts_1.y;
     let z = this_.z;
+    let scales = this_.scales;
     let z2 = z * z;
-    let b0 = (-y0) / sqrt((y0 * y0) + z2);
-    let b1 = y1 / sqrt((y1 * y1) + z2);
-    let parts_2 = sin_cos(this_.phi.x + (u.x * (this_.phi.y - this_.phi.x)));
-    let sin_1 = parts_2.v0;
-    let cos_1 = parts_2.v1;
-    let f = ((cos_1 * b0) + b1) / sin_1;
-    let rest = z2 / ((y0 * y0) + z2);
-    let x = real_min(real_max(copysign(-z, f) / sqrt(real_max((f * f) - rest, 1.1754944e-38f)), x0), x1);
+    let parts_2 = inverse_lengths(z2, this_.y);
+    let r0 = parts_2.x;
+    let r1 = parts_2.y;
+    let b0 = -(y0 * r0);
+    let b1 = y1 * r1;
+    let parts_3 = sin_cos(this_.phi.x + (u.x * (this_.phi.y - this_.phi.x)));
+    let sin_1 = parts_3.v0;
+    let cos_1 = parts_3.v1;
+    let f = (cos_1 * b0) + b1;
+    let rest = (z * r0) * sin_1;
+    let root = sqrt(real_max((f * f) - (rest * rest), 1.1754944e-38f));
+    let x = real_min(real_max(((-z) * sin_1) / copysign(root, f), x0), x1);
     let distance2 = (x * x) + z2;
-    let h0 = y0 / sqrt(distance2 + (y0 * y0));
-    let h1 = y1 / sqrt(distance2 + (y1 * y1));
+    let parts_4 = inverse_lengths(distance2, this_.y);
+    let r0_1 = parts_4.x;
+    let r1_1 = parts_4.y;
+    let h0 = y0 * r0_1;
+    let h1 = y1 * r1_1;
     let h = h0 + (u.y * (h1 - h0));
     let y = real_min(real_max(h * sqrt(distance2 / real_max(1.0f - (h * h), 1.1754944e-38f)), y0), y1);
-    return vec2f(x - x0, y - y0);
+    return vec2f(real_min(real_max((x - x0) * scales.x, 0.0f), 1.0f), real_min(real_max((y - y0) * scales.y, 0.0f), 1.0f));
 }
 
 // φ(x), both arctangents as one.
@@ -75,4 +87,14 @@ fn SphericalRectangle_phi_at(this_: SphericalRectangle, x: f32) -> f32 {
     let sin1 = x * y1;
     let cos1 = (-this_.z) * sqrt(square + (y1 * y1));
     return arc_atan2((sin1 * cos0) - (cos1 * sin0), (cos1 * cos0) + (sin1 * sin0));
+}
+
+// 1/√(square + y²) of both y, by one division.
+fn inverse_lengths(square: f32, argument_1: vec2f) -> vec2f {
+    let y0 = argument_1.x;
+    let y1 = argument_1.y;
+    let length0 = sqrt(square + (y0 * y0));
+    let length1 = sqrt(square + (y1 * y1));
+    let inverse = 1.0f / (length0 * length1);
+    return vec2f(length1 * inverse, length0 * inverse);
 }

@@ -49,8 +49,9 @@ fn SampledWavelengths_sample_visible(u: f32) -> SampledWavelengths {
     var lambda = rotations(u);
     var pdf = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
     for (var i = 0u; i < sampled_N; i++) {
-        lambda[i] = sample_visible_wavelength(lambda[i]);
-        pdf[i] = visible_wavelength_pdf(lambda[i]);
+        let tanh = visible_tanh(lambda[i]);
+        lambda[i] = wavelength_of_tanh(tanh);
+        pdf[i] = sampled_VISIBLE_PEAK * (1.0f - (tanh * tanh));
     }
     return SampledWavelengths(lambda, pdf);
 }
@@ -86,17 +87,14 @@ fn rotations(u: f32) -> vec4f {
     return vec4f(select(rotated, rotated - 1.0f, rotated >= 1.0f), select(rotated_1, rotated_1 - 1.0f, rotated_1 >= 1.0f), select(rotated_2, rotated_2 - 1.0f, rotated_2 >= 1.0f), select(rotated_3, rotated_3 - 1.0f, rotated_3 >= 1.0f));
 }
 
-// A wavelength with the density of [`visible_wavelength_pdf`].
-fn sample_visible_wavelength(u: f32) -> f32 {
-    let tanh = 0.85691062f - (u * 1.827502f);
-    let log_1 = ln((1.0f + tanh) / (1.0f - tanh));
-    return real_min(real_max(538.0f - (log_1 * 69.44444f), sampled_LAMBDA_MIN), sampled_LAMBDA_MAX);
+const sampled_VISIBLE_PEAK: f32 = 0.003939804f;
+
+// tanh(0.0072 (538 − λ)) of the wavelength that `u` samples.
+fn visible_tanh(u: f32) -> f32 {
+    return 0.85691062f - (u * 1.827502f);
 }
 
-// p(λ) ∝ sech²(0.0072 (λ − 538)) on the range of wavelengths, per nanometre.
-fn visible_wavelength_pdf(lambda: f32) -> f32 {
-    let inside = (lambda >= sampled_LAMBDA_MIN) & (lambda <= sampled_LAMBDA_MAX);
-    let e = exponential_exp((lambda - 538.0f) * 0.0144f);
-    let pdf = (e * (4.0f * 0.003939804f)) / ((e + 1.0f) * (e + 1.0f));
-    return select(0.0f, pdf, inside);
+fn wavelength_of_tanh(tanh: f32) -> f32 {
+    let log_1 = ln((1.0f + tanh) / (1.0f - tanh));
+    return real_min(real_max(538.0f - (log_1 * 69.44444f), sampled_LAMBDA_MIN), sampled_LAMBDA_MAX);
 }

@@ -9,6 +9,8 @@ fn sample_bilinear(u: vec2f, w: vec4f) -> vec2f {
 
 // Density of [`sample_bilinear`].
 fn bilinear_pdf(p: vec2f, w: vec4f) -> f32 {
-    let pdf_y = linear_pdf(p.y, w.x + w.y, w.z + w.w);
-    return pdf_y * linear_pdf(p.x, lerp(p.y, w.x, w.z), lerp(p.y, w.y, w.w));
+    let inside = (((p.x >= 0.0f) & (p.x <= 1.0f)) & (p.y >= 0.0f)) & (p.y <= 1.0f);
+    let sum = ((w.x + w.y) + w.z) + w.w;
+    let pdf = (4.0f * lerp(p.x, lerp(p.y, w.x, w.z), lerp(p.y, w.y, w.w))) / sum;
+    return select(0.0f, select(pdf, 1.0f, sum <= 0.0f), inside);
 }

@@ -37,7 +37,8 @@ impl<'a> Packed<'a> {
                 id.ok_or_else(|| attributes.invalid_member(name, "this is no number of an attribute"))?;
             ids.insert(name.clone(), id);
         }
-        // The accessors say how much there is, and attributes have at most 16 bytes for each vertex.
+        // The accessors say how much there is, and attributes have at most 16 bytes for each
+        // vertex.
         let bytes = 16 * (vertices as u64) * ids.len() as u64;
         buffers.spend(&place, bytes + 12 * indices as u64)?;
         let limits = DecodeLimits::default()

@@ -109,8 +109,8 @@ impl AreaLights {
         (shape, numbers[12])
     }
 
-    /// The radiance of these rows, of which shapes and scales are given, along `w`, in the lanes of a
-    /// mask; zero elsewhere.
+    /// The radiance of these rows, of which shapes and scales are given, along `w`, in the lanes of
+    /// a mask; zero elsewhere.
     #[inline(always)]
     pub fn radiance<R: Real>(
         &self,

@@ -53,8 +53,8 @@ pub fn powi<R: Real>(x: R, n: i32) -> R {
     if n < 0 { R::one() / power } else { power }
 }
 
-/// 1/√x of a positive normal number with a relative error below 5·10⁻⁶, in a fraction of the time of
-/// root and quotient; any finite numbers elsewhere.
+/// 1/√x of a positive normal number with a relative error below 5·10⁻⁶, in a fraction of the time
+/// of root and quotient; any finite numbers elsewhere.
 #[inline(always)]
 pub fn coarse_inverse_sqrt<R: Real>(x: R) -> R {
     // Half of the exponent, from the bits, and two steps of Newton's method.
