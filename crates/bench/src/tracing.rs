@@ -7,7 +7,7 @@ use crate::mesh::BenchMesh;
 use crate::rays::{Answer, BenchRay, Query, RaySet, ray_sets};
 use crate::table::{Table, ratios};
 use crate::timing::in_turn;
-use geometry::{BuildQuality, Hit, HitColumns, RayColumns, RayStats, World};
+use geometry::{BuildQuality, Hit, HitColumns, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
@@ -134,8 +134,8 @@ pub fn trace_batches(world: &World, set: &RaySet, size: usize) -> Answer {
     let stats = &mut RayStats::default();
     let (mut hits, mut occluded) = (HitColumns::default(), vec![false; size]);
     let all = set.columns.columns();
-    for rows in all.rows.chunks(size) {
-        let rays = RayColumns { rows, ..all };
+    for first in (0..all.len()).step_by(size) {
+        let rays = all.part(first, size);
         match set.query {
             Query::Closest => {
                 world.intersect_batch(rays, &keep_all, &mut hits, stats);

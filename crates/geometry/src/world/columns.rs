@@ -21,7 +21,19 @@ pub struct RayColumns<'a> {
     pub t_max: Option<&'a [f32]>,
 }
 
-impl RayColumns<'_> {
+impl<'a> RayColumns<'a> {
+    /// The rays from a place on, `len` at most.
+    pub fn part(&self, first: usize, len: usize) -> Self {
+        let from = |column: &'a [f32]| &column[first..];
+        Self {
+            len: len.min(self.len - first),
+            o: self.o.map(from),
+            d: self.d.map(from),
+            time: from(self.time),
+            t_max: self.t_max.map(from),
+        }
+    }
+
     /// The number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
