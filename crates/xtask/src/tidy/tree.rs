@@ -21,8 +21,11 @@ const ROOTS: [&str; 12] = [
     "scenes",
 ];
 
+/// The folder of pages that a command makes; they hold pictures, in which any word may occur.
+const PAGES: &str = "docs/gallery/";
+
 /// Files by their paths from the root, with `/` between folders. Those that are not UTF-8 have no
-/// text.
+/// text, nor have pages that a command makes.
 #[derive(Debug, Default)]
 pub struct Tree {
     files: BTreeMap<String, Option<String>>,
@@ -48,7 +51,9 @@ impl Tree {
                 self.add(&entry.path(), &format!("{name}/{}", entry.file_name().to_string_lossy()))?;
             }
         } else {
-            self.files.insert(name.to_owned(), String::from_utf8(fs::read(path)?).ok());
+            let is_made = name.starts_with(PAGES) && name.ends_with(".html");
+            let text = if is_made { None } else { String::from_utf8(fs::read(path)?).ok() };
+            self.files.insert(name.to_owned(), text);
         }
         Ok(())
     }
