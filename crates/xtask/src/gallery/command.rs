@@ -38,11 +38,16 @@ pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn,
     fs::create_dir_all(&folder).map_err(|error| failed(error.to_string()))?;
     let file = folder.join(if *name == "render" { "picture.jpg" } else { "picture.svg" });
     let mut command = Command::new(program);
-    command.current_dir(root).arg(name).args(rest).arg("-o").arg(&file);
-    if *name == "render" {
-        command.arg("--json");
-        if size == Size::Small {
-            command.args(["--resolution", "36x24", "--spp", "1"]);
+    command.current_dir(root).arg(name).arg("-o").arg(&file);
+    match (*name, size) {
+        ("render", Size::Small) => {
+            command.args(without_size(rest)).args(["--resolution", "36x24", "--spp", "1", "--json"]);
+        }
+        ("render", Size::Whole) => {
+            command.args(rest).arg("--json");
+        }
+        _ => {
+            command.args(rest);
         }
     }
     let output = command.output().map_err(|error| failed(error.to_string()))?;
@@ -60,6 +65,19 @@ pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn,
     Ok(Drawn { picture, cost: cost(&json), text: String::new() })
 }
 
+/// The words of a command without those that say how large and how good a picture is.
+fn without_size<'a>(words: &[&'a str]) -> Vec<&'a str> {
+    let mut words = words.iter();
+    let mut kept = Vec::new();
+    while let Some(&word) = words.next() {
+        match word {
+            "--spp" | "--resolution" => drop(words.next()),
+            _ => kept.push(word),
+        }
+    }
+    kept
+}
+
 /// What a render cost in words; not in seconds, so that pages are the same on every machine.
 fn cost(json: &Value) -> String {
     let number = |key: &str| json[key].as_f64().unwrap_or(0.0);
@@ -73,4 +91,15 @@ fn cost(json: &Value) -> String {
          primitives each",
         json["samples_per_pixel"], tests.0, tests.1
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_can_be_made_small() {
+        let words = ["a.pbrt", "--spp", "64", "--integrator", "path", "--resolution", "9x9"];
+        assert_eq!(without_size(&words), ["a.pbrt", "--integrator", "path"]);
+    }
 }
