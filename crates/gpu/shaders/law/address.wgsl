@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/sampler/address.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/sampler/address.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Which coordinate of which sample, in each lane.
 struct Address {

@@ -1,4 +1,5 @@
-// Translated from crates/lanes/src/function/arc.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/lanes/src/function/arc.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 const arc_FRAC_PI_2_REST: f32 = -4.371139e-8f;
 

@@ -1,4 +1,5 @@
-// Translated from crates/lanes/src/function/circular.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/lanes/src/function/circular.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Both [`sin`] and [`cos`].
 fn sin_cos(x: f32) -> Tuple_f32_f32 {

@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/conductor.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/conductor.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A metal of index `eta` + i `k`.
 struct Conductor {

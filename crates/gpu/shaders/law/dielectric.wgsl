@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/dielectric.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/dielectric.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // An interface between dielectrics.
 struct Dielectric {

@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/diffuse.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/diffuse.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Lambertian reflection.
 struct Diffuse {

@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/diffuse_transmission.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/diffuse_transmission.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Lambertian reflection and transmission. Energy is conserved if the sum of both is at most 1.
 struct DiffuseTransmission {

@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/disk.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/disk.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A point of the unit disk: radius √u₀ at the angle 2π·u₁.
 fn sample_uniform_disk_polar(u: vec2f) -> vec2f {

@@ -1,4 +1,5 @@
-// Translated from crates/math/src/error.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/error.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A point with the bound of the absolute error of each of its coordinates.
 struct Point3Error {

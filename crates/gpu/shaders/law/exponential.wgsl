@@ -1,4 +1,5 @@
-// Translated from crates/lanes/src/function/exponential.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/lanes/src/function/exponential.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // eˣ, with an error below 1.1 ulp.
 fn exponential_exp(x: f32) -> f32 {

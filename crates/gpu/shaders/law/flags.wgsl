@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/flags.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/flags.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 const BxdfFlags_NONE: u32 = 0;
 

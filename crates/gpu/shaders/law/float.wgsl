@@ -1,4 +1,5 @@
-// Translated from crates/math/src/float.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/float.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 const float_MACHINE_EPSILON: f32 = 1.1920929e-7f * 0.5f;
 

@@ -1,4 +1,5 @@
-// Translated from crates/math/src/frame.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/frame.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Three orthonormal axes; local +z is the main axis (the normal of a surface, the axis of a beam).
 struct Frame {

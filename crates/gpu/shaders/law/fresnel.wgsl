@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/fresnel.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/fresnel.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The mirror image of `wo` about `n`; both point away from the surface.
 fn fresnel_reflect(wo: vec3f, n: vec3f) -> vec3f {

@@ -1,4 +1,5 @@
-// Translated from crates/lanes/src/function/mod.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/lanes/src/function/mod.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // x·2ⁿ for −252 ≤ n ≤ 254, rounded once.
 fn scale(x: f32, n: u32) -> f32 {

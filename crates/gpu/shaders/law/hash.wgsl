@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/hash.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/hash.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A bijection of 32-bit words under which each input bit changes about half of the output bits:
 // `lowbias32` of [Wellons 2018].

@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/hash_sequence.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/hash_sequence.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A sequence of random numbers for each lane, which depends on some words alone: the images
 // under a hash function of multiples of 2³²/φ, from a hash of the words on.

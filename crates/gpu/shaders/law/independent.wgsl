@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/sampler/independent.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/sampler/independent.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Uniform random numbers, any number of them.
 struct Independent {

@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/interval.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/interval.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A number in [0, 1] with density proportional to `lerp(x, a, b)`, for a, b ≥ 0.
 fn sample_linear(u: f32, a: f32, b: f32) -> f32 {

@@ -1,4 +1,5 @@
-// Translated from crates/lanes/src/function/logarithm.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/lanes/src/function/logarithm.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // ln x, with an error below 0.9 ulp; −∞ for zeros, NaN below.
 fn ln(x: f32) -> f32 {

@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/microfacet.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/microfacet.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The Trowbridge–Reitz distribution of microfacet normals.
 struct TrowbridgeReitz {

@@ -1,4 +1,5 @@
-// Translated from crates/math/src/octahedral.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/octahedral.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The unit direction of a point of [0, 1]².
 fn equal_area_square_to_sphere(p: vec2f) -> vec3f {

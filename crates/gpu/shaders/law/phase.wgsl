@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/phase.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/phase.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The phase function of Henyey and Greenstein.
 struct HenyeyGreenstein {

@@ -1,4 +1,5 @@
-// Translated from crates/math/src/ray.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/ray.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A ray. The direction need not have unit length; t is in lengths of the direction.
 struct Ray {

@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/rectangle.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/rectangle.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A rectangle as seen from a point, for each lane.
 struct SphericalRectangle {

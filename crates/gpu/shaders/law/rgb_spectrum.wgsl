@@ -1,4 +1,5 @@
-// Translated from crates/spectrum/src/rgb_spectrum.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/spectrum/src/rgb_spectrum.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A reflectance or transmittance, in [0, 1], one for each lane.
 struct RgbAlbedoSpectrum {

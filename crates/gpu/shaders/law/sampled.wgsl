@@ -1,4 +1,5 @@
-// Translated from crates/spectrum/src/sampled.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/spectrum/src/sampled.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 const sampled_N: u32 = 4;
 

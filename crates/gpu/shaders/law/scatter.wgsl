@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/scatter.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/scatter.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A sampled direction of scattering, for each lane.
 struct BsdfSample {

@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/sphere.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/sphere.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A direction of the sphere.
 fn sample_uniform_sphere(u: vec2f) -> vec3f {

@@ -1,4 +1,5 @@
-// Translated from crates/math/src/spherical.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/spherical.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The unit vector with the given sine and cosine of θ, and φ in radians.
 fn spherical_direction(sin_theta_1: f32, cos_theta: f32, phi: f32) -> vec3f {

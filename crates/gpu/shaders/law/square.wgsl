@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/square.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/square.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A point of [0, 1]² with density proportional to the bilinear interpolation of weights ≥ 0 at
 // (0,0), (1,0), (0,1), (1,1).

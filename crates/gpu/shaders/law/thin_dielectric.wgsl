@@ -1,4 +1,5 @@
-// Translated from crates/scattering/src/bxdf/thin_dielectric.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/scattering/src/bxdf/thin_dielectric.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Two parallel smooth interfaces as one.
 struct ThinDielectric {

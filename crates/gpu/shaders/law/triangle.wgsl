@@ -1,4 +1,5 @@
-// Translated from crates/sampling/src/warp/triangle.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/sampling/src/warp/triangle.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // Barycentric coordinates, uniform over a triangle.
 fn sample_uniform_triangle(u: vec2f) -> vec3f {

@@ -1,4 +1,5 @@
-// Made by `cargo xtask wgsl`, which translates it again.
+// Made
+// by `cargo xtask wgsl`, which translates it again.
 
 struct Tuple_Facet_bool {
     v0: Facet,

@@ -1,4 +1,5 @@
-// Translated from crates/spectrum/src/uplift.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/spectrum/src/uplift.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // A reflectance made from RGB, one for each lane: a sigmoid of a quadratic polynomial of
 // wavelength.

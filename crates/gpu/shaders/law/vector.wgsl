@@ -1,4 +1,5 @@
-// Translated from crates/math/src/vector.rs by `cargo xtask wgsl`, which translates it again.
+// Translated from crates/math/src/vector.rs
+// by `cargo xtask wgsl`, which translates it again.
 
 // The square of the length.
 fn Vec2_length_squared(this_: vec2f) -> f32 {

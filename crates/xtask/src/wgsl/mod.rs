@@ -156,7 +156,7 @@ pub fn generate(read: impl Fn(&str) -> Result<String, String>) -> Result<BTreeMa
     let mut add = |name: &str, origin: &str, items: Vec<&str>| {
         if !items.is_empty() {
             let text = format!(
-                "// {origin} by `cargo xtask wgsl`, which translates it again.\n\n{}",
+                "// {origin}\n// by `cargo xtask wgsl`, which translates it again.\n\n{}",
                 items.join("\n")
             );
             files.insert(format!("{FOLDER}/{name}.wgsl"), text);
