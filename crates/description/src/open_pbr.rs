@@ -1,6 +1,6 @@
 //! The principled surface: its parameters have the names of OpenPBR Surface.
 
-use crate::{FloatParameter, SpectrumDesc, SpectrumParameter};
+use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
 
 /// A number of [`OpenPbrDesc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,8 @@ pub struct OpenPbrDesc {
     pub numbers: [FloatParameter; Self::NUMBERS.len()],
     /// The values of [`Self::COLORS`], each in [0, 1].
     pub colors: [SpectrumParameter; Self::COLORS.len()],
+    /// The normal map of the coat; without one it is parallel to the surface.
+    pub geometry_coat_normal: Option<Handle<ImageDesc>>,
     /// Whether it is a sheet without an inside.
     pub thin_walled: bool,
     /// Emitted luminance, in cd/m².
@@ -80,6 +82,7 @@ impl Default for OpenPbrDesc {
         Self {
             numbers: Self::NUMBERS.map(|number| number.default.into()),
             colors: Self::COLORS.map(|(_, default)| default.into()),
+            geometry_coat_normal: None,
             thin_walled: false,
             emission_luminance: 0.0,
             emission_color: SpectrumDesc::rgb(1.0, 1.0, 1.0),

@@ -35,6 +35,12 @@ pub(crate) fn materials(
             } else {
                 statement.optional_float_parameter("displacement", displacement.as_ref(), names);
             }
+            if let MaterialKind::OpenPbr(surface) = kind
+                && let Some(image) = surface.geometry_coat_normal
+            {
+                let name = files.image(&desc.images[image].image, ColorEncoding::Linear);
+                statement.text("geometry_coat_normal", &name);
+            }
         }
         text.statement(statement);
     }
@@ -192,7 +198,14 @@ fn layers(to: &mut Statement, layers: &LayersDesc, names: &Names) {
 }
 
 fn openpbr(to: &mut Statement, surface: &OpenPbrDesc, names: &Names) {
-    let OpenPbrDesc { numbers, colors, emission_luminance, emission_color, thin_walled } = surface;
+    let OpenPbrDesc {
+        numbers,
+        colors,
+        emission_luminance,
+        emission_color,
+        geometry_coat_normal: _,
+        thin_walled,
+    } = surface;
     for (value, number) in numbers.iter().zip(OpenPbrDesc::NUMBERS) {
         to.float_parameter(number.name, value, number.default, names);
     }

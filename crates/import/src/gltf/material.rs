@@ -37,7 +37,8 @@ pub(super) struct Clearcoat {
     pub weight: Number,
     /// Its roughness, of which the texture is green.
     pub roughness: Number,
-    pub normals: Option<TextureRef>,
+    /// The normal map of the coat and its scale.
+    pub normals: Option<(TextureRef, f32)>,
 }
 
 /// A medium inside.
@@ -140,6 +141,14 @@ impl Reader<'_, '_> {
         })
     }
 
+    /// A normal map and its scale.
+    fn normals(&self, place: &Place, key: &str) -> Result<Option<(TextureRef, f32)>> {
+        let (Some(texture), Some(info)) = (self.texture(place, key)?, place.get(key)) else {
+            return Ok(None);
+        };
+        Ok(Some((texture, info.number("scale")?.unwrap_or(1.0) as f32)))
+    }
+
     fn color(&self, place: &Place, [factor, texture]: [&str; 2], default: f32, most: f64) -> Result<Color> {
         Ok(Color { factor: place.color(factor, [default; 3], most)?, texture: self.texture(place, texture)? })
     }
@@ -164,10 +173,7 @@ impl Material {
             Some("BLEND") => AlphaMode::Blend,
             Some(mode) => return Err(place.invalid_member("alphaMode", format!("`{mode}` is not a mode"))),
         };
-        let normals = match (reader.texture(place, "normalTexture")?, place.get("normalTexture")) {
-            (Some(texture), Some(info)) => Some((texture, info.number("scale")?.unwrap_or(1.0) as f32)),
-            _ => None,
-        };
+        let normals = reader.normals(place, "normalTexture")?;
         // Its light is traced, but a damaged reference is reported.
         reader.texture(place, "occlusionTexture")?;
         let mut emissive = reader.color(place, ["emissiveFactor", "emissiveTexture"], 0.0, 1.0)?;
@@ -248,6 +254,16 @@ impl Material {
         })
     }
 
+    /// Whether its base or its coat has a normal map.
+    pub fn has_normal_map(&self) -> bool {
+        self.normals.is_some() || self.coat_normals().is_some()
+    }
+
+    /// The normal map of its coat.
+    pub fn coat_normals(&self) -> Option<&(TextureRef, f32)> {
+        self.clearcoat.as_ref()?.normals.as_ref()
+    }
+
     /// Its textures, with how they are decoded.
     pub fn textures(&self) -> Vec<(&TextureRef, Encoding)> {
         use Encoding::{Color, Data};
@@ -259,6 +275,7 @@ impl Material {
         };
         [
             (self.normals.as_ref().map(|(texture, _)| texture), Data),
+            (self.coat_normals().map(|(texture, _)| texture), Data),
             (self.emissive.texture.as_ref(), Color),
             (self.base.texture.as_ref(), Color),
             (self.metallic_roughness.as_ref(), Data),
@@ -305,7 +322,7 @@ fn clearcoat(reader: &Reader, place: &Place) -> Result<Option<Clearcoat>> {
             ["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"],
             0.0,
         )?,
-        normals: reader.texture(&extension, "clearcoatNormalTexture")?,
+        normals: reader.normals(&extension, "clearcoatNormalTexture")?,
     }))
 }
 

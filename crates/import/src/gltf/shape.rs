@@ -52,7 +52,7 @@ impl Look<'_> {
         let mut parts = [const { Vec::new() }; 4];
         for triangle in triangles {
             let corners = (!uvs.is_empty()).then(|| triangle.map(|vertex| uvs[vertex as usize]));
-            let is_mirrored = self.material.normals.is_some() && is_mirrored(primitive, triangle, corners);
+            let is_mirrored = self.material.has_normal_map() && is_mirrored(primitive, triangle, corners);
             let is_dark = match (emitting, corners) {
                 (Some(emitting), Some(corners)) => !emitting.is_met(corners),
                 _ => false,
@@ -95,7 +95,7 @@ impl Look<'_> {
 
     /// The tangents that shading needs besides the directions of increasing u.
     fn tangents(&self, primitive: &Primitive, uvs: &[Point2], angle: f32) -> Vec<Vec3> {
-        let is_used = self.material.normals.is_some() || self.material.anisotropy.is_some();
+        let is_used = self.material.has_normal_map() || self.material.anisotropy.is_some();
         if !is_used || primitive.normals.is_empty() || (angle == 0.0 && primitive.tangents.is_empty()) {
             return Vec::new();
         }

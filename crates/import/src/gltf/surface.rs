@@ -41,7 +41,7 @@ impl Coordinates {
     /// Normal maps and emission are looked up at the coordinates of the mesh; other textures have
     /// mappings from there.
     pub fn of(material: &Material) -> Self {
-        let normals = material.normals.as_ref().map(|(texture, _)| texture);
+        let normals = material.normals.as_ref().or(material.coat_normals()).map(|(texture, _)| texture);
         let emission = if material.is_unlit { &material.base } else { &material.emissive };
         let placed = normals.or(emission.texture.as_ref()).filter(|texture| is_regular(texture));
         if let Some(texture) = placed {
@@ -70,9 +70,9 @@ impl Builder<'_> {
     /// same unless it has a normal map.
     pub fn both(&mut self, material: &Material, colors: Option<Handle<ImageDesc>>) -> [Surface; 2] {
         let surface = self.surface(material, false, colors);
-        let mirrored = match material.normals {
-            Some(_) => Surface { area_light: surface.area_light, ..self.surface(material, true, colors) },
-            None => surface.clone(),
+        let mirrored = match material.has_normal_map() {
+            true => Surface { area_light: surface.area_light, ..self.surface(material, true, colors) },
+            false => surface.clone(),
         };
         [surface, mirrored]
     }
@@ -89,9 +89,9 @@ impl Builder<'_> {
         let mut part = Part { builder: self, material, coordinates, colors };
         let alpha = part.alpha();
         let area_light = part.area_light();
-        let (kind, tangent_rotation) = part.kind();
+        let (kind, tangent_rotation) = part.kind(is_mirrored);
         let media = part.media();
-        let normal_map = part.normal_map(is_mirrored);
+        let normal_map = part.normal_map(material.normals.as_ref(), is_mirrored);
         let mut placed = MaterialDesc { name: material.name.clone(), normal_map, ..MaterialDesc::from(kind) };
         if let Some((share, color)) = &material.diffuse_transmission
             && share.factor > 0.0
@@ -227,8 +227,16 @@ impl Part<'_, '_, '_> {
         })
     }
 
-    fn normal_map(&mut self, is_mirrored: bool) -> Option<Handle<ImageDesc>> {
-        let (texture, scale) = self.material.normals.as_ref()?;
+    fn normal_map(
+        &mut self,
+        normals: Option<&(TextureRef, f32)>,
+        is_mirrored: bool,
+    ) -> Option<Handle<ImageDesc>> {
+        let (texture, scale) = normals?;
+        if self.placed(texture) != self.coordinates {
+            let message = "a normal map at other texture coordinates than another one is drawn at the same";
+            self.warn(&texture.pointer, message);
+        }
         let is_color = self.builder.pictures.image(texture, Encoding::Data)?.is_color();
         let edit = match (*scale, is_mirrored) {
             (1.0, false) if is_color => Edit::None,
@@ -304,7 +312,7 @@ impl Part<'_, '_, '_> {
     }
 
     /// The material without what shapes have, and the rotation of its tangents.
-    fn kind(&mut self) -> (MaterialKind, f32) {
+    fn kind(&mut self, is_mirrored: bool) -> (MaterialKind, f32) {
         let material = self.material;
         if material.is_unlit {
             return (MaterialKind::Diffuse { reflectance: 0.0.into() }, 0.0);
@@ -321,7 +329,7 @@ impl Part<'_, '_, '_> {
                 self.specular(&mut surface);
             }
         }
-        self.clearcoat(&mut surface);
+        self.clearcoat(&mut surface, is_mirrored);
         self.sheen(&mut surface);
         self.iridescence(&mut surface);
         self.transmission(&mut surface);
@@ -375,7 +383,7 @@ impl Part<'_, '_, '_> {
             self.warn(&pointer, "directions of anisotropy that vary over a surface are drawn as one");
         }
         let rotation = anisotropy.rotation + direction.unwrap_or(0.0);
-        if rotation.abs() > 1e-3 && material.normals.is_some() {
+        if rotation.abs() > 1e-3 && material.has_normal_map() {
             self.warn(&material.pointer, "anisotropy is not rotated on surfaces with a normal map");
             return 0.0;
         }
@@ -440,7 +448,7 @@ impl Part<'_, '_, '_> {
         surface.number("specular_roughness", roughness);
     }
 
-    fn clearcoat(&mut self, surface: &mut Principled) {
+    fn clearcoat(&mut self, surface: &mut Principled, is_mirrored: bool) {
         let Some(coat) = self.material.clearcoat.clone().filter(|coat| coat.weight.factor > 0.0) else {
             return;
         };
@@ -451,11 +459,7 @@ impl Part<'_, '_, '_> {
         surface.number("coat_ior", 1.5.into());
         // The extension's coat does not darken what is under it.
         surface.number("coat_darkening", 0.0.into());
-        let base = self.material.normals.as_ref().map(|(texture, _)| texture.image);
-        if base != coat.normals.as_ref().map(|texture| texture.image) {
-            let pointer = self.material.pointer.clone();
-            self.warn(&pointer, "a clear coat has the normals of the surface under it");
-        }
+        surface.0.geometry_coat_normal = self.normal_map(coat.normals.as_ref(), is_mirrored);
     }
 
     fn sheen(&mut self, surface: &mut Principled) {

@@ -57,6 +57,13 @@ fn members() -> Vec<Bxdf> {
 
 /// The BxDFs of known values and densities, which those of layers are only in the mean.
 fn exact_members() -> Vec<Bxdf> {
+    let mut members = reciprocal_members();
+    members.extend(crate::openpbr::tilted_members());
+    members
+}
+
+/// Those whose values are symmetric.
+fn reciprocal_members() -> Vec<Bxdf> {
     let mut members = vec![
         diffuse(),
         Diffuse { reflectance: SampledSpectrum::ZERO }.into(),
@@ -278,6 +285,20 @@ fn radiance_and_importance_are_reciprocal() {
                 spectra_close(radiance, importance, 0.05),
                 "{bxdf:?} {wo} {wi}: {radiance:?} {importance:?}"
             );
+        }
+    }
+}
+
+#[test]
+fn values_are_symmetric() {
+    let mut random = Random::new(5);
+    for bxdf in reciprocal_members().into_iter().filter(|bxdf| bxdf.flags().is_non_specular()) {
+        for _ in 0..3000 {
+            let (wo, wi) = (random_direction(&mut random), random_direction(&mut random));
+            if wo.z.abs().min(wi.z.abs()) < 1e-3 {
+                continue;
+            }
+            let radiance = bxdf.f(wo, wi, TransportMode::Radiance);
             let eta = if same_hemisphere(wo, wi) { 1.0 } else { met(&bxdf, wo) };
             let reverse = bxdf.f(wi, wo, TransportMode::Radiance);
             assert!(

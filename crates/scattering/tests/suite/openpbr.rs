@@ -4,7 +4,7 @@ use alhazen_scattering::{
     Bxdf, Dielectric, Directions, OpenPbr, OpenPbrParameters, OpenPbrTable, Scatter, TransportMode,
     TrowbridgeReitz, fr_dielectric,
 };
-use math::{Vec2, spherical_direction};
+use math::{Vec2, Vec3, spherical_direction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
 
@@ -51,6 +51,22 @@ fn thin(parameters: OpenPbrParameters) -> OpenPbrParameters {
     }
 }
 
+/// Under coats with normals of their own.
+pub fn tilted_members() -> Vec<Bxdf<'static>> {
+    let coated = OpenPbrParameters { coat_weight: 0.7, ..tilted(OpenPbrParameters::default()) };
+    vec![
+        surface(OpenPbrParameters { coat_roughness: 0.4, base_metalness: 1.0, ..coated }),
+        surface(coated),
+        surface(tilted(everything())),
+        surface(thin(tilted(everything()))),
+    ]
+}
+
+/// A coat whose normal is turned by about 20°.
+fn tilted(parameters: OpenPbrParameters) -> OpenPbrParameters {
+    OpenPbrParameters { geometry_coat_normal: Vec3::new(0.3, -0.2, 1.0).normalize(), ..parameters }
+}
+
 /// Opaque and transparent surfaces, smooth and rough, with and without layers.
 pub fn members() -> Vec<Bxdf<'static>> {
     let base = OpenPbrParameters::default();
@@ -80,13 +96,18 @@ fn albedo(bxdf: &Bxdf, cosine: f32) -> SampledSpectrum {
 
 /// The same from an azimuth.
 fn albedo_from(bxdf: &Bxdf, cosine: f32, phi: f32) -> SampledSpectrum {
+    albedo_in(bxdf, cosine, phi, TransportMode::Importance)
+}
+
+/// The same of radiance or importance.
+fn albedo_in(bxdf: &Bxdf, cosine: f32, phi: f32, mode: TransportMode) -> SampledSpectrum {
     const COUNT: usize = 4000;
     let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, phi);
     let mut random = Random::new(7);
     let samples = (0..COUNT).map(|i| {
         let u = Vec2::new((i as f32 + random.get_1d()) / COUNT as f32, random.get_1d());
         let uc = ((i * 1471) % COUNT) as f32 / COUNT as f32;
-        let sample = bxdf.sample_f(wo, uc, u, TransportMode::Importance, Directions::All).into_option();
+        let sample = bxdf.sample_f(wo, uc, u, mode, Directions::All).into_option();
         sample.map_or(SampledSpectrum::ZERO, |sample| sample.f * (sample.wi.z.abs() / sample.pdf))
     });
     samples.sum::<SampledSpectrum>() / COUNT as f32
@@ -135,6 +156,46 @@ fn what_absorbs_nothing_loses_nothing() {
             }
         }
     }
+}
+
+/// But for directions that the coat mirrors below the base, and for means of what is left.
+#[test]
+fn tilted_coats_lose_little() {
+    let coated = OpenPbrParameters { coat_weight: 1.0, ..tilted(lossless()) };
+    for base_metalness in [0.0, 1.0] {
+        for coat_roughness in [0.0, 0.3, 0.6] {
+            let bxdf = surface(OpenPbrParameters { base_metalness, coat_roughness, ..coated });
+            for (cosine, least) in [(0.15, 0.75), (0.4, 0.93), (0.7, 0.97), (1.0, 0.97)] {
+                for phi in [0.0, 1.0, 2.5, 4.0] {
+                    let albedo = albedo_in(&bxdf, cosine, phi, TransportMode::Radiance)[0];
+                    let message = format!("{base_metalness} {coat_roughness} {cosine} {phi}: {albedo}");
+                    println!("{message}");
+                    assert!(albedo > least && albedo < 1.03, "{message}");
+                }
+            }
+        }
+    }
+}
+
+/// A smooth coat mirrors a direction about its own normal.
+#[test]
+fn tilted_coats_mirror_about_their_normal() {
+    let parameters = tilted(OpenPbrParameters { coat_weight: 1.0, base_weight: 0.0, ..Default::default() });
+    let (bxdf, normal) = (surface(parameters), parameters.geometry_coat_normal);
+    let wo = spherical_direction(0.6, 0.8, 0.5);
+    let mut mirrored = 0;
+    for i in 0..1000 {
+        let u = Vec2::splat(0.5);
+        let (mode, uc) = (TransportMode::Radiance, (i as f32 + 0.5) / 1000.0);
+        let sample = bxdf.sample_f(wo, uc, u, mode, Directions::All);
+        if sample.valid && sample.flags.is_specular() {
+            let expected = fr_dielectric(wo.dot(normal), 1.6);
+            assert!((sample.wi - (normal * (2.0 * wo.dot(normal)) - wo)).length() < 1e-5);
+            assert!((sample.f[0] * sample.wi.z - expected).abs() < 1e-3 * expected);
+            mirrored += 1;
+        }
+    }
+    assert!(mirrored > 10, "{mirrored}");
 }
 
 /// Facets that are not alike both ways, from directions along, across and between.

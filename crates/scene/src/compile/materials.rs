@@ -2,16 +2,17 @@
 
 use super::Compiler;
 use crate::material::{
-    BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
-    DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
-    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, OpenPbrMaterial, Roughness,
-    SubsurfaceMaterial, ThinDielectricMaterial,
+    BumpMap, Coat, CoatNormals, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
+    ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption,
+    HairMaterial, Material, MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap,
+    OpenPbrMaterial, Roughness, SubsurfaceMaterial, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
 use description::{
-    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc,
-    MaterialKind, OpenPbrDesc, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, ImageDesc, LayersDesc,
+    MaterialDesc, MaterialKind, OpenPbrDesc, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter,
+    SubsurfaceScattering,
 };
 use scattering::inner_reflectance;
 use spectrum::Spectrum;
@@ -79,21 +80,30 @@ impl Compiler<'_> {
     }
 
     fn material(&mut self, desc: &MaterialDesc, origin: &Origin) -> MaterialEntry {
-        let material = self.material_kind(&desc.kind, origin);
-        let normal_map = desc.normal_map.and_then(|handle| {
-            let image = self.desc.images[handle].image.clone();
-            if !image.is_color() {
-                let message = "a normal map needs red, green and blue";
-                self.error("image-channels", message, origin.parameter("normalmap"));
-                return None;
-            }
-            Some(NormalMap { image })
-        });
+        let normal_map = self.normal_map(desc.normal_map, "normalmap", origin);
+        let material = match &desc.kind {
+            MaterialKind::OpenPbr(surface) => self.openpbr(surface, normal_map.clone(), origin),
+            kind => self.material_kind(kind, origin),
+        };
         let displacement = desc.displacement.as_ref().filter(|_| desc.normal_map.is_none());
         let bump_map = displacement.map(|displacement| BumpMap {
             displacement: self.float_texture(displacement, origin.parameter("displacement")),
         });
         MaterialEntry { material, normal_map, bump_map }
+    }
+
+    fn normal_map(
+        &mut self,
+        image: Option<Handle<ImageDesc>>,
+        name: &str,
+        origin: &Origin,
+    ) -> Option<NormalMap> {
+        let image = self.desc.images[image?].image.clone();
+        if !image.is_color() {
+            self.error("image-channels", "a normal map needs red, green and blue", origin.parameter(name));
+            return None;
+        }
+        Some(NormalMap { image })
     }
 
     fn material_kind(&mut self, kind: &MaterialKind, origin: &Origin) -> Material {
@@ -165,12 +175,15 @@ impl Compiler<'_> {
                 let roughness = self.roughness(roughness, "", origin);
                 Material::Subsurface(SubsurfaceMaterial { table, inside, roughness, method: *method })
             }
-            MaterialKind::OpenPbr(desc) => self.openpbr(desc, origin),
+            MaterialKind::OpenPbr(desc) => self.openpbr(desc, None, origin),
             MaterialKind::Measured { table } => Material::Measured(MeasuredMaterial { table: table.clone() }),
         }
     }
 
-    fn openpbr(&mut self, desc: &OpenPbrDesc, origin: &Origin) -> Material {
+    /// A principled surface with a normal map.
+    fn openpbr(&mut self, desc: &OpenPbrDesc, normal_map: Option<NormalMap>, origin: &Origin) -> Material {
+        let coat = self.normal_map(desc.geometry_coat_normal, "geometry_coat_normal", origin);
+        let normals = CoatNormals::new(coat, normal_map);
         let numbers = std::array::from_fn(|i| {
             let (number, span) = (OpenPbrDesc::NUMBERS[i], origin.parameter(OpenPbrDesc::NUMBERS[i].name));
             let texture = self.float_texture(&desc.numbers[i], span);
@@ -188,7 +201,8 @@ impl Compiler<'_> {
         });
         let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
         let textures = self.textures.textures();
-        Material::OpenPbr(Box::new(OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled)))
+        let surface = OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled, normals);
+        Material::OpenPbr(Box::new(surface))
     }
 
     pub(super) fn albedo(

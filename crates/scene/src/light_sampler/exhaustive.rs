@@ -41,9 +41,13 @@ impl ExhaustiveLightSampler {
         Some(Self { clusters, ids, infinite, rows })
     }
 
-    /// Importances so small that their sum is finite, at the position of point lights, too.
+    /// Importances so small that their sum is finite, at the position of point lights, too. As in a
+    /// tree of one light, a single light is chosen without asking whether it matters.
     #[inline(always)]
     fn importance<R: Real>(&self, rows: R::Int, context: &LightSampleContext<R>) -> R {
+        if self.clusters.len() == 1 {
+            return R::one();
+        }
         let cluster = Cluster::<R>::gather(self.clusters.as_flattened(), rows);
         let most = f32::MAX / (2 * self.clusters.len()) as f32;
         cluster.importance(context.p.p, context.ns).min(R::splat(most))

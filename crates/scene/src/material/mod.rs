@@ -6,6 +6,7 @@
 
 mod bump_map;
 mod coat;
+mod coat_normals;
 mod coated_conductor;
 mod coated_diffuse;
 mod conductor;
@@ -24,6 +25,7 @@ mod thin_dielectric;
 pub use crate::id::MaterialId;
 pub use bump_map::BumpMap;
 pub use coat::Coat;
+pub use coat_normals::CoatNormals;
 pub use coated_conductor::CoatedConductorMaterial;
 pub use coated_diffuse::CoatedDiffuseMaterial;
 pub use conductor::{ConductorIndex, ConductorMaterial};

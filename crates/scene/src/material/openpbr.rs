@@ -4,6 +4,7 @@
 //! absorbed by the medium inside, if there is one, and not by the boundary. Dispersive glass has
 //! Cauchy's index of refraction n = A + B/λ² by its Abbe number.
 
+use super::CoatNormals;
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
 use description::OpenPbrDesc;
 use math::sqr;
@@ -28,6 +29,8 @@ pub struct OpenPbrMaterial {
     /// The textures of [`OpenPbrDesc::COLORS`].
     colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
     is_thin: bool,
+    /// Of its coat, if they are others than those of the base.
+    coat_normals: Option<CoatNormals>,
     /// What its layers do with light.
     table: OpenPbrTable,
 }
@@ -39,12 +42,14 @@ fn cauchy(ior: f32, abbe_number: f32, lambda: f32) -> f32 {
 }
 
 impl OpenPbrMaterial {
-    /// Of the textures of its numbers and colours, in the order of the description.
+    /// Of the textures of its numbers and colours, in the order of the description, and the normals
+    /// of its coat, if they are others than those of the base.
     pub fn new(
         textures: &Textures,
         numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
         colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
         is_thin: bool,
+        coat_normals: Option<CoatNormals>,
     ) -> Self {
         let ranges: [[f32; 2]; _] = std::array::from_fn(|i| {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
@@ -61,7 +66,7 @@ impl OpenPbrMaterial {
             parameters
         });
         let table = OpenPbrTable::new(&ends[0], &ends[1]);
-        Self { numbers, constants, varying, colors, is_thin, table }
+        Self { numbers, constants, varying, colors, is_thin, coat_normals, table }
     }
 
     /// The least and the largest index of refraction at all wavelengths.
@@ -115,6 +120,9 @@ impl OpenPbrMaterial {
         }
         let (mut p, transmission) = parameters(&numbers);
         p.geometry_thin_walled = self.is_thin;
+        if let Some(normals) = self.coat_normals.as_ref().filter(|_| p.coat_weight > 0.0) {
+            p.geometry_coat_normal = normals.at(context.uv);
+        }
         // Colours that are not seen are not looked up.
         let [base, specular, transmitted, subsurface, coat, fuzz] = self.colors;
         let color = |id, is_seen| match is_seen {

@@ -2,8 +2,8 @@
 
 use description::{
     Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
-    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, OpenPbrDesc,
-    RoughnessDesc, Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
+    EncodingDesc, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType,
+    OpenPbrDesc, RoughnessDesc, Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
 };
 use scattering::SubsurfaceMethod;
 
@@ -67,7 +67,7 @@ fn material(reader: &mut Reader) -> Option<MaterialDesc> {
     let mut surface = (None, None);
     if !matches!(reader.kind.value.as_str(), "mix" | "interface" | "" | "none") {
         let displacement = reader.optional_float_parameter("displacement");
-        surface = (displacement, reader.image("normalmap", Some(description::EncodingDesc::Linear)));
+        surface = (displacement, reader.image("normalmap", Some(EncodingDesc::Linear)));
     }
     let mut desc = MaterialDesc::from(kind(reader)?);
     (desc.displacement, desc.normal_map) = surface;
@@ -268,6 +268,7 @@ fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
     OpenPbrDesc {
         numbers,
         colors,
+        geometry_coat_normal: reader.image("geometry_coat_normal", Some(EncodingDesc::Linear)),
         thin_walled: reader.boolean("geometry_thin_walled", false),
         emission_luminance,
         emission_color: emission_color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space)),

@@ -238,6 +238,22 @@ fn clear_coats() {
     }
 }
 
+/// A coat has the normals of its own map, and of the mesh without one.
+#[test]
+fn clear_coats_have_their_own_normals() {
+    let file = |coat: serde_json::Value| {
+        let mut material = extended("KHR_materials_clearcoat", coat);
+        material["normalTexture"] = json!({"index": 0});
+        File::quad(material).textured(&[[128, 255, 128, 255]])
+    };
+    let desc = file(json!({"clearcoatFactor": 1})).scene();
+    assert_eq!(surface(&desc).geometry_coat_normal, None);
+    let normals = json!({"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0, "scale": 0.5}});
+    let desc = file(normals).scene();
+    let map = surface(&desc).geometry_coat_normal.expect("a normal map");
+    assert_eq!(desc.images[map].image.rgb(0, 0)[1], 0.75);
+}
+
 #[test]
 fn sheen_becomes_fuzz() {
     let desc = File::quad(extended(

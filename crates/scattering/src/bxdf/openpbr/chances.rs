@@ -149,12 +149,13 @@ impl Chances {
             return pdf + through * cosine;
         }
         let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
-        for (chance, distribution) in [(coat, &surface.stack.coat), (facets, &surface.stack.base)] {
-            if chance > 0.0
-                && let Some(mirror) = Mirror::new(distribution, wo, wi)
-            {
-                pdf += chance * mirror.pdf;
-            }
+        if coat > 0.0 {
+            pdf += coat * surface.pdf_coat(wo, wi);
+        }
+        if facets > 0.0
+            && let Some(mirror) = Mirror::new(&surface.stack.base, wo, wi)
+        {
+            pdf += facets * mirror.pdf;
         }
         pdf + rest * cosine + fuzz * uniform_hemisphere_pdf()
     }

@@ -31,6 +31,7 @@
 
 mod albedo;
 mod chances;
+mod coat;
 mod diffuse;
 mod facets;
 mod film;
@@ -89,6 +90,8 @@ pub struct OpenPbr<'a> {
     scattered: SampledSpectrum,
     forward: f32,
     coat_color: SampledSpectrum,
+    /// Its normal.
+    coat_normal: Vector3,
     /// Factor on opaque bases.
     darkening: SampledSpectrum,
     fuzz_color: SampledSpectrum,
@@ -140,6 +143,7 @@ impl<'a> OpenPbr<'a> {
             scattered: SampledSpectrum::ZERO,
             forward: 0.0,
             coat_color: p.coat_color,
+            coat_normal: p.geometry_coat_normal,
             darkening: SampledSpectrum::ONE,
             fuzz_color: p.fuzz_color,
         };
@@ -298,7 +302,7 @@ impl Scatter for OpenPbr<'_> {
         };
         let above = |w: Vector3, kind| (flip(below, w), BxdfFlags::REFLECTION | kind);
         let facets = match lobe {
-            Lobe::Coat => Some(mirrored(&self.stack.coat, flip(below, wo), u)),
+            Lobe::Coat => Some(self.sample_coat(flip(below, wo), u)),
             Lobe::Facets => Some(mirrored(&self.stack.base, flip(below, wo), u)),
             Lobe::Glass if self.stack.is_thin => Some(self.sample_sheet(wo, u)),
             Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),

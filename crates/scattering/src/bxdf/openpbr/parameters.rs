@@ -1,5 +1,6 @@
 //! The parameters of the model, under their names in the specification.
 
+use math::{Vec3, Vector3};
 use spectrum::SampledSpectrum;
 
 /// What a surface is, at a point and the wavelengths of a path. Weights, colours and roughnesses
@@ -46,6 +47,8 @@ pub struct OpenPbrParameters {
     pub coat_ior: f32,
     /// How far reflections inside the coat darken the base.
     pub coat_darkening: f32,
+    /// Its normal, where that of the base is z: of length 1, and above.
+    pub geometry_coat_normal: Vector3,
     /// Presence of fuzz.
     pub fuzz_weight: f32,
     /// Albedo of its fibres.
@@ -86,6 +89,7 @@ impl Default for OpenPbrParameters {
             coat_roughness_anisotropy: 0.0,
             coat_ior: 1.6,
             coat_darkening: 1.0,
+            geometry_coat_normal: Vec3::Z,
             fuzz_weight: 0.0,
             fuzz_color: SampledSpectrum::ONE,
             fuzz_roughness: 0.5,

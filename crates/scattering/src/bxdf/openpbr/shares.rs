@@ -53,13 +53,13 @@ impl OpenPbr<'_> {
     /// The shares of a direction above or, if it is below, of its opposite.
     #[inline]
     pub(super) fn shares(&self, w: Vector3) -> Shares {
-        let shares = self.bulk_shares(w);
-        if !(self.stack.is_thin && self.glass() > 0.0) {
-            return shares;
+        let mut shares = self.bulk_shares(w);
+        if self.stack.is_thin && self.glass() > 0.0 {
+            let sheet = self.inside(w);
+            let (reflected, refracted, glass_rest) = (sheet.reflected, sheet.refracted, sheet.left());
+            shares = Shares { reflected, refracted, glass_rest, ..shares };
         }
-        let sheet = self.inside(w);
-        let (reflected, refracted, glass_rest) = (sheet.reflected, sheet.refracted, sheet.left());
-        Shares { reflected, refracted, glass_rest, ..shares }
+        self.under_coat(shares, w)
     }
 
     /// The same where glass is no sheet.

@@ -16,7 +16,7 @@
 use super::diffuse::oren_nayar;
 use super::mirror::Mirror;
 use super::{OpenPbr, View, flip};
-use crate::{BsdfSample, BxdfFlags};
+use crate::{BsdfSample, BxdfFlags, TransportMode};
 use math::{Vec2, Vector3, same_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
@@ -44,17 +44,23 @@ impl OpenPbr<'_> {
     }
 
     /// The value of a thin wall for two directions off the horizon.
-    pub(super) fn thin_value(&self, view: &View, wo: Vector3, wi: Vector3) -> SampledSpectrum {
+    pub(super) fn thin_value(
+        &self,
+        view: &View,
+        wo: Vector3,
+        wi: Vector3,
+        mode: TransportMode,
+    ) -> SampledSpectrum {
         let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
         match same_hemisphere(wo, wi) {
-            true => self.reflected(view, wo, wi, &self.weights(1.0)),
+            true => self.reflected(view, wo, wi, mode, &self.weights(1.0)),
             false => self.passed_through(view, wo, turned(wi)),
         }
     }
 
     /// The value for directions on both sides, of which the second is mirrored by the sheet.
     fn passed_through(&self, view: &View, wo: Vector3, wi: Vector3) -> SampledSpectrum {
-        let (o, i, rests) = (&view.shares, &self.shares(wi), &view.rests);
+        let (o, i, rests) = (&view.shares, &self.shares(-turned(wi)), &view.rests);
         let weights = self.weights(1.0);
         let mut f = SampledSpectrum::ZERO;
         if weights.glass > 0.0 {

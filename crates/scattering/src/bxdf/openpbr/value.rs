@@ -6,7 +6,7 @@ use super::fuzz::{self, Scattered};
 use super::mirror::Mirror;
 use super::shares::{Rests, Shares};
 use super::{OpenPbr, View, Weights, flip, is_off_horizon};
-use crate::{BsdfSample, TransportMode, fr_dielectric};
+use crate::{BsdfSample, TransportMode};
 use math::{Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
@@ -49,6 +49,7 @@ impl OpenPbr<'_> {
         view: &View,
         wo: Vector3,
         wi: Vector3,
+        mode: TransportMode,
         weights: &Weights,
     ) -> SampledSpectrum {
         let (o, i, rests) = (&view.shares, &self.shares(wi), &view.rests);
@@ -56,11 +57,8 @@ impl OpenPbr<'_> {
         if self.stack.fuzz_weight > 0.0 {
             f += self.fuzz([o, i], rests, [wo, wi], weights);
         }
-        if self.stack.coat_weight > 0.0
-            && let Some(mirror) = Mirror::new(&self.stack.coat, wo, wi)
-        {
-            let coat = fr_dielectric(mirror.cosine, self.stack.coat_ior) * mirror.f;
-            let coat = coat * o.below_fuzz().min(i.below_fuzz());
+        if self.stack.coat_weight > 0.0 {
+            let coat = self.coat(wo, wi, mode) * o.below_fuzz().min(i.below_fuzz());
             f += SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers);
         }
         let mut base = SampledSpectrum::ZERO;
@@ -144,15 +142,15 @@ impl OpenPbr<'_> {
         mode: TransportMode,
     ) -> SampledSpectrum {
         if self.stack.is_thin {
-            return self.thin_value(view, wo, wi);
+            return self.thin_value(view, wo, wi, mode);
         }
         let glass = self.glass() > 0.0;
         match (same_hemisphere(wo, wi), wo.z > 0.0) {
-            (true, true) => self.reflected(view, wo, wi, &self.weights(1.0)),
+            (true, true) => self.reflected(view, wo, wi, mode, &self.weights(1.0)),
             (true, false) => {
                 let mut f = SampledSpectrum::ZERO;
                 if self.glass() < 1.0 {
-                    f += self.reflected(view, -wo, -wi, &self.weights(-1.0));
+                    f += self.reflected(view, -wo, -wi, mode, &self.weights(-1.0));
                 }
                 if glass { f + self.reflected_inside(view, wo, wi) } else { f }
             }
@@ -173,7 +171,8 @@ impl OpenPbr<'_> {
         let weights = self.weights(wo.z);
         let value = match lobe {
             Lobe::Coat => {
-                let coat = fr_dielectric(cosine, self.stack.coat_ior) * shares.below_fuzz();
+                let [wo, wi] = [wo, sample.wi].map(|w| flip(wo.z < 0.0, w));
+                let coat = self.specular_coat(wo, wi, mode) * shares.below_fuzz();
                 SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers)
             }
             Lobe::Glass if self.stack.is_thin => {
@@ -184,7 +183,11 @@ impl OpenPbr<'_> {
                 let outside = if wo.z > 0.0 { cosine } else { sample.wi.z };
                 let refracted = SampledSpectrum::ONE - self.stack.dielectrics(outside, &self.waves);
                 let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
-                let passed = if wo.z > 0.0 { shares.taken.below_coat } else { self.passed(outside) };
+                let passed = match wo.z > 0.0 {
+                    true => shares.taken.below_coat,
+                    false if self.is_tilted() => self.shares(sample.wi).taken.below_coat,
+                    false => self.passed(outside),
+                };
                 refracted * tint * (passed * self.glass())
             }
             Lobe::Glass if wo.z < 0.0 => self.inner_reflectance(cosine) * self.glass(),

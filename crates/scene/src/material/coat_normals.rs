@@ -1,0 +1,60 @@
+//! The normal of a coat over a surface, each of which has a normal map or follows the mesh.
+
+use super::NormalMap;
+use math::{Frame, Point2, Vec3, Vector3};
+use std::sync::Arc;
+
+/// The normal maps of a coat and of the base below it, which differ.
+#[derive(Clone, Debug)]
+pub struct CoatNormals {
+    coat: Option<NormalMap>,
+    base: Option<NormalMap>,
+}
+
+impl CoatNormals {
+    /// `None` if both have the same normals.
+    pub fn new(coat: Option<NormalMap>, base: Option<NormalMap>) -> Option<Self> {
+        let image = |map: &Option<NormalMap>| map.as_ref().map(|map| Arc::as_ptr(&map.image));
+        (image(&coat) != image(&base)).then_some(Self { coat, base })
+    }
+
+    /// The normal of the coat in the shading frame of the base; that of the base where it would be
+    /// below.
+    pub fn at(&self, uv: Point2) -> Vector3 {
+        let [coat, base] =
+            [&self.coat, &self.base].map(|map| map.as_ref().map_or(Vec3::Z, |map| map.normal(uv)));
+        let normal = Frame::from_z_and_x(base, Vec3::X).to_local(coat);
+        if normal.z > 0.0 { normal } else { Vec3::Z }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Image;
+
+    /// A map of one normal.
+    fn map(normal: Vec3) -> Option<NormalMap> {
+        let pixel = normal.to_array().map(|v| 0.5 * v + 0.5);
+        let image = Image::from_fn(1, 1, ["R", "G", "B"], |_, _| pixel);
+        Some(NormalMap { image: Arc::new(image) })
+    }
+
+    #[test]
+    fn a_coat_without_a_map_keeps_the_normal_of_the_mesh() {
+        let base = Vec3::new(0.3, 0.4, 0.8).normalize();
+        let coat = CoatNormals::new(None, map(base)).unwrap().at(Point2::ZERO);
+        let in_mesh = Frame::from_z_and_x(base, Vec3::X).from_local(coat);
+        assert!((in_mesh - Vec3::Z).length() < 1e-6, "{in_mesh}");
+    }
+
+    #[test]
+    fn a_map_of_the_coat_alone_is_its_normal() {
+        let normal = Vec3::new(-0.2, 0.1, 0.9).normalize();
+        let coat = CoatNormals::new(map(normal), None).unwrap().at(Point2::ZERO);
+        assert!((coat - normal).length() < 1e-6, "{coat}");
+        let both = map(normal);
+        assert!(CoatNormals::new(both.clone(), both).is_none());
+        assert!(CoatNormals::new(None, None).is_none());
+    }
+}
