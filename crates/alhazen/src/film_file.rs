@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use film::{Development, Film, FilmFile, FilmFileError, FilmHeader, FilmWriter, PassSet, ReadLimits};
-use integrators::{Limits, Session, SessionState};
+use integrators::{Limits, Session, SessionState, noise};
 use serde_json::{Value, json};
 
 use crate::{Header, Overrides};
@@ -212,8 +212,26 @@ impl SavedRender {
 
     /// The picture of all parts with its layers.
     pub fn development(&self) -> Development<'_> {
-        let second = self.file.films.iter().find(|(name, _)| name == SECOND).map(|(_, film)| film);
-        self.header.named(Development::of_all(&self.file.picture, second), self.file.header.done.count())
+        let development = Development::of_all(&self.file.picture, self.second());
+        self.header.named(development, self.file.header.done.count())
+    }
+
+    /// The film that alternates with the first one.
+    fn second(&self) -> Option<&Film> {
+        self.file.films.iter().find(|(name, _)| name == SECOND).map(|(_, film)| film)
+    }
+
+    /// The numbers of passes of the first film and of the one that alternates with it.
+    fn counts(&self) -> [u32; 2] {
+        let done = self.file.header.done.count();
+        let on_second = self.parts.iter().fold(0, |sum: u32, part| sum.saturating_add(part.on_second));
+        let on_second = if self.second().is_some() { on_second.min(done) } else { 0 };
+        [done - on_second, on_second]
+    }
+
+    /// The estimated relative standard error of the picture, as [`SessionState::noise`].
+    pub fn noise(&self) -> Option<f64> {
+        noise([&self.file.picture, self.second()?], self.counts())
     }
 
     /// The header of its pictures.
@@ -246,13 +264,12 @@ impl SavedRender {
     /// The film and the rest of the state that a session resumes from; and the films that the
     /// algorithm has filled beside it, with their names.
     pub fn into_state(self) -> (SessionState, Vec<(String, Film)>) {
+        let counts = self.counts();
         let Self { mut file, parts, .. } = self;
         let second = file.films.iter().position(|(name, _)| name == SECOND);
         let second = second.map(|index| file.films.remove(index).1);
-        let on_second = parts.iter().fold(0, |sum: u32, part| sum.saturating_add(part.on_second));
-        let on_second = if second.is_some() { on_second.min(file.header.done.count()) } else { 0 };
         let state = SessionState {
-            counts: [file.header.done.count() - on_second, on_second],
+            counts,
             done: file.header.done,
             film: file.picture,
             second,

@@ -91,13 +91,17 @@ impl Job {
         self.session.run(passes, &Limits::default(), control, &mut |_| ())
     }
 
-    /// Begins again with an empty film.
-    pub fn restart(&mut self) -> Result<(), ImageError> {
+    /// Begins again with an empty film, or with two between which passes alternate.
+    pub fn restart(&mut self, alternates: bool) -> Result<(), ImageError> {
         let mut film = self.session.state().film.blank()?;
         if self.session.integrator().splats() {
             film.reserve_splats()?;
         }
-        self.session.resume(SessionState::new(film), Vec::new());
+        let mut state = SessionState::new(film);
+        if alternates {
+            state.alternate()?;
+        }
+        self.session.resume(state, Vec::new());
         Ok(())
     }
 

@@ -154,12 +154,19 @@ impl SessionState {
         std::iter::once(&self.film).chain(&self.second)
     }
 
+    /// Lets further passes alternate between two films, from which noise is estimated; refused
+    /// where there is no memory for the second.
+    pub fn alternate(&mut self) -> Result<(), ImageError> {
+        if self.second.is_none() {
+            self.second = Some(self.film.blank()?);
+        }
+        Ok(())
+    }
+
     /// The estimated relative standard error of the picture; `None` where passes do not alternate,
     /// or too few are done.
     pub fn noise(&self) -> Option<f64> {
-        let [a, b] = self.counts;
-        let second = self.second.as_ref().filter(|_| a.min(b) >= FIRST_ESTIMATE / 2)?;
-        Some(noise([&self.film, second], self.counts))
+        noise([&self.film, self.second.as_ref()?], self.counts)
     }
 }
 
@@ -214,8 +221,8 @@ impl Session {
         clock.control.check()?;
         self.planned = self.state.done.union(&passes.clone().into());
         self.limits = *limits;
-        if limits.noise.is_some() && self.state.second.is_none() {
-            self.state.second = Some(self.state.film.blank()?);
+        if limits.noise.is_some() {
+            self.state.alternate()?;
         }
         if !self.is_prepared {
             self.integrator.prepare(&self.scene, &self.view, clock.control)?;
@@ -373,8 +380,12 @@ fn is_estimated_after(passes: u32) -> bool {
     passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
-/// The noise of the weighted mean of two films' independent pictures. `counts` are their passes.
-fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
+/// The noise of the weighted mean of two films' independent pictures. `counts` are their passes;
+/// `None` if they are too few.
+pub fn noise(films: [&Film; 2], counts: [u32; 2]) -> Option<f64> {
+    if counts.into_iter().min() < Some(FIRST_ESTIMATE / 2) {
+        return None;
+    }
     let [a, b] = counts.map(f64::from);
     let [share_a, share_b] = [a / (a + b), b / (a + b)];
     let mean_of = |[a, b]: [f64; 2]| share_a * a + share_b * b;
@@ -385,7 +396,7 @@ fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
         // Avoids 0/0 where the whole picture is black.
         if variance == 0.0 { 0.0 } else { variance / (mean_of([a, b]).powi(2) + floor) }
     };
-    mean_over(films, relative_variance).sqrt()
+    Some(mean_over(films, relative_variance).sqrt())
 }
 
 /// The mean of a function of the values of two films' pictures, over pixels and channels. The

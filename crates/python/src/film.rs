@@ -95,6 +95,13 @@ impl Film {
         self.saved().missing()
     }
 
+    /// The estimated relative standard error of its picture; None if its passes do not alternate
+    /// between two films, or are too few.
+    #[getter]
+    fn noise(&self, py: Python) -> Option<f64> {
+        py.detach(|| self.saved().noise())
+    }
+
     /// The picture of its passes.
     fn image(&self, py: Python) -> PyResult<Picture> {
         let collected = py.detach(|| Picture::collect(&self.saved().development()));

@@ -173,6 +173,7 @@ impl Job {
         let callbacks = Callbacks { progress, preview };
         let picture = self.with(py, |job| {
             let passes = 0..self.order.passes;
+            job.restart(false).map_err(image_error)?;
             drive(job, passes, &limits, threads, &callbacks, |job| {
                 Picture::collect(&job.header().development(job.session.state()))
             })
@@ -183,13 +184,15 @@ impl Job {
     /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
     /// one whose picture has the same bits as that of render().
     ///
-    /// threads, progress, preview: as those of render().
-    #[pyo3(signature = (index, count, *, threads=None, progress=None, preview=None))]
+    /// alternate: whether its passes alternate between two films, from which the noise of the picture
+    /// is estimated. threads, progress, preview: as those of render().
+    #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
     fn render_shard(
         &self,
         py: Python,
         index: u32,
         count: u32,
+        alternate: bool,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
         preview: Option<Py<PyAny>>,
@@ -206,6 +209,7 @@ impl Job {
         }
         let (limits, callbacks) = (Limits::default(), Callbacks { progress, preview });
         let bytes = self.with(py, |job| {
+            job.restart(alternate).map_err(image_error)?;
             drive(job, passes, &limits, threads, &callbacks, |job| {
                 Ok(order.write(&job.session, job.header(), Vec::new()))
             })
@@ -214,9 +218,12 @@ impl Job {
     }
 
     /// A film of this job without any pass. Only films of the same job merge with it.
-    fn blank_film(&self, py: Python) -> PyResult<Film> {
+    ///
+    /// alternate: as that of render_shard().
+    #[pyo3(signature = (*, alternate=false))]
+    fn blank_film(&self, py: Python, alternate: bool) -> PyResult<Film> {
         let bytes = self.with(py, |job| {
-            job.restart().map_err(image_error)?;
+            job.restart(alternate).map_err(image_error)?;
             self.order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
         })?;
         film_of(py, &bytes)

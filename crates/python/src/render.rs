@@ -78,7 +78,7 @@ fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
     pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))
 }
 
-/// Renders passes of a job from an empty film on a thread of its own, calls back, and gives the
+/// Renders passes of a job, which was restarted, on a thread of its own, calls back, and gives the
 /// result of the rendered job. Python's lock is not held.
 pub fn drive<T: Send>(
     job: &mut Job,
@@ -89,7 +89,6 @@ pub fn drive<T: Send>(
     result: impl FnOnce(&Job) -> Result<T, ImageError> + Send,
 ) -> PyResult<T> {
     let pool = pool(threads.unwrap_or(0))?;
-    job.restart().map_err(image_error)?;
     let cancel = Arc::new(AtomicBool::new(false));
     let control = Control::new(cancel.clone(), system_clock());
     let (sender, receiver) = mpsc::channel();

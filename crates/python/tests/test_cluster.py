@@ -134,6 +134,18 @@ def test_time_ends_a_render(cluster, scene):
     assert 0 < image.metadata["samplesPerPixel"] < 1 << 20
 
 
+def test_noise_ends_a_render_after_the_same_shard(cluster, scene, tmp_path):
+    path = tmp_path / "a.film"
+    arguments = {"spp": 1024, "shards": 128, "noise": 0.03}
+    images = [alhazen.cluster.render(scene, checkpoint=path, **arguments)]
+    film = alhazen.Film.open(path)
+    assert 8 <= film.passes < 1024 and film.passes % 8 == 0 and film.noise <= 0.03
+    images.append(alhazen.cluster.render(scene, **arguments))
+    assert (images[0].pixels == images[1].pixels).all()
+    # The checkpoint is good enough already.
+    assert (alhazen.cluster.render(scene, checkpoint=path, **arguments).pixels == images[0].pixels).all()
+
+
 def test_the_command_line(scene, tmp_path):
     output = tmp_path / "a.exr"
     command = [sys.executable, "-m", "alhazen.cluster", scene, "-o", output, "--threads", "1", "--spp", "4"]

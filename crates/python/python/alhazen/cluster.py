@@ -57,6 +57,7 @@ def render(
     shards: int | None = None,
     threads: int | None = None,
     time: float | None = None,
+    noise: float | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Callable[[Progress], object] | None = None,
     preview: Callable[[Image], object] | None = None,
@@ -69,6 +70,8 @@ def render(
     default the one that runs on this machine, or else a new one. shards: the number of parts that the passes are split
     into, by default 16, or 4 for each worker if that is more. threads: of each worker, by default
     the cores of the smallest machine. time: seconds after which no more shards are waited for.
+    noise: the relative error at which the render ends; its shards are then merged in their order, so
+    that it ends after the same one on any cluster.
     checkpoint: a film file from which the render is continued if it exists, and that is saved every
     minute. progress: called with a Progress after shards. preview: called with an Image now and
     then. All other arguments are those of alhazen.compile().
@@ -85,26 +88,33 @@ def render(
     workers = sum(count // threads for count in cores)
 
     key = hashlib.sha256(archive).hexdigest() + repr(sorted(arguments.items()))
-    task = _Task(ray.put(archive), key, arguments, threads)
+    task = _Task(ray.put(archive), key, arguments, threads, noise is not None)
     passes, blank = _result(task.start(_plan))
     saved = None if checkpoint is None or not Path(checkpoint).exists() else Film.open(checkpoint)
     if saved is not None:
         # It is refused if it is of another render.
         Film.from_bytes(blank).merge(saved)
-    count, done = _shards(saved, passes, shards or max(16, 4 * workers))
+    # The passes of a shard alternate between two films, from which noise is estimated.
+    most = passes if noise is None else max(1, passes // 2)
+    count, done = _shards(saved, passes, min(most, shards or max(16, 4 * workers)))
 
     begin = clock.monotonic()
-    run = _Run(saved, checkpoint, count, len(done), begin, progress, preview)
-    pending = [task.start(_render_shard, index, count) for index in range(1, count + 1) if index not in done]
+    run = _Run(saved, checkpoint, count, len(done), begin, noise, progress, preview)
+    missing = [index for index in range(1, count + 1) if index not in done]
+    indices = {task.start(_render_shard, index, count): index for index in missing}
+    pending, waiting = list(indices), {}
     try:
-        while pending:
+        while pending and not run.ended:
             left = None if time is None else time - (clock.monotonic() - begin)
             if left is not None and left <= 0 and run.done:
                 break
             wait = 0.2 if left is None else min(0.2, max(left, 0.0))
             ready, pending = ray.wait(pending, num_returns=1, timeout=wait)
             for each in ready:
-                run.add(_result(each))
+                waiting[indices[each]] = _result(each)
+            while waiting and not run.ended and (noise is None or missing[0] in waiting):
+                index = next(iter(waiting)) if noise is None else missing.pop(0)
+                run.add(waiting.pop(index))
     finally:
         for each in pending:
             ray.cancel(each, force=True)
@@ -124,21 +134,24 @@ class _Task:
     key: str
     arguments: dict[str, Any]
     threads: int
+    alternates: bool
 
     def start(self, function: Any, *arguments: int) -> ray.ObjectRef:
         options = {"num_cpus": self.threads, "max_retries": RETRIES}
         return function.options(**options).remote(
-            self.archive, self.key, self.arguments, self.threads, *arguments
+            self.archive, self.key, self.arguments, self.threads, self.alternates, *arguments
         )
 
 
 class _Run:
     """The film of a render, and what is told of it."""
 
-    def __init__(self, film, checkpoint, total, done, begin, progress, preview) -> None:
+    def __init__(self, film, checkpoint, total, done, begin, noise, progress, preview) -> None:
         self.film, self.checkpoint, self.total, self.done = film, checkpoint, total, done
         self.begin, self.progress, self.preview = begin, progress, preview
         self.saved_at, self.is_saved = begin, True
+        self.noise = noise
+        self.ended = self.is_quiet()
         self.next_preview = 0.5
 
     def add(self, shard: bytes) -> None:
@@ -148,6 +161,7 @@ class _Run:
             self.film.merge(shard)
         self.done += 1
         self.is_saved = False
+        self.ended = self.is_quiet()
         now = clock.monotonic()
         if now - self.saved_at >= INTERVAL:
             self.save()
@@ -157,6 +171,13 @@ class _Run:
         if self.preview is not None and (seconds >= self.next_preview or self.done == self.total):
             self.preview(self.film.image())
             self.next_preview = seconds + min(seconds, INTERVAL)
+
+    def is_quiet(self) -> bool:
+        """Whether the noise of the film is low enough."""
+        if self.noise is None or self.film is None:
+            return False
+        estimate = self.film.noise
+        return estimate is not None and estimate <= self.noise
 
     def save(self) -> None:
         if self.checkpoint is not None and not self.is_saved:
@@ -196,16 +217,25 @@ def _job(archive: bytes, key: str, arguments: dict[str, Any]) -> Job:
 
 
 @ray.remote
-def _plan(archive: bytes, key: str, arguments: dict[str, Any], threads: int) -> tuple[int, bytes]:
+def _plan(
+    archive: bytes, key: str, arguments: dict[str, Any], threads: int, alternates: bool
+) -> tuple[int, bytes]:
     job = _job(archive, key, arguments)
-    return job.passes, bytes(job.blank_film())
+    return job.passes, bytes(job.blank_film(alternate=alternates))
 
 
 @ray.remote
 def _render_shard(
-    archive: bytes, key: str, arguments: dict[str, Any], threads: int, index: int, count: int
+    archive: bytes,
+    key: str,
+    arguments: dict[str, Any],
+    threads: int,
+    alternates: bool,
+    index: int,
+    count: int,
 ) -> bytes:
-    return bytes(_job(archive, key, arguments).render_shard(index, count, threads=threads))
+    job = _job(archive, key, arguments)
+    return bytes(job.render_shard(index, count, alternate=alternates, threads=threads))
 
 
 def _resolution(text: str) -> tuple[int, int]:
@@ -223,6 +253,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--shards", type=int, metavar="N", help="parts that the passes are split into")
     parser.add_argument("--threads", type=int, metavar="N", help="threads of each worker")
     parser.add_argument("--time", type=float, metavar="SECONDS", help="end after this time")
+    parser.add_argument("--noise", type=float, metavar="ERROR", help="end at this relative error")
     parser.add_argument("--checkpoint", metavar="FILE.film", help="save the film here, and continue from it")
     parser.add_argument("--spp", type=int, metavar="N", help="samples per pixel")
     parser.add_argument("--resolution", type=_resolution, metavar="WxH", help="size of the picture")
@@ -259,6 +290,7 @@ def _main() -> int:
             shards=options.shards,
             threads=options.threads,
             time=options.time,
+            noise=options.noise,
             checkpoint=options.checkpoint,
             progress=show,
             preview=write,
