@@ -28,6 +28,8 @@ pub struct OpenPbrDesc {
     pub numbers: [FloatParameter; Self::NUMBERS.len()],
     /// The values of [`Self::COLORS`], each in [0, 1].
     pub colors: [SpectrumParameter; Self::COLORS.len()],
+    /// Factors on the radius under the surface, each in [0, 1].
+    pub subsurface_radius_scale: SpectrumParameter,
     /// The normal map of the coat; without one it is parallel to the surface.
     pub geometry_coat_normal: Option<Handle<ImageDesc>>,
     /// Whether it is a sheet without an inside.
@@ -40,7 +42,7 @@ pub struct OpenPbrDesc {
 
 impl OpenPbrDesc {
     /// All numbers but the emitted luminance.
-    pub const NUMBERS: [OpenPbrNumber; 23] = [
+    pub const NUMBERS: [OpenPbrNumber; 24] = [
         number("base_weight", 1.0, SHARE),
         number("base_diffuse_roughness", 0.0, SHARE),
         number("base_metalness", 0.0, SHARE),
@@ -53,6 +55,7 @@ impl OpenPbrDesc {
         number("transmission_dispersion_scale", 0.0, SHARE),
         number("transmission_dispersion_abbe_number", 20.0, [1.0, 1000.0]),
         number("subsurface_weight", 0.0, SHARE),
+        number("subsurface_radius", 1.0, POSITIVE),
         number("subsurface_scatter_anisotropy", 0.0, [-1.0, 1.0]),
         number("coat_weight", 0.0, SHARE),
         number("coat_roughness", 0.0, SHARE),
@@ -75,6 +78,15 @@ impl OpenPbrDesc {
         ("coat_color", 1.0),
         ("fuzz_color", 1.0),
     ];
+
+    /// Whether paths may be followed under the surface.
+    pub fn scatters_under(&self) -> bool {
+        let is_zero = |name| {
+            let index = Self::NUMBERS.iter().position(|number| number.name == name);
+            index.is_some_and(|index| self.numbers[index].value() == Some(&0.0))
+        };
+        !(self.thin_walled || is_zero("subsurface_weight") || is_zero("subsurface_radius"))
+    }
 }
 
 impl Default for OpenPbrDesc {
@@ -82,6 +94,7 @@ impl Default for OpenPbrDesc {
         Self {
             numbers: Self::NUMBERS.map(|number| number.default.into()),
             colors: Self::COLORS.map(|(_, default)| default.into()),
+            subsurface_radius_scale: SpectrumDesc::rgb(1.0, 0.5, 0.25).into(),
             geometry_coat_normal: None,
             thin_walled: false,
             emission_luminance: 0.0,

@@ -203,6 +203,7 @@ fn openpbr(to: &mut Statement, surface: &OpenPbrDesc, names: &Names) {
         colors,
         emission_luminance,
         emission_color,
+        subsurface_radius_scale,
         geometry_coat_normal: _,
         thin_walled,
     } = surface;
@@ -211,6 +212,9 @@ fn openpbr(to: &mut Statement, surface: &OpenPbrDesc, names: &Names) {
     }
     for (value, (name, default)) in colors.iter().zip(OpenPbrDesc::COLORS) {
         to.spectrum_parameter(name, value, Some(default), names);
+    }
+    if surface.scatters_under() {
+        to.spectrum_parameter("subsurface_radius_scale", subsurface_radius_scale, None, names);
     }
     to.float("emission_luminance", *emission_luminance, 0.0);
     to.white_or("emission_color", emission_color);

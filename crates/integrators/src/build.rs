@@ -124,7 +124,11 @@ impl Builder<'_> {
     /// Whether a material scatters under its surface.
     fn has_subsurface(&self) -> bool {
         let mut materials = self.desc.materials.iter();
-        materials.any(|(_, material)| matches!(material.kind, MaterialKind::Subsurface { .. }))
+        materials.any(|(_, material)| match &material.kind {
+            MaterialKind::Subsurface { .. } => true,
+            MaterialKind::OpenPbr(surface) => surface.scatters_under(),
+            _ => false,
+        })
     }
 
     /// Warns if there are materials that scatter under their surface, but the algorithm does not
@@ -135,7 +139,7 @@ impl Builder<'_> {
             return;
         }
         let message = format!(
-            "integrator `{}` does not know scattering under surfaces; `subsurface` is drawn as a diffuse surface of its effective albedo under a boundary",
+            "integrator `{}` does not know scattering under surfaces; bodies are drawn as diffuse surfaces of their effective albedo under a boundary",
             integrator.name()
         );
         let warning = Diagnostic::warning("no-subsurface", message, integrator.origin.span);

@@ -20,9 +20,10 @@ mod phase;
 pub use bsdf::Bsdf;
 pub use bssrdf::{Bssrdf, BssrdfTable, Probe};
 pub use bxdf::{
-    BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
-    Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr, OpenPbrParameters,
-    OpenPbrTable, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart, ThinDielectric, inner_reflectance,
+    Body, BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Interior,
+    Layered, Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr,
+    OpenPbrParameters, OpenPbrTable, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart, ThinDielectric,
+    inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};

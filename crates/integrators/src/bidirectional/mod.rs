@@ -23,7 +23,7 @@
 //! same factor σ_t, which cancels except where merging is involved, and weights may be functions of
 //! the vertices alone.
 //!
-//! Camera subpaths go under the surfaces of bodies of material `subsurface`; `under_surface.rs`
+//! Camera subpaths go under the surfaces of bodies; `under_surface.rs`
 //! says what that means for the weights.
 //!
 //! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] builds paths from the

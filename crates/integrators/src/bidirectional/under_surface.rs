@@ -16,9 +16,9 @@
 //! from po to pi, but no path has two ways to be found: the algorithm has one vertex where they
 //! meet.
 
-use scattering::{Directions, Subsurface, fr_dielectric};
+use scattering::{Body, Directions};
 
-use super::Vertex;
+use math::Vector3;
 
 /// The share of the light subpaths that a body takes up which shine into it instead. Most bodies
 /// are not seen from inside.
@@ -35,15 +35,18 @@ pub(super) struct LightWay {
 }
 
 impl LightWay {
-    /// One that `uc` chooses, by the reflectance of a smooth boundary.
-    pub fn choose(body: &Subsurface, vertex: &Vertex, uc: f32) -> Self {
-        let cosine = vertex.wo.dot(vertex.ns());
-        let reflected = fr_dielectric(cosine, body.boundary.eta);
-        if uc < reflected {
-            let directions = Some(Directions::Reflection);
-            return Self { directions, probability: reflected, uc: uc / reflected };
+    /// One that `uc` chooses for light from `wo`, in the local frame.
+    pub fn choose(body: Body, wo: Vector3, uc: f32) -> Self {
+        let stays = body.boundary_probability(wo);
+        let dielectric = matches!(body, Body::Subsurface(_));
+        if uc < stays {
+            let directions = Some(if dielectric { Directions::Reflection } else { Directions::All });
+            return Self { directions, probability: stays, uc: uc / stays };
         }
-        let (passes, uc) = (1.0 - reflected, (uc - reflected) / (1.0 - reflected));
+        let (passes, uc) = (1.0 - stays, (uc - stays) / (1.0 - stays));
+        if !dielectric {
+            return Self { directions: None, probability: passes, uc };
+        }
         if uc < SHINES_IN {
             let directions = Some(Directions::Transmission);
             return Self { directions, probability: passes * SHINES_IN, uc: uc / SHINES_IN };

@@ -1,7 +1,7 @@
 //! Vertices of subpaths.
 
 use math::{Normal3, Point3Error, Ray, Vector3};
-use scattering::{Bsdf, Bxdf, BxdfFlags, Subsurface, TransportMode};
+use scattering::{Body, Bsdf, BxdfFlags, TransportMode};
 use scene::light::LightSampleContext;
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
@@ -104,13 +104,9 @@ impl<'a> Vertex<'a> {
 
     /// The body under its surface, if the subpath comes from outside.
     #[inline]
-    pub fn body(&self) -> Option<&Subsurface<'a>> {
+    pub fn body(&self) -> Option<Body<'_, 'a>> {
         match &self.law {
-            Law::Surface(Bsdf { bxdf: Bxdf::Subsurface(body), frame })
-                if !self.is_exit && self.wo.dot(frame.z) > 0.0 =>
-            {
-                Some(body)
-            }
+            Law::Surface(Bsdf { bxdf, frame }) if !self.is_exit && self.wo.dot(frame.z) > 0.0 => bxdf.body(),
             _ => None,
         }
     }
@@ -122,12 +118,12 @@ impl<'a> Vertex<'a> {
         !self.is_exit && (self.is_connectible() || self.body().is_some())
     }
 
-    /// Whether it has a diffuse lobe and no specular one, or lies in a medium: camera subpaths
-    /// merge no further.
+    /// Whether it has a diffuse lobe, no specular one and no body under it, or lies in a medium:
+    /// camera subpaths merge no further.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
         let flags = self.flags();
-        flags.is_diffuse() && !flags.is_specular()
+        flags.is_diffuse() && !flags.is_specular() && self.body().is_none()
     }
 
     /// The merges at the vertex and before it on the subpath.

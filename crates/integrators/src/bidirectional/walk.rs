@@ -7,13 +7,13 @@
 //! MIS weights ignore it, which costs a little efficiency. A walk to a vertex of a given depth has
 //! no roulette ([`Walk::follow_to`]).
 //!
-//! A camera subpath that is transmitted into a body of material `subsurface` goes on under its
+//! A camera subpath that is transmitted into a body goes on under its
 //! surface (`under_surface.rs`): the next vertex is where it leaves, and has the same
 //! depth.
 
 use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector3};
 use sampling::Sampler;
-use scattering::{BsdfSample, Directions, Subsurface, TransportMode};
+use scattering::{Body, BsdfSample, Directions, TransportMode};
 use scene::camera::CameraRayDifferential;
 use scene::light::LightId;
 use scene::medium::{MediumId, MediumInterface};
@@ -24,7 +24,7 @@ use super::under_surface::LightWay;
 use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex};
 use crate::transport::media::{FlightEnd, Heroes};
 use crate::transport::path_state::pass_through;
-use crate::transport::subsurface::{Exit, under_surface};
+use crate::transport::subsurface::Exit;
 use crate::transport::{Tracer, roulette};
 
 /// A subpath between two vertices.
@@ -242,7 +242,7 @@ impl<'a> Walk<'a> {
                     self.ray = pass_through(&self.ray, surface, t);
                     return None;
                 };
-                under_surface(&mut bsdf);
+                bsdf.bxdf.keep_boundary();
                 bsdf.regularize(self.paths.regularize && self.rough_before);
                 let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
                 self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media)
@@ -307,7 +307,7 @@ impl<'a> Walk<'a> {
 
     /// Leaves a vertex along a direction that it scatters to; `false` if the subpath ends there,
     /// perhaps by Russian roulette.
-    pub fn leave(&mut self, vertex: &Vertex, interaction: &Interaction, tracer: &mut Tracer) -> bool {
+    pub fn leave(&mut self, vertex: &Vertex<'a>, interaction: &Interaction, tracer: &mut Tracer) -> bool {
         self.scatter(vertex, interaction, tracer) && self.survive(tracer.sampler)
     }
 
@@ -341,12 +341,14 @@ impl<'a> Walk<'a> {
     }
 
     /// Leaves a vertex along a direction that it scatters to; `false` if it has none.
-    pub fn scatter(&mut self, vertex: &Vertex, interaction: &Interaction, tracer: &mut Tracer) -> bool {
+    pub fn scatter(&mut self, vertex: &Vertex<'a>, interaction: &Interaction, tracer: &mut Tracer) -> bool {
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let body = vertex.body();
-        let way = match body {
-            Some(body) if self.paths.light_goes_under && vertex.mode == TransportMode::Importance => {
-                LightWay::choose(body, vertex, uc)
+        let way = match (body, &vertex.law) {
+            (Some(body), Law::Surface(bsdf))
+                if self.paths.light_goes_under && vertex.mode == TransportMode::Importance =>
+            {
+                LightWay::choose(body, bsdf.frame.to_local(vertex.wo), uc)
             }
             _ => LightWay { directions: Some(Directions::All), probability: 1.0, uc },
         };
@@ -358,9 +360,11 @@ impl<'a> Walk<'a> {
             return false;
         };
         let scale = sample.f * (vertex.cosine(sample.wi) / (sample.pdf * way.probability));
-        if body.is_some() && vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
+        if vertex.mode == TransportMode::Radiance
+            && let Some(body) = body.filter(|body| body.is_entered_by(&sample))
+        {
             self.scale(scale);
-            return self.go_under(body, Some(&sample), interaction, tracer);
+            return self.go_under(Some(body), Some(&sample), interaction, tracer);
         }
         let cos_theta = vertex.cos_theta(sample.wi);
         let balance = self.paths.balance;
@@ -387,7 +391,7 @@ impl<'a> Walk<'a> {
     /// subpath without. `false` if the subpath ends there.
     fn go_under(
         &mut self,
-        body: Option<&Subsurface>,
+        body: Option<Body<'_, 'a>>,
         sample: Option<&BsdfSample>,
         interaction: &Interaction,
         tracer: &mut Tracer,

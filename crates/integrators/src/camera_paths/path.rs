@@ -4,7 +4,7 @@
 //! the power heuristic (`transport/direct.rs`); from the second vertex on Russian roulette ends
 //! paths of low throughput (`transport/roulette.rs`).
 //!
-//! Paths that enter a body of material `subsurface` go on from another point of its surface
+//! Paths that enter a body go on from another point of its surface
 //! (`transport/subsurface/`).
 //!
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
@@ -20,7 +20,7 @@ use super::PathsFrom;
 use crate::transport::direct::{Connection, DirectLighting, light_context};
 use crate::transport::parts::{DIFFUSE, event_at, event_of};
 use crate::transport::path_state::{PathState, Scattered};
-use crate::transport::subsurface::{Exit, enters, under_surface};
+use crate::transport::subsurface::{Exit, entered};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing.
@@ -105,7 +105,7 @@ impl PathsFrom for Path {
                 return l;
             }
             path.depth += 1;
-            let body = under_surface(&mut bsdf);
+            bsdf.bxdf.keep_boundary();
             bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
@@ -125,7 +125,7 @@ impl PathsFrom for Path {
                 l += found;
             }
             let Some(scattered) = scattered else { return l };
-            let body = body.filter(|_| enters(&surface, &scattered.sample));
+            let body = entered(&bsdf, &surface, &scattered.sample);
             if is_first {
                 path.first = match body {
                     Some(_) => DIFFUSE,
@@ -135,7 +135,7 @@ impl PathsFrom for Path {
             rough_before |= !scattered.sample.flags.is_specular();
             if let Some(body) = body {
                 let entry = (&surface, context);
-                let Some(exit) = path.go_under(tracer, entry, (&body, &scattered), lambda) else {
+                let Some(exit) = path.go_under(tracer, entry, (body, &scattered), lambda) else {
                     return l;
                 };
                 let (left, goes_on) = self.leave_body(tracer, &mut path, &exit, lambda);

@@ -7,7 +7,7 @@
 //! have been sampled (spectral MIS). From the second vertex on Russian roulette ends paths of low
 //! throughput.
 //!
-//! Paths that enter a body of material `subsurface` go on from another point of its surface
+//! Paths that enter a body go on from another point of its surface
 //! (`transport/subsurface/`).
 //!
 //! Emission of media counts along every flight, that of paths of `max_depth` scattering events
@@ -19,7 +19,7 @@ use description::PathDesc;
 use film::FirstEvent;
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, BsdfSample, Bxdf, Directions, Subsurface, TransportMode};
+use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
 use scene::light::{LightId, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
@@ -32,7 +32,7 @@ use crate::transport::media::{FlightEnd, Heroes, Throughput};
 use crate::transport::parts::{DIFFUSE, event_at, event_of};
 use crate::transport::path_state::{Origin, Scattered, pass_through, throughput};
 use crate::transport::roulette;
-use crate::transport::subsurface::{enters, under_surface};
+use crate::transport::subsurface::entered;
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing through media.
@@ -204,7 +204,7 @@ impl VolPath {
         tracer: &mut Tracer,
         path: &mut Path,
         entry: &SurfaceInteraction,
-        (body, sample): (&Subsurface, &BsdfSample),
+        (body, sample): (Body, &BsdfSample),
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let hero = path.heroes.hero;
@@ -291,7 +291,7 @@ impl PathsFrom for VolPath {
             if lambda.secondary_terminated() {
                 path.throughput.keep_first(&mut path.heroes);
             }
-            let body = under_surface(&mut bsdf);
+            bsdf.bxdf.keep_boundary();
             bsdf.regularize(self.settings.regularize && path.rough_before);
             if bsdf.flags().is_non_specular() {
                 l += self.direct(tracer, &path, Vertex::Surface(&surface, &bsdf), lambda);
@@ -300,7 +300,7 @@ impl PathsFrom for VolPath {
                 return l;
             };
             path.throughput.beta *= throughput(&surface, &sample);
-            let body = body.filter(|_| enters(&surface, &sample));
+            let body = entered(&bsdf, &surface, &sample);
             if path.depth == 1 && tracer.takes_parts() {
                 path.first = match body {
                     Some(_) => DIFFUSE,
@@ -309,7 +309,7 @@ impl PathsFrom for VolPath {
             }
             if let Some(body) = body {
                 let (left, goes_on) =
-                    self.under_surface(tracer, &mut path, &surface, (&body, &sample), lambda);
+                    self.under_surface(tracer, &mut path, &surface, (body, &sample), lambda);
                 l += left;
                 if !goes_on {
                     return l;

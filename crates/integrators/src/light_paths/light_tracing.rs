@@ -18,7 +18,7 @@
 //! depth 0, are rendered by one camera ray per pixel, since infinite lights are not vertices of
 //! subpaths.
 //!
-//! Light subpaths go under the surfaces of bodies of material `subsurface`
+//! Light subpaths go under the surfaces of bodies
 //! (`bidirectional/under_surface.rs`). Where they come out of a random walk they are not connected:
 //! a camera ray that meets such a body makes the walk, and those through other bodies that it comes
 //! to directly, and the vertices of the light subpath are connected to the end of each.
@@ -34,7 +34,7 @@ use description::{Diagnostic, LightTracingDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scattering::{Subsurface, SubsurfaceMethod};
+use scattering::Body;
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
@@ -110,7 +110,7 @@ impl Integrator for LightTracing {
             if let Some(camera_ray) = &sample.camera_ray {
                 let walks = Cell::new(0);
                 let is_end = |vertex: &Vertex| {
-                    let walks_on = |body: &Subsurface| body.method == SubsurfaceMethod::RandomWalk;
+                    let walks_on = |body: Body| !body.diffuses();
                     // A body of greater depth is seen by reflection.
                     let is_next = vertex.depth == walks.get() + 1 && vertex.body().is_some_and(walks_on);
                     !(vertex.is_exit || is_next)

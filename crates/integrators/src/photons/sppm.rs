@@ -7,7 +7,7 @@
 //! radius. Before its end the path samples lights like path tracing, by next-event estimation and
 //! by BSDF sampling, weighted by the balance heuristic; at its end by next-event estimation only,
 //! so that no light path counts twice. A surface with a specular lobe besides a diffuse one does
-//! not end the path. Where a path leaves a body of material `subsurface` it ends as at a diffuse
+//! not end the path. Where a path leaves a body it ends as at a diffuse
 //! surface; photons go under surfaces, too.
 //!
 //! Its strength is caustics seen through glass or in a mirror; all pixels share all photons. It is

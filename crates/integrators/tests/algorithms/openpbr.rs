@@ -1,14 +1,17 @@
 //! The principled surface by algorithms from the camera, from the lights and from both.
 
-use alhazen_integrators::build;
+use alhazen_integrators::{Path, build};
 use description::{
     BdptDesc, IntegratorDesc, LightTracingDesc, MaterialKind, OpenPbrDesc, PathDesc, SamplerDesc,
     SamplerKind, SceneDesc, ShapeDesc, SpectrumDesc, TransformDesc,
 };
 use math::{DMat4, DVec3};
+use scene::Interfaces;
 use testkit::welch_test;
 
-use crate::support::{Unbiased, at, compile, diffuse, emission, finished, quad, radiance, sphere, v, walls};
+use crate::support::{
+    Unbiased, at, compile, diffuse, emission, finished, quad, radiance, sphere, v, walls, white_sky,
+};
 
 /// A material of some numbers by name, coloured.
 fn material(numbers: &[(&str, f32)]) -> MaterialKind {
@@ -48,6 +51,42 @@ fn room() -> SceneDesc {
         desc.shapes.push(ShapeDesc { material, ..at(sphere(0.33), v(x, 0.2, -0.6)) });
     }
     desc
+}
+
+/// Light that is followed under a surface returns with the colour that the material has, whatever
+/// its mean free path and the layers over it; with layers as where it leaves at once.
+#[test]
+fn half_spaces_show_their_colour() {
+    let found = |color: f32, numbers: &[(&str, f32)]| {
+        let mut desc = SceneDesc::default();
+        white_sky(&mut desc);
+        let MaterialKind::OpenPbr(mut surface) = material(numbers) else { unreachable!() };
+        let position = OpenPbrDesc::COLORS.iter().position(|(name, _)| *name == "subsurface_color");
+        surface.colors[position.unwrap()] = color.into();
+        let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
+        let material = Some(desc.materials.push(MaterialKind::OpenPbr(surface).into()));
+        desc.shapes.push(ShapeDesc { material, ..plane.into() });
+        let mut path = Path::new(PathDesc { max_depth: 1, ..PathDesc::default() }, Interfaces::Pass);
+        radiance(&mut path, &compile(&desc), v(0.0, 0.0, 1.0), v(0.3, 0.0, -1.0), 40_000)
+    };
+    let bare = [("subsurface_weight", 1.0), ("specular_weight", 0.0)];
+    for (color, radius, g) in [(0.2, 1.0, 0.0), (0.5, 0.1, 0.6), (0.8, 2.0, 0.0), (0.95, 0.5, -0.3)] {
+        let more = [("subsurface_radius", radius), ("subsurface_scatter_anisotropy", g)];
+        let found = found(color, &[&bare[..], &more].concat());
+        let difference = found.mean - f64::from(color);
+        assert!(difference.abs() < 4.0 * found.variance_of_mean().sqrt() + 0.01, "{color}: {found:?}");
+    }
+    let layers = [
+        ("subsurface_weight", 0.7),
+        ("coat_weight", 1.0),
+        ("coat_roughness", 0.3),
+        ("fuzz_weight", 0.3),
+        ("base_metalness", 0.2),
+    ];
+    let at_once = found(0.8, &[&layers[..], &[("subsurface_radius", 0.0)]].concat());
+    let walked = found(0.8, &[&layers[..], &[("subsurface_radius", 0.3)]].concat());
+    let error = (at_once.variance_of_mean() + walked.variance_of_mean()).sqrt();
+    assert!((at_once.mean - walked.mean).abs() < 4.0 * error + 0.01, "{at_once:?} {walked:?}");
 }
 
 /// Uniform directions find too little of what rough glass focuses, so that no ray begins there.

@@ -3,8 +3,8 @@
 use alhazen_integrators::build;
 use description::{
     BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, LightTracingDesc, MaterialKind, MltDesc,
-    PathDesc, PhotonMappingDesc, RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc, ShapeDesc,
-    SppmDesc, SubsurfaceScattering, TransformDesc, VcmDesc,
+    OpenPbrDesc, PathDesc, PhotonMappingDesc, RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
+    ShapeDesc, SppmDesc, SubsurfaceScattering, TransformDesc, VcmDesc,
 };
 use math::{DMat4, DVec3};
 use scattering::SubsurfaceMethod::{self, Diffusion, RandomWalk};
@@ -22,6 +22,27 @@ fn body(method: SubsurfaceMethod, roughness: f32) -> MaterialKind {
     let scattering = SubsurfaceScattering::Coefficients { sigma_a: 0.3.into(), sigma_s: 6.0.into() };
     let roughness = RoughnessDesc::isotropic(roughness);
     MaterialKind::Subsurface { scattering, scale: 1.0, eta: 1.33, g: 0.0, roughness, method }
+}
+
+/// A principled surface with all kinds of lobes, most of which scatters under its surface.
+fn principled() -> MaterialKind {
+    let mut desc = OpenPbrDesc::default();
+    let given = [
+        ("subsurface_weight", 0.8),
+        ("subsurface_radius", 0.15),
+        ("subsurface_scatter_anisotropy", 0.3),
+        ("base_metalness", 0.1),
+        ("specular_roughness", 0.6),
+        ("coat_weight", 0.5),
+        ("coat_roughness", 0.5),
+        ("fuzz_weight", 0.3),
+    ];
+    for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(&mut desc.numbers) {
+        if let Some((_, given)) = given.iter().find(|(name, _)| *name == number.name) {
+            *value = (*given).into();
+        }
+    }
+    MaterialKind::OpenPbr(Box::new(desc))
 }
 
 /// A view of the origin from above.
@@ -44,7 +65,7 @@ fn point(desc: &mut SceneDesc, from: math::Point3, intensity: f32) {
 
 /// A ball and a slab on the floor under a lamp, before and behind lights at points. The boundaries
 /// are rough, as no camera path finds what a smooth one reflects of those.
-fn room(method: SubsurfaceMethod) -> SceneDesc {
+fn room(body: MaterialKind) -> SceneDesc {
     let mut desc = view();
     let area_light = emission(&mut desc, 5.0);
     let lamp = quad(v(-1.0, -0.5, 2.5), v(0.0, 1.0, 0.0), v(2.0, 0.0, 0.0));
@@ -54,7 +75,7 @@ fn room(method: SubsurfaceMethod) -> SceneDesc {
     let material = diffuse(&mut desc, 0.5);
     let floor = quad(v(-3.0, -3.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
     desc.shapes.push(ShapeDesc { material, ..floor.into() });
-    let material = Some(desc.materials.push(body(method, 0.4).into()));
+    let material = Some(desc.materials.push(body.into()));
     desc.shapes.push(ShapeDesc { material, ..at(sphere(0.45), v(-0.5, 0.0, 0.5)) });
     let (low, high) = (v(0.2, 0.0, 0.05), v(0.9, 0.12, 0.9));
     let (x, y, z) = (v(high.x - low.x, 0.0, 0.0), v(0.0, high.y - low.y, 0.0), v(0.0, 0.0, high.z - low.z));
@@ -83,13 +104,13 @@ fn ball(method: SubsurfaceMethod) -> SceneDesc {
 }
 
 /// A floor under a body without thickness: light shines through it from outside to below.
-fn behind(method: SubsurfaceMethod) -> SceneDesc {
+fn behind(body: MaterialKind) -> SceneDesc {
     let mut desc = view();
     point(&mut desc, v(0.3, -0.4, 4.0), 20.0);
     let material = diffuse(&mut desc, 0.5);
     let floor = quad(v(-3.0, -3.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
     desc.shapes.push(ShapeDesc { material, ..floor.into() });
-    let material = Some(desc.materials.push(body(method, 0.4).into()));
+    let material = Some(desc.materials.push(body.into()));
     let roof = quad(v(-1.5, -1.0, 0.9), v(3.0, 0.0, 0.0), v(0.0, 2.0, 0.6));
     desc.shapes.push(ShapeDesc { material, ..roof.into() });
     desc
@@ -165,12 +186,12 @@ fn assert_agreement(desc: &SceneDesc) {
 
 #[test]
 fn algorithms_agree_on_a_ball_and_a_slab() {
-    assert_agreement(&room(Diffusion));
+    assert_agreement(&room(body(Diffusion, 0.4)));
 }
 
 #[test]
 fn algorithms_agree_on_walks_in_a_ball_and_a_slab() {
-    assert_agreement(&room(RandomWalk));
+    assert_agreement(&room(body(RandomWalk, 0.4)));
 }
 
 #[test]
@@ -185,5 +206,15 @@ fn algorithms_agree_on_walks_in_a_smooth_ball() {
 
 #[test]
 fn algorithms_agree_behind_a_surface() {
-    assert_agreement(&behind(Diffusion));
+    assert_agreement(&behind(body(Diffusion, 0.4)));
+}
+
+#[test]
+fn algorithms_agree_on_principled_bodies() {
+    assert_agreement(&room(principled()));
+}
+
+#[test]
+fn algorithms_agree_behind_a_principled_surface() {
+    assert_agreement(&behind(principled()));
 }

@@ -24,7 +24,7 @@ mod table;
 
 pub use table::BssrdfTable;
 
-use crate::{HenyeyGreenstein, NormalizedFresnel};
+use crate::{HenyeyGreenstein, Interior, NormalizedFresnel};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};
 use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;
@@ -79,19 +79,14 @@ impl<'a> Bssrdf<'a> {
         self.table.eta()
     }
 
-    /// The coefficient of extinction.
-    pub fn sigma_t(&self) -> SampledSpectrum {
-        self.sigma_t
-    }
-
-    /// The coefficient of scattering.
-    pub fn sigma_s(&self) -> SampledSpectrum {
-        self.albedo * self.sigma_t
-    }
-
-    /// The phase function of the medium.
-    pub fn phase(&self) -> HenyeyGreenstein {
-        HenyeyGreenstein { g: self.table.g() }
+    /// The medium.
+    pub fn interior(&self) -> Interior {
+        Interior {
+            sigma_s: self.albedo * self.sigma_t,
+            sigma_t: self.sigma_t,
+            phase: HenyeyGreenstein { g: self.table.g() },
+            eta: self.eta(),
+        }
     }
 
     /// The lobe by which light that leaves the body has entered it.

@@ -3,6 +3,7 @@
 //! Every member is [`Scatter`]; the conventions are those at the head of the crate. A new
 //! member needs a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
 
+mod body;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -16,6 +17,7 @@ mod scatter;
 mod subsurface;
 mod thin_dielectric;
 
+pub use body::{Body, Interior};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

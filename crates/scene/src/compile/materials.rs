@@ -200,8 +200,9 @@ impl Compiler<'_> {
             texture
         });
         let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
+        let scale = self.albedo(&desc.subsurface_radius_scale, "subsurface_radius_scale", origin);
         let textures = self.textures.textures();
-        let surface = OpenPbrMaterial::new(textures, numbers, colors, desc.thin_walled, normals);
+        let surface = OpenPbrMaterial::new(textures, numbers, colors, scale, desc.thin_walled, normals);
         Material::OpenPbr(Box::new(surface))
     }
 

@@ -28,6 +28,8 @@ pub struct OpenPbrMaterial {
     varying: Vec<usize>,
     /// The textures of [`OpenPbrDesc::COLORS`].
     colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    /// Factors on the radius under the surface.
+    radius_scale: SpectrumTextureId,
     is_thin: bool,
     /// Of its coat, if they are others than those of the base.
     coat_normals: Option<CoatNormals>,
@@ -42,12 +44,13 @@ fn cauchy(ior: f32, abbe_number: f32, lambda: f32) -> f32 {
 }
 
 impl OpenPbrMaterial {
-    /// Of the textures of its numbers and colours, in the order of the description, and the normals
-    /// of its coat, if they are others than those of the base.
+    /// Of the textures of its numbers and colours, in the order of the description, of the factors
+    /// on its radius, and the normals of its coat, if they are others than those of the base.
     pub fn new(
         textures: &Textures,
         numbers: [FloatTextureId; OpenPbrDesc::NUMBERS.len()],
         colors: [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+        radius_scale: SpectrumTextureId,
         is_thin: bool,
         coat_normals: Option<CoatNormals>,
     ) -> Self {
@@ -60,13 +63,13 @@ impl OpenPbrMaterial {
         let index = if is_thin { ranges[position("specular_ior")] } else { Self::index_range(&ranges) };
         let ends = [0, 1].map(|end| {
             let values = ranges.map(|range| range[end]);
-            let (mut parameters, _) = parameters(&values);
+            let (mut parameters, ..) = parameters(&values);
             parameters.specular_ior = index[end];
             parameters.geometry_thin_walled = is_thin;
             parameters
         });
         let table = OpenPbrTable::new(&ends[0], &ends[1]);
-        Self { numbers, constants, varying, colors, is_thin, coat_normals, table }
+        Self { numbers, constants, varying, colors, radius_scale, is_thin, coat_normals, table }
     }
 
     /// The least and the largest index of refraction at all wavelengths.
@@ -118,7 +121,7 @@ impl OpenPbrMaterial {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
             numbers[i] = textures.float(self.numbers[i], context).clamp(least, most);
         }
-        let (mut p, transmission) = parameters(&numbers);
+        let (mut p, transmission, radius) = parameters(&numbers);
         p.geometry_thin_walled = self.is_thin;
         if let Some(normals) = self.coat_normals.as_ref().filter(|_| p.coat_weight > 0.0) {
             p.geometry_coat_normal = normals.at(context.uv);
@@ -134,6 +137,9 @@ impl OpenPbrMaterial {
         p.transmission_color =
             color(transmitted, p.transmission_weight > 0.0 && (self.is_thin || transmission.depth == 0.0));
         p.subsurface_color = color(subsurface, p.subsurface_weight > 0.0);
+        if p.subsurface_weight > 0.0 && radius > 0.0 && !self.is_thin {
+            p.subsurface_radius = color(self.radius_scale, true) * radius;
+        }
         p.coat_color = color(coat, p.coat_weight > 0.0);
         p.fuzz_color = color(fuzz, p.fuzz_weight > 0.0);
         if transmission.dispersion_scale > 0.0 && p.transmission_weight > 0.0 && !self.is_thin {
@@ -158,9 +164,9 @@ fn position(name: &str) -> usize {
     found.expect("invariant: names are those of the description")
 }
 
-/// The parameters of the BxDF, with colours of their defaults.
+/// The parameters of the BxDF, with colours of their defaults; and the radius under the surface.
 #[inline]
-fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
+fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission, f32) {
     let [
         base_weight,
         base_diffuse_roughness,
@@ -174,6 +180,7 @@ fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
         dispersion_scale,
         abbe_number,
         subsurface_weight,
+        radius,
         subsurface_scatter_anisotropy,
         coat_weight,
         coat_roughness,
@@ -209,7 +216,7 @@ fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission) {
         thin_film_ior,
         ..OpenPbrParameters::default()
     };
-    (parameters, Transmission { depth, dispersion_scale, abbe_number })
+    (parameters, Transmission { depth, dispersion_scale, abbe_number }, radius)
 }
 
 #[cfg(test)]

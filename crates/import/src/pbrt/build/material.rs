@@ -258,16 +258,11 @@ fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
     let emission_luminance = reader.float("emission_luminance", 0.0);
     let emission_color = reader.spectrum("emission_color");
     reader.note("white", "");
-    let unused = [
-        ("subsurface_radius", reader.optional_float_parameter("subsurface_radius").is_some()),
-        ("subsurface_radius_scale", reader.optional_spectrum_parameter("subsurface_radius_scale").is_some()),
-    ];
-    for (name, _) in unused.into_iter().filter(|(_, is_given)| *is_given) {
-        reader.ignored(name, format!("`{name}` has no effect: light leaves where it entered"));
-    }
+    let radius_scale = reader.optional_spectrum_parameter("subsurface_radius_scale");
     OpenPbrDesc {
         numbers,
         colors,
+        subsurface_radius_scale: radius_scale.unwrap_or_else(|| SpectrumDesc::rgb(1.0, 0.5, 0.25).into()),
         geometry_coat_normal: reader.image("geometry_coat_normal", Some(EncodingDesc::Linear)),
         thin_walled: reader.boolean("geometry_thin_walled", false),
         emission_luminance,

@@ -38,7 +38,7 @@ use crate::transport::Tracer;
 use crate::transport::direct::{DirectLighting, MediumVertex, light_context};
 use crate::transport::media::FlightEnd;
 use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
-use crate::transport::subsurface::{enters, under_surface};
+use crate::transport::subsurface::entered;
 
 /// Photons count if the cosine between their normal and that of the gather point is at least this.
 const SAME_SURFACE: f32 = 0.7;
@@ -187,16 +187,16 @@ impl Gather<'_> {
             }
             path.depth += 1;
 
-            let body = under_surface(&mut bsdf);
+            bsdf.bxdf.keep_boundary();
             let point = GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
             let (found, scattered) = self.at_surface(&path, &point, sought, tracer);
             l += found;
             let Some(mut scattered) = scattered else { return l };
             let mut flags = bsdf.flags();
             let mut context = light_context(&surface, flags);
-            if let Some(body) = body.filter(|_| enters(&surface, &scattered.sample)) {
+            if let Some(body) = entered(&bsdf, &surface, &scattered.sample) {
                 let entry = (&surface, context);
-                let Some(exit) = path.go_under(tracer, entry, (&body, &scattered), &lambda) else {
+                let Some(exit) = path.go_under(tracer, entry, (body, &scattered), &lambda) else {
                     return l;
                 };
                 let point = GatherPoint { surface: &exit.surface, bsdf: &exit.bsdf, ..point };

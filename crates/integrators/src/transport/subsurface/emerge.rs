@@ -20,10 +20,10 @@
 
 use math::{Frame, RayDifferential};
 use sampling::warp::sample_cosine_hemisphere;
-use scattering::{Bsdf, Bxdf, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart};
+use scattering::{Body, Bsdf};
 use scattering::{TransportMode, fr_dielectric};
 use scene::{Scene, SurfaceInteraction};
-use spectrum::SampledWavelengths;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 
 use super::Exit;
@@ -41,11 +41,11 @@ impl Tracer<'_> {
         &mut self,
         scene: &'a Scene,
         entry: &SurfaceInteraction,
-        body: &Subsurface,
+        body: Body,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
     ) -> Option<Exit<'a>> {
-        let (bssrdf, s) = (&body.bssrdf, &entry.surface);
+        let s = &entry.surface;
         // Power includes the cosine to the geometric normal; scattering has that to the shading
         // normal.
         let cosine = s.wo.dot(s.shading.n);
@@ -53,39 +53,40 @@ impl Tracer<'_> {
         if !(cosine > 0.0 && cosines.is_finite()) {
             return None;
         }
-        let lobe = Bsdf::new(s.shading.n, s.shading.dpdu, bssrdf.exit());
+        let lobe = Bsdf::new(s.shading.n, s.shading.dpdu, body.exit());
         let entering = lobe.f(s.shading.n, s.wo, TransportMode::Radiance) * (cosines * PI);
-        let (mut surface, value, density) = match body.method {
-            SubsurfaceMethod::Diffusion => {
-                let (mut surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
-                surface.surface.wo = surface.surface.n;
+        let (mut surface, value, density) = match body.profile() {
+            Some(bssrdf) => {
+                let (surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
                 (surface, entering, density)
             }
-            SubsurfaceMethod::RandomWalk => {
+            None => {
+                let inside = body.interior();
                 let u = self.sampler.get_2d();
                 let wi = -Frame::from_z(s.n).from_local(sample_cosine_hemisphere(u));
-                let passes = 1.0 - fr_dielectric(-wi.dot(s.n).abs(), bssrdf.eta());
-                let least = if body.boundary.flags().is_specular() { 0.0 } else { LEAVES_ROUGH };
-                let walked = self.walk(entry, bssrdf, wi, heroes, least)?;
+                let passes = 1.0 - fr_dielectric(-wi.dot(s.n).abs(), inside.eta);
+                let least = if body.is_smooth() { 0.0 } else { LEAVES_ROUGH };
+                let walked = self.walk(entry, &inside, wi, heroes, least)?;
                 let value = walked.value * entering * (passes / walked.probability);
                 (walked.surface, value, walked.density)
             }
         };
+        if body.diffuses() {
+            surface.surface.wo = surface.surface.n;
+        }
         let ray = RayDifferential::from(surface.spawn_ray(surface.surface.wo));
         let mut bsdf = scene.bsdf(self.view, &mut surface, &ray, &mut lambda.clone(), self.sampler)?;
-        let Bxdf::Subsurface(there) = &mut bsdf.bxdf else { return None };
-        let value = match body.method {
-            SubsurfaceMethod::Diffusion => {
-                there.part = SubsurfacePart::Diffused;
-                // Of equal cosines to both normals, so that only that of the way on counts.
-                surface.surface.wo = (surface.surface.n + surface.surface.shading.n).normalize();
-                value * there.bssrdf.profile(surface.p().distance(entry.p()))
-            }
-            SubsurfaceMethod::RandomWalk => {
-                there.part = SubsurfacePart::Leaving;
-                value * (there.boundary.eta * there.boundary.eta)
-            }
-        };
+        let there = bsdf.bxdf.body()?;
+        let value = value
+            * match there.profile() {
+                Some(bssrdf) => bssrdf.profile(surface.p().distance(entry.p())),
+                None => SampledSpectrum::splat(there.eta() * there.eta()),
+            };
+        bsdf.bxdf.keep_leaving(body.diffuses())?;
+        if body.diffuses() {
+            // Of equal cosines to both normals, so that only that of the way on counts.
+            surface.surface.wo = (surface.surface.n + surface.surface.shading.n).normalize();
+        }
         if density[heroes.hero] <= 0.0 || value.is_black() {
             return None;
         }

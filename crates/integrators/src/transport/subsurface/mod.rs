@@ -1,7 +1,7 @@
 //! Paths that go on under the surface of a body, and leave it elsewhere.
 //!
-//! A path from the camera that is transmitted into a body of material `subsurface` goes on from
-//! another point of the same material, which a probe of the diffusion profile ([`probe`]) or a
+//! A path from the camera that enters a [`Body`], a material `subsurface` or an `openpbr` with
+//! scattering under its surface, goes on from another point of the same material, which a probe of the diffusion profile ([`probe`]) or a
 //! random walk ([`walk`]) finds. There light is sampled, and the path leaves, as at a surface that
 //! reflects by the exit lobe; all that happens between counts as one scattering event. A path from
 //! a light goes the same way back ([`emerge`]).
@@ -14,7 +14,7 @@ mod emerge;
 mod probe;
 mod walk;
 
-use scattering::{Bsdf, BsdfSample, Bxdf, Subsurface, SubsurfaceMethod, SubsurfacePart};
+use scattering::{Body, Bsdf, BsdfSample, Bxdf};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -36,46 +36,43 @@ pub(crate) struct Exit<'a> {
     pub density: SampledSpectrum,
 }
 
-/// The body under a surface, of which the BSDF becomes the boundary; `None` if there is none.
-pub(crate) fn under_surface<'a>(bsdf: &mut Bsdf<Bxdf<'a>>) -> Option<Subsurface<'a>> {
-    let Bxdf::Subsurface(body) = &mut bsdf.bxdf else { return None };
-    body.part = SubsurfacePart::Boundary;
-    Some(*body)
-}
-
-/// Whether a path enters a body by a sample of its boundary.
-pub(crate) fn enters(surface: &SurfaceInteraction, sample: &BsdfSample) -> bool {
-    sample.flags.is_transmissive() && surface.surface.wo.dot(surface.surface.shading.n) > 0.0
+/// The body that a path enters by a sample of its boundary, if it does.
+pub(crate) fn entered<'b, 'a>(
+    bsdf: &'b Bsdf<Bxdf<'a>>,
+    surface: &SurfaceInteraction,
+    sample: &BsdfSample,
+) -> Option<Body<'b, 'a>> {
+    let from_outside = surface.surface.wo.dot(surface.surface.shading.n) > 0.0;
+    bsdf.bxdf.body().filter(|body| from_outside && body.is_entered_by(sample))
 }
 
 impl Tracer<'_> {
     /// Samples where a path from the camera leaves a body that it enters at `entry` by `sample` of
     /// its boundary; `None` if it does not.
-    pub(crate) fn exit(
+    pub(crate) fn exit<'a>(
         &mut self,
         entry: &SurfaceInteraction,
-        body: &Subsurface,
+        body: Body<'_, 'a>,
         sample: &BsdfSample,
         heroes: &Heroes,
-    ) -> Option<Exit<'static>> {
-        let bssrdf = &body.bssrdf;
-        let (mut surface, value, density) = match body.method {
-            SubsurfaceMethod::Diffusion => {
+    ) -> Option<Exit<'a>> {
+        let (mut surface, value, density) = match body.profile() {
+            Some(bssrdf) => {
                 let (surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
                 let value = bssrdf.profile(surface.p().distance(entry.p()));
                 (surface, value, density)
             }
-            SubsurfaceMethod::RandomWalk => {
-                let walked = self.walk(entry, bssrdf, sample.wi, heroes, 0.0)?;
+            None => {
+                let walked = self.walk(entry, &body.interior(), sample.wi, heroes, 0.0)?;
                 (walked.surface, walked.value, walked.density)
             }
         };
-        let value = value * (bssrdf.eta() * bssrdf.eta());
+        let value = value * (body.eta() * body.eta());
         if density[heroes.hero] <= 0.0 || value.is_black() {
             return None;
         }
         surface.surface.wo = surface.surface.shading.n;
-        let bsdf = Bsdf::new(surface.surface.shading.n, surface.surface.shading.dpdu, bssrdf.exit().into());
+        let bsdf = Bsdf::new(surface.surface.shading.n, surface.surface.shading.dpdu, body.exit());
         Some(Exit { surface, bsdf, value, density })
     }
 }
@@ -83,13 +80,13 @@ impl Tracer<'_> {
 impl PathState {
     /// Leads the path under the surface of a body, which it enters at a vertex as
     /// [`scatter`](Self::scatter) would leave it; `None` if it ends there.
-    pub(crate) fn go_under(
+    pub(crate) fn go_under<'a>(
         &mut self,
         tracer: &mut Tracer,
         (entry, context): (&SurfaceInteraction, LightSampleContext),
-        (body, scattered): (&Subsurface, &Scattered),
+        (body, scattered): (Body<'_, 'a>, &Scattered),
         lambda: &SampledWavelengths,
-    ) -> Option<Exit<'static>> {
+    ) -> Option<Exit<'a>> {
         let medium = self.medium;
         self.scatter(entry, context, scattered);
         self.medium = medium;
@@ -97,7 +94,7 @@ impl PathState {
         let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
         let exit = tracer.exit(entry, body, &scattered.sample, &heroes)?;
         self.beta *= exit.value / heroes.mean(exit.density);
-        self.eta_scale /= body.boundary.eta * body.boundary.eta;
+        self.eta_scale /= body.eta() * body.eta();
         Some(exit)
     }
 }

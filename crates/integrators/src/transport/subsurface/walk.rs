@@ -10,7 +10,7 @@
 //! inside. Russian roulette ends walks of low throughput, and all after [`MAX_EVENTS`].
 
 use math::{Point3, Ray, Vec2, Vector3};
-use scattering::{Bssrdf, fr_dielectric, reflect};
+use scattering::{Interior, fr_dielectric, reflect};
 use scene::SurfaceInteraction;
 use spectrum::SampledSpectrum;
 
@@ -39,12 +39,12 @@ impl Tracer<'_> {
     pub(super) fn walk(
         &mut self,
         entry: &SurfaceInteraction,
-        bssrdf: &Bssrdf,
+        inside: &Interior,
         wi: Vector3,
         heroes: &Heroes,
         least: f32,
     ) -> Option<Walked> {
-        let (sigma_s, sigma_t, phase) = (bssrdf.sigma_s(), bssrdf.sigma_t(), bssrdf.phase());
+        let Interior { sigma_s, sigma_t, phase, eta } = *inside;
         let (mut value, mut density) = (SampledSpectrum::ONE, SampledSpectrum::ONE);
         let mut ray = entry.spawn_ray(wi);
         let (mut u, mut rng) = self.collisions();
@@ -72,7 +72,7 @@ impl Tracer<'_> {
             value *= passed / passed[heroes.hero];
             density *= passed / passed[heroes.hero];
             let (wo, n) = (-ray.d, surface.surface.n);
-            let reflected = fr_dielectric(-wo.dot(n).abs(), bssrdf.eta());
+            let reflected = fr_dielectric(-wo.dot(n).abs(), eta);
             let stays = reflected.min(1.0 - least);
             if rng.uniform_f32() >= stays {
                 surface.surface.wo = wo;

@@ -22,19 +22,28 @@ pub(super) enum Lobe {
     Rest,
     /// The rest of glass and of thin walls on their other side, by its cosine.
     Through,
+    /// The beginning of a path under the surface.
+    Under,
 }
 
-const LOBES: [Lobe; 6] = [Lobe::Fuzz, Lobe::Coat, Lobe::Facets, Lobe::Glass, Lobe::Rest, Lobe::Through];
+const LOBES: [Lobe; 7] =
+    [Lobe::Fuzz, Lobe::Coat, Lobe::Facets, Lobe::Glass, Lobe::Rest, Lobe::Through, Lobe::Under];
 
 /// Lobes of less than this share are rounding errors, and not sampled.
 const NEGLIGIBLE: f32 = 1e-6;
 
 /// The probabilities of all lobes.
-pub(super) struct Chances([f32; 6]);
+pub(super) struct Chances([f32; 7]);
 
 impl Chances {
     /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
-    pub fn new(surface: &OpenPbr, view: &View, wo: Vector3, directions: Directions) -> Self {
+    pub fn new(
+        surface: &OpenPbr,
+        view: &View,
+        wo: Vector3,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> Self {
         let cosine = wo.z.abs();
         let (shares, rests) = (&view.shares, &view.rests);
         let taken = &shares.taken;
@@ -47,7 +56,7 @@ impl Chances {
         let (mut reflected, mut rest) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
         if weights.diffuse > 0.0 {
             reflected += shares.dielectric * surface.specular_color * weights.diffuse;
-            rest += shares.diffuse_rest * surface.diffuse_albedo() * weights.diffuse;
+            rest += shares.diffuse_rest * surface.diffuse_albedo(&weights) * weights.diffuse;
         }
         if weights.metal > 0.0 {
             reflected += surface.metal(cosine) * (taken.metal * weights.metal);
@@ -88,11 +97,15 @@ impl Chances {
             through += transmitted.average() * (surface.forward * weights.diffuse);
         }
         let coat = weights.layers * taken.coat;
-        let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through];
+        let mut under = 0.0;
+        if weights.under > 0.0 && mode == TransportMode::Radiance {
+            under = (surface.goes_under(shares, wo) * surface.subsurface_color).average();
+        }
+        let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through, under];
         match directions {
             Directions::All => (),
             Directions::Reflection => {
-                chances[5] = 0.0;
+                (chances[5], chances[6]) = (0.0, 0.0);
                 if surface.stack.is_thin {
                     chances[3] = 0.0;
                 }
@@ -135,7 +148,7 @@ impl Chances {
         mode: TransportMode,
         directions: Directions,
     ) -> f32 {
-        let [fuzz, coat, facets, glass, rest, through] = self.0;
+        let [fuzz, coat, facets, glass, rest, through, _] = self.0;
         let mut pdf = 0.0;
         if glass > 0.0 && surface.stack.is_thin {
             if !same_hemisphere(wo, wi) {

@@ -44,6 +44,7 @@ mod shares;
 mod stack;
 mod table;
 mod thin;
+mod under;
 mod value;
 
 pub use parameters::OpenPbrParameters;
@@ -51,14 +52,16 @@ pub use table::OpenPbrTable;
 
 use super::{BsdfSample, Dielectric, Scatter};
 use crate::fresnel::mean_fresnel;
-use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, reflect};
+use crate::{BxdfFlags, Directions, Interior, TransportMode, TrowbridgeReitz, reflect};
 use chances::{Chances, Lobe};
 use math::{Vec2, Vec3, Vector3, lerp, sqr};
-use sampling::warp::{sample_cosine_hemisphere, sample_uniform_hemisphere};
+use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere, sample_uniform_hemisphere};
 use shares::{Rests, Shares};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use stack::Stack;
+use std::f32::consts::FRAC_1_PI;
 use table::Numbers;
+use under::Part;
 
 /// Directions nearer to the horizon scatter nothing.
 const HORIZON: f32 = 1e-6;
@@ -86,6 +89,13 @@ pub struct OpenPbr<'a> {
     diffuse_color: SampledSpectrum,
     /// The share of the diffuse base that has this colour.
     diffuse_weight: f32,
+    /// The diffuse colour without what is scattered under the surface.
+    base_color: SampledSpectrum,
+    subsurface_color: SampledSpectrum,
+    subsurface_weight: f32,
+    /// The medium under the surface.
+    interior: Option<Interior>,
+    part: Part,
     /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
     scattered: SampledSpectrum,
     forward: f32,
@@ -118,6 +128,8 @@ struct Weights {
     layers: f32,
     metal: f32,
     diffuse: f32,
+    /// The share of the diffuse base that paths go under.
+    under: f32,
     glass: f32,
 }
 
@@ -140,6 +152,11 @@ impl<'a> OpenPbr<'a> {
             transmission_color: p.transmission_color,
             diffuse_color: (p.base_color * p.base_weight).lerp(p.subsurface_color, p.subsurface_weight),
             diffuse_weight: 1.0,
+            base_color: p.base_color * p.base_weight,
+            subsurface_color: p.subsurface_color,
+            subsurface_weight: p.subsurface_weight,
+            interior: under::interior(p),
+            part: Part::Whole,
             scattered: SampledSpectrum::ZERO,
             forward: 0.0,
             coat_color: p.coat_color,
@@ -197,9 +214,10 @@ impl<'a> OpenPbr<'a> {
 
     /// What the diffuse base reflects of the light that is left for it.
     #[inline]
-    fn diffuse_albedo(&self) -> SampledSpectrum {
+    fn diffuse_albedo(&self, weights: &Weights) -> SampledSpectrum {
         match self.stack.is_thin {
             true => self.diffuse_color * self.diffuse_weight + self.scattered * (1.0 - self.forward),
+            false if weights.under > 0.0 => self.base_color * (1.0 - weights.under),
             false => self.diffuse_color,
         }
     }
@@ -220,9 +238,10 @@ impl<'a> OpenPbr<'a> {
         let glass = self.glass();
         let diffuse = (1.0 - self.metalness) * (1.0 - self.transmission);
         if z > 0.0 || self.stack.is_thin {
-            return Weights { layers: 1.0, metal: self.metalness, diffuse, glass };
+            let under = self.share_under(z);
+            return Weights { layers: 1.0, metal: self.metalness, diffuse, under, glass };
         }
-        Weights { layers: 1.0 - glass, metal: self.metalness, diffuse, glass: 0.0 }
+        Weights { layers: 1.0 - glass, metal: self.metalness, diffuse, under: 0.0, glass: 0.0 }
     }
 }
 
@@ -248,6 +267,9 @@ fn is_off_horizon(w: Vector3) -> bool {
 
 impl Scatter for OpenPbr<'_> {
     fn flags(&self) -> BxdfFlags {
+        if self.is_lobe() {
+            return BxdfFlags::DIFFUSE_REFLECTION;
+        }
         let kind = |facets: &TrowbridgeReitz| match facets.effectively_smooth() {
             true => BxdfFlags::SPECULAR,
             false => BxdfFlags::GLOSSY,
@@ -268,7 +290,8 @@ impl Scatter for OpenPbr<'_> {
         if self.stack.spreads() {
             flags |= BxdfFlags::GLOSSY;
         }
-        if self.weights(1.0).diffuse > 0.0 || self.stack.fuzz_weight > 0.0 {
+        let weights = self.weights(1.0);
+        if weights.diffuse * (1.0 - weights.under) > 0.0 || self.stack.fuzz_weight > 0.0 {
             flags |= BxdfFlags::DIFFUSE;
         }
         flags
@@ -277,6 +300,9 @@ impl Scatter for OpenPbr<'_> {
     fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
         if !(is_off_horizon(wo) && is_off_horizon(wi)) {
             return SampledSpectrum::ZERO;
+        }
+        if self.is_lobe() {
+            return if wo.z > 0.0 && wi.z > 0.0 { self.lobe(wi) } else { SampledSpectrum::ZERO };
         }
         self.value(&View::new(self, wo), wo, wi, mode)
     }
@@ -292,8 +318,14 @@ impl Scatter for OpenPbr<'_> {
         if !is_off_horizon(wo) {
             return BsdfSample::invalid();
         }
+        if self.is_lobe() {
+            let wi = sample_cosine_hemisphere(u);
+            let pdf = self.pdf(wo, wi, mode, directions);
+            let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, BxdfFlags::DIFFUSE_REFLECTION);
+            return BsdfSample { valid: pdf > 0.0, ..sample };
+        }
         let view = View::new(self, wo);
-        let chances = Chances::new(self, &view, wo, directions);
+        let chances = Chances::new(self, &view, wo, mode, directions);
         let Some((lobe, chance, uc)) = chances.choose(uc) else { return BsdfSample::invalid() };
         let below = wo.z < 0.0;
         let rest = match self.weights(1.0).diffuse > 0.0 {
@@ -306,6 +338,13 @@ impl Scatter for OpenPbr<'_> {
             Lobe::Facets => Some(mirrored(&self.stack.base, flip(below, wo), u)),
             Lobe::Glass if self.stack.is_thin => Some(self.sample_sheet(wo, u)),
             Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),
+            Lobe::Under => {
+                let wi = -sample_cosine_hemisphere(u);
+                let f = self.goes_under(&view.shares, wo) * FRAC_1_PI;
+                let pdf = chance * cosine_hemisphere_pdf(-wi.z);
+                let sample = BsdfSample::new(f, wi, pdf, BxdfFlags::DIFFUSE_TRANSMISSION);
+                return BsdfSample { valid: is_off_horizon(wi), ..sample };
+            }
             Lobe::Fuzz | Lobe::Rest | Lobe::Through => None,
         };
         let (wi, flags, eta) = match facets {
@@ -341,7 +380,12 @@ impl Scatter for OpenPbr<'_> {
         if !(is_off_horizon(wo) && is_off_horizon(wi)) {
             return 0.0;
         }
-        Chances::new(self, &View::new(self, wo), wo, directions).pdf(self, wo, wi, mode, directions)
+        if self.is_lobe() {
+            let is_above = wo.z > 0.0 && wi.z > 0.0 && directions.reflection();
+            return if is_above { cosine_hemisphere_pdf(wi.z) } else { 0.0 };
+        }
+        let chances = Chances::new(self, &View::new(self, wo), wo, mode, directions);
+        chances.pdf(self, wo, wi, mode, directions)
     }
 
     /// The layers pass on what they did before: what is wider loses a little.

@@ -33,7 +33,10 @@ pub struct OpenPbrParameters {
     pub subsurface_weight: f32,
     /// Albedo of that share.
     pub subsurface_color: SampledSpectrum,
-    /// Of light that is scattered in a thin wall, from all reflected, −1, to all transmitted, 1.
+    /// The mean free path there; zero: light leaves where it entered.
+    pub subsurface_radius: SampledSpectrum,
+    /// The mean cosine of scattering there, in (−1, 1); of light that is scattered in a thin wall,
+    /// from all reflected, −1, to all transmitted, 1.
     pub subsurface_scatter_anisotropy: f32,
     /// Presence of the coat.
     pub coat_weight: f32,
@@ -82,6 +85,7 @@ impl Default for OpenPbrParameters {
             transmission_color: SampledSpectrum::ONE,
             subsurface_weight: 0.0,
             subsurface_color: SampledSpectrum::splat(0.8),
+            subsurface_radius: SampledSpectrum::ZERO,
             subsurface_scatter_anisotropy: 0.0,
             coat_weight: 0.0,
             coat_color: SampledSpectrum::ONE,

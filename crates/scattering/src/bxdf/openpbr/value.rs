@@ -6,7 +6,7 @@ use super::fuzz::{self, Scattered};
 use super::mirror::Mirror;
 use super::shares::{Rests, Shares};
 use super::{OpenPbr, View, Weights, flip, is_off_horizon};
-use crate::{BsdfSample, TransportMode};
+use crate::{BsdfSample, Scatter, TransportMode};
 use math::{Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
@@ -107,7 +107,8 @@ impl OpenPbr<'_> {
         weights: &Weights,
     ) -> SampledSpectrum {
         let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
-        let mut diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
+        let color = if weights.under > 0.0 { self.base_color } else { self.diffuse_color };
+        let mut diffuse = oren_nayar(color, self.diffuse_roughness, wo, wi) * (1.0 - weights.under);
         if self.stack.is_thin {
             diffuse = diffuse * self.diffuse_weight + self.scattered(1.0 - self.forward, wo, wi);
         }
@@ -118,6 +119,9 @@ impl OpenPbr<'_> {
     pub(in super::super) fn diffused(&self, wo: Vector3, wi: Vector3) -> SampledSpectrum {
         if !(is_off_horizon(wo) && is_off_horizon(wi)) {
             return SampledSpectrum::ZERO;
+        }
+        if self.is_lobe() {
+            return self.f(wo, wi, TransportMode::Radiance);
         }
         let (below, weights) = (wo.z < 0.0, self.weights(wo.z));
         let directions @ [wo, wi] = [flip(below, wo), flip(below, wi)];
