@@ -6,6 +6,7 @@ mod dist;
 mod gallery;
 mod python;
 mod rgb_table;
+mod scenes;
 mod test;
 mod tidy;
 mod wgsl;
@@ -27,6 +28,8 @@ usage: cargo xtask TASK
              archives of the program, and on Debian a package, into target/dist
   gallery [NAME…]
              the pages of docs/gallery with these in their names, with their pictures
+  scenes [NAME…]
+             large scenes made of formulas, into target/scenes: forest
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate
   wgsl       translate the laws that the GPU engine shares into its shaders";
 
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
         ["gallery", ref names @ ..] => gallery::make(workspace(), names),
+        ["scenes", ref names @ ..] => scenes::run(workspace(), names),
         ["wgsl"] => wgsl::run(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {

@@ -56,7 +56,7 @@ const EDGES: [(&str, &[&str]); 20] = [
     ("cli", &["alhazen"]),
     ("python", &["alhazen"]),
     ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering"]),
-    ("xtask", &["spectrum"]),
+    ("xtask", &["lanes", "math", "sampling", "spectrum"]),
 ];
 
 /// Lines that every crate's manifest has: the workspace's lints, licence and edition.

@@ -1,0 +1,28 @@
+//! Scenes that are too large to be checked in, made of formulas and seeds alone: the same files
+//! everywhere.
+
+mod forest;
+mod mesh;
+mod noise;
+mod tree;
+
+use std::io;
+use std::path::Path;
+
+/// The scenes by name, each with what makes it in a folder.
+const SCENES: [(&str, fn(&Path) -> io::Result<()>); 1] = [("forest", forest::make)];
+
+/// Makes the scenes of these names, or all, in `target/scenes`.
+pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {
+    if let Some(name) = names.iter().find(|name| SCENES.iter().all(|(known, _)| known != *name)) {
+        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
+        return Err(format!("there is no scene `{name}`, but {}", known.join(", ")));
+    }
+    for (name, make) in SCENES.into_iter().filter(|(name, _)| names.is_empty() || names.contains(name)) {
+        let folder = workspace.join("target/scenes").join(name);
+        let made = std::fs::create_dir_all(&folder).and_then(|()| make(&folder));
+        made.map_err(|error| format!("{}: {error}", folder.display()))?;
+        println!("{}", folder.join(format!("{name}.pbrt")).display());
+    }
+    Ok(())
+}
