@@ -79,18 +79,18 @@ pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
 
 /// The files of an archive. Relative paths begin at its root.
 struct Archive {
-    zip: ZipArchive<Cursor<Arc<[u8]>>>,
+    zip: Zip,
     manifest: Manifest,
 }
 
 impl Archive {
     fn open(assets: &dyn AssetSource, path: &Path) -> io::Result<Self> {
-        let zip = ZipArchive::new(Cursor::new(assets.read(path)?.into())).map_err(invalid)?;
+        let zip = open(assets.read(path)?)?;
         let mut archive =
             Self { zip, manifest: Manifest { scene: String::new(), absolute: BTreeMap::new() } };
         archive.manifest = match archive.zip.index_for_name(Manifest::NAME) {
             Some(index) => {
-                let text = archive.entry(index)?;
+                let text = entry(&archive.zip, index)?;
                 let damaged = || io::Error::new(io::ErrorKind::InvalidData, "its alhazen.json is damaged");
                 Manifest::from_json(&text).ok_or_else(damaged)?
             }
@@ -132,24 +132,33 @@ impl Archive {
         self.zip.index_for_name(&name)
     }
 
-    /// The content of an entry, as long as it says it is. That length is at most 64 MiB, or what
-    /// DEFLATE can make of the packed bytes.
-    fn entry(&self, index: usize) -> io::Result<Vec<u8>> {
-        const GREATEST_RATIO: u64 = 1032;
-        const ALWAYS_ALLOWED: u64 = 64 << 20;
-        // A copy shares the bytes.
-        let mut zip = self.zip.clone();
-        let file = zip.by_index(index).map_err(invalid)?;
-        let limit = file.compressed_size().saturating_mul(GREATEST_RATIO).max(ALWAYS_ALLOWED);
-        let size = file.size().min(limit);
-        read_at_most(file, size)
-    }
+}
+
+/// An archive whose copies share its bytes.
+pub(crate) type Zip = ZipArchive<Cursor<Arc<[u8]>>>;
+
+/// Opens an archive.
+pub(crate) fn open(bytes: Vec<u8>) -> io::Result<Zip> {
+    ZipArchive::new(Cursor::new(bytes.into())).map_err(invalid)
+}
+
+/// The content of an entry, as long as it says it is. That length is at most 64 MiB, or what DEFLATE
+/// can make of the packed bytes.
+pub(crate) fn entry(zip: &Zip, index: usize) -> io::Result<Vec<u8>> {
+    const GREATEST_RATIO: u64 = 1032;
+    const ALWAYS_ALLOWED: u64 = 64 << 20;
+    let mut zip = zip.clone();
+    let file = zip.by_index(index).map_err(invalid)?;
+    let limit = file.compressed_size().saturating_mul(GREATEST_RATIO).max(ALWAYS_ALLOWED);
+    let size = file.size().min(limit);
+    read_at_most(file, size)
 }
 
 impl AssetSource for Archive {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let index = self.find(path);
-        self.entry(index.ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "not in the archive"))?)
+        let missing = || io::Error::new(io::ErrorKind::NotFound, "not in the archive");
+        entry(&self.zip, index.ok_or_else(missing)?)
     }
 
     fn exists(&self, path: &Path) -> bool {
@@ -159,7 +168,7 @@ impl AssetSource for Archive {
 
 /// The name of the entry of a relative path: without `.` and `..`, with `/` between names; `None`
 /// if it leaves the archive.
-fn normalized(path: &Path) -> Option<String> {
+pub(crate) fn normalized(path: &Path) -> Option<String> {
     let mut names: Vec<&str> = Vec::new();
     for component in path.components() {
         match component {

@@ -11,13 +11,19 @@ mod gltf;
 mod ies;
 mod images;
 mod imported;
+mod log;
+mod look;
 mod measured;
 mod mesh;
 mod nanovdb;
 mod number;
 mod pbrt;
 mod report;
+mod selection;
 mod suggest;
+#[cfg(feature = "usd")]
+mod usd;
+mod view;
 
 use std::path::Path;
 

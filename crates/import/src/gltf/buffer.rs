@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use super::document::Document;
 use super::json::{Fault, Place, Result};
-use super::log::Log;
 use super::{meshopt, uri};
 use crate::assets::AssetSource;
+use crate::log::Log;
 
 /// The bytes of a file, and what may be made of them.
 pub(super) struct Buffers {

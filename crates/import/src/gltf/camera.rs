@@ -1,9 +1,12 @@
 //! Cameras. A camera of the file looks along −z of its node, with y up.
 
 use description::{CameraDesc, CameraKind, LensDesc, ScreenDesc, TransformDesc};
-use math::{DMat4, DVec3};
+use math::DMat4;
 
-use super::json::{Place, Result};
+use super::json::{Fault, Place, Result};
+use super::scene::Drawn;
+use crate::selection::Selection;
+use crate::view::{View, camera_from_world, resolution};
 
 /// What a camera sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +22,6 @@ pub(super) enum Camera {
         extent: [f64; 2],
     },
 }
-
-/// The size of the picture of a camera, at most.
-const LARGEST: [f64; 2] = [1280.0, 720.0];
 
 impl Camera {
     /// Reads a camera.
@@ -54,21 +54,19 @@ impl Camera {
     /// Width over height of its picture.
     fn aspect(&self) -> f64 {
         match *self {
-            Self::Perspective { aspect, .. } => aspect.unwrap_or(LARGEST[0] / LARGEST[1]),
+            Self::Perspective { aspect, .. } => aspect.unwrap_or(16.0 / 9.0),
             Self::Orthographic { extent: [x, y] } => x / y,
         }
     }
 
-    /// The size of its picture: its aspect ratio, as large as 1280 × 720 pixels hold.
-    pub fn resolution(&self) -> [i32; 2] {
-        let [width, height] = LARGEST;
-        let aspect = self.aspect();
-        let (width, height) = (width.min(height * aspect), height.min(width / aspect));
-        [width, height].map(|side| (side.round() as i32).max(1))
+    /// The camera at a node that may move.
+    fn view(&self, motion: &TransformDesc) -> View {
+        let camera = self.desc([motion.start, motion.end]);
+        View { camera, resolution: resolution(self.aspect()), world_from_camera: motion.start }
     }
 
     /// The camera of a scene, at a node that may move.
-    pub fn desc(&self, world_from_node: [DMat4; 2]) -> CameraDesc {
+    fn desc(&self, world_from_node: [DMat4; 2]) -> CameraDesc {
         let aspect = self.aspect();
         let kind = match *self {
             Self::Perspective { yfov, .. } => {
@@ -93,12 +91,24 @@ impl Camera {
     }
 }
 
-/// From the world to the space of a camera at a node, whose scale does not matter.
-fn camera_from_world(world_from_node: DMat4) -> DMat4 {
-    let back = world_from_node.z_axis.truncate().normalize_or(DVec3::Z);
-    let right = world_from_node.y_axis.truncate().cross(back).normalize_or(DVec3::X);
-    let up = back.cross(right);
-    let eye = world_from_node.w_axis.truncate();
-    let columns = [right, up, -back].map(|axis| axis.extend(0.0));
-    DMat4::from_cols(columns[0], columns[1], columns[2], eye.extend(1.0)).inverse()
+/// The camera that is looked through, and its place: the chosen one, else the first of the scene.
+pub(super) fn chosen(
+    drawn: &Drawn,
+    cameras: &[Option<Camera>],
+    selection: &Selection,
+) -> Result<Option<View>> {
+    let nodes = &drawn.poses[0].nodes.nodes;
+    let mut placed = drawn.nodes.iter().filter_map(|&node| Some((nodes[node].camera?, node)));
+    let first = match &selection.camera {
+        Some(choice) => {
+            let name = |index| drawn.document.item("cameras", index)?.string("name").ok().flatten();
+            let names: Vec<_> = (0..cameras.len()).map(|index| name(index).unwrap_or_default()).collect();
+            let chosen = choice.index("camera", &names)?;
+            let found = placed.find(|&(camera, _)| camera == chosen);
+            let message = || format!("the camera `{}` is at no node of the scene", choice.0);
+            Some(found.ok_or_else(|| Fault::new("unknown-choice", format!("/cameras/{chosen}"), message()))?)
+        }
+        None => placed.next(),
+    };
+    Ok(first.and_then(|(camera, node)| Some(cameras[camera].as_ref()?.view(&drawn.motion(node)))))
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::json::{Fault, Place, Result};
-use super::log::Log;
+use crate::log::Log;
 
 /// The extensions that are read, or that change nothing for a renderer that does not cull.
 const EXTENSIONS: [&str; 28] = [

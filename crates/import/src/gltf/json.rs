@@ -2,24 +2,7 @@
 
 use serde_json::Value;
 
-/// What is wrong with the file, and where.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
-    /// The kind of message.
-    pub code: &'static str,
-    /// A JSON pointer; empty for the file as a whole.
-    pub pointer: String,
-    /// What is wrong.
-    pub message: String,
-}
-
-impl Fault {
-    pub fn new(code: &'static str, pointer: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { code, pointer: pointer.into(), message: message.into() }
-    }
-}
-
-pub(super) type Result<T> = std::result::Result<T, Fault>;
+pub(super) use crate::log::{Fault, Result};
 
 /// A value with its place.
 #[derive(Clone, Debug)]

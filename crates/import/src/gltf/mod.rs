@@ -11,27 +11,21 @@ mod basis;
 mod buffer;
 mod camera;
 mod charts;
-mod colors;
 mod container;
 mod document;
 mod draco;
-mod emission;
 mod json;
 mod light;
-mod log;
 mod material;
 mod meshopt;
 mod node;
 mod pictures;
 mod primitive;
 mod scene;
-mod selection;
-mod shape;
 mod skin;
 mod surface;
 mod texture;
 mod uri;
-mod view;
 
 use std::path::Path;
 
@@ -39,6 +33,9 @@ use description::{SceneDesc, SourceMap};
 
 use crate::Imported;
 use crate::assets::AssetSource;
+use crate::log::Log;
+use crate::selection::{Choice, Selection};
+use crate::view;
 use accessor::Accessor;
 use animation::Animation;
 use buffer::Buffers;
@@ -46,12 +43,10 @@ use camera::Camera;
 use document::Document;
 use json::{Fault, Place, Result};
 use light::Light;
-use log::Log;
 use material::Material;
 use node::Nodes;
 use pictures::Pictures;
 use scene::{Assembly, Drawn, Pose};
-use selection::{Choice, Selection};
 use skin::Skin;
 
 /// Whether a path names a file of this format: by its extension, or by its first bytes.
@@ -135,7 +130,7 @@ fn fill(
     let mut assembly = Assembly::new(&drawn, desc, &mut pictures, log);
     assembly.add_all();
     let bounds = assembly.bounds;
-    let camera = view::camera(&drawn, &cameras, selection)?;
+    let camera = camera::chosen(&drawn, &cameras, selection)?;
     view::complete(desc, camera, bounds, log);
     Ok(())
 }

@@ -4,7 +4,7 @@ use math::{DMat4, DQuat, DVec3};
 
 use super::document::Document;
 use super::json::{Fault, Place, Result};
-use super::log::Log;
+use crate::log::Log;
 
 /// A translation, a rotation and a scale.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,10 +13,10 @@ use super::basis;
 use super::buffer::Buffers;
 use super::document::Document;
 use super::json::{Fault, Place, Result};
-use super::log::Log;
 use super::texture::TextureRef;
 use super::uri;
 use crate::assets::AssetSource;
+use crate::log::Log;
 
 /// How the codes of an image are decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -216,7 +216,7 @@ pub(super) fn stretched(strength: f32, roughness: f32) -> [f32; 2] {
 }
 
 /// The image followed by its mirror image to the right and above.
-fn mirrored(image: &Image, [across, up]: [bool; 2]) -> Image {
+pub(crate) fn mirrored(image: &Image, [across, up]: [bool; 2]) -> Image {
     let (width, height) = (image.width(), image.height());
     let count = image.channel_count();
     let columns = if across { 2 * width } else { width };

@@ -7,34 +7,7 @@ use super::buffer::Buffers;
 use super::document::Document;
 use super::draco::Packed;
 use super::json::{Place, Result};
-
-/// The triangles of a primitive. Arrays are empty, or as long as `positions`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Primitive {
-    pub triangles: Vec<[u32; 3]>,
-    pub positions: Vec<Vec3>,
-    pub normals: Vec<Vec3>,
-    /// Directions of increasing u, and the sign of the handedness.
-    pub tangents: Vec<[f32; 4]>,
-    /// With v down, as in the file.
-    pub uvs: Vec<Point2>,
-    /// The same of other sets, by their numbers.
-    pub other_uvs: Vec<(usize, Vec<Point2>)>,
-    /// Linear colours.
-    pub colors: Vec<[f32; 3]>,
-    /// The joints that move each vertex, with their weights.
-    pub influences: Vec<[(u32, f32); 4]>,
-    /// What is added to positions and normals with the weight of each target.
-    pub targets: Vec<Target>,
-}
-
-/// A morph target.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Target {
-    pub positions: Vec<Vec3>,
-    pub normals: Vec<Vec3>,
-    pub tangents: Vec<Vec3>,
-}
+use crate::look::{Primitive, Target};
 
 /// Numbers of modes that draw points, lines and triangles.
 const POINTS: usize = 0;
@@ -226,8 +199,8 @@ impl<'r, 'a> Reader<'r, 'a> {
 
 /// The fault of an accessor, as that of the attribute which refers to it.
 fn within(attributes: &Place, name: &str, fault: super::json::Fault) -> super::json::Fault {
-    let message = format!("{} (of {})", fault.message, fault.pointer);
-    super::json::Fault { pointer: attributes.pointer_to(name), message, ..fault }
+    let message = format!("{} (of {})", fault.message, fault.place);
+    super::json::Fault { place: attributes.pointer_to(name), message, ..fault }
 }
 
 fn points(vectors: Vec<[f32; 3]>) -> Vec<Vec3> {
@@ -250,28 +223,4 @@ fn check_names(attributes: &Place) -> Result<()> {
         }
     }
     Ok(())
-}
-
-impl Primitive {
-    /// The same with the morph targets added by their weights.
-    pub fn morphed(&self, weights: &[f64]) -> Self {
-        let mut primitive = Self { targets: Vec::new(), ..self.clone() };
-        for (target, &weight) in self.targets.iter().zip(weights) {
-            if weight == 0.0 {
-                continue;
-            }
-            let weight = weight as f32;
-            for (v, d) in primitive.positions.iter_mut().zip(&target.positions) {
-                *v += *d * weight;
-            }
-            for (v, d) in primitive.normals.iter_mut().zip(&target.normals) {
-                *v += *d * weight;
-            }
-            for (v, d) in primitive.tangents.iter_mut().zip(&target.tangents) {
-                let d = *d * weight;
-                *v = [v[0] + d.x, v[1] + d.y, v[2] + d.z, v[3]];
-            }
-        }
-        primitive
-    }
 }

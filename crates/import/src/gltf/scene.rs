@@ -8,18 +8,17 @@ use math::{DAffine2, DMat4, DQuat, DVec3};
 use super::accessor::Accessor;
 use super::buffer::Buffers;
 use super::charts::Chart;
-use super::colors;
 use super::document::Document;
 use super::json::{Place, Result};
 use super::light::Light;
-use super::log::Log;
 use super::material::Material;
 use super::node::{Nodes, Trs};
 use super::pictures::Pictures;
-use super::primitive::{self, Primitive, Reader};
-use super::shape::{Look, Vertices};
+use super::primitive::{self, Reader};
 use super::skin::Skin;
-use super::surface::{Builder, Coordinates, Surface};
+use super::surface::{Builder, coordinates};
+use crate::log::Log;
+use crate::look::{self, Look, Primitive, Surface, Vertices};
 
 /// Nodes at a time, and where they are in the world.
 pub(super) struct Pose {
@@ -298,7 +297,7 @@ impl<'s, 'a> Assembly<'s, 'a> {
             }
             let index = drawn.material(&place)?;
             let Some(material) = drawn.materials.get(index).and_then(Option::as_ref) else { continue };
-            let set = Coordinates::of(material).set;
+            let set = coordinates(material).set;
             let mut others: Vec<_> = material.textures().iter().map(|(texture, _)| texture.set).collect();
             others.sort_unstable();
             others.dedup();
@@ -341,8 +340,8 @@ impl<'s, 'a> Assembly<'s, 'a> {
             if colors.iter().all(|color| *color == first) {
                 tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * first[i]);
             } else if material.textures().is_empty() {
-                let (start, picture) = colors::unwrapped(&vertices.start, material.base.factor);
-                vertices.end = vertices.end.map(|end| colors::unwrapped(&end, [1.0; 3]).0);
+                let (start, picture) = look::unwrapped(&vertices.start, material.base.factor);
+                vertices.end = vertices.end.map(|end| look::unwrapped(&end, [1.0; 3]).0);
                 vertices.start = start;
                 let name = place.pointer_to("attributes/COLOR_0");
                 image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
@@ -368,7 +367,8 @@ impl<'s, 'a> Assembly<'s, 'a> {
             (triangles, surfaces)
         });
         let parts = parts.collect();
-        Look { material: tinted.as_ref().unwrap_or(material), parts }.shapes(&vertices, self.desc)
+        let (has_normals, is_stretched) = (material.normals.is_some(), material.anisotropy.is_some());
+        Look { has_normals, is_stretched, parts }.shapes(&vertices, self.desc)
     }
 
     /// Makes surfaces of triangles with maps between sets of texture coordinates.

@@ -11,45 +11,23 @@ use description::{
 use math::DAffine2;
 use spectrum::{LAMBDA_MAX, LAMBDA_MIN, RgbAlbedoSpectrum, RgbColorSpace};
 
-use super::log::Log;
 use super::material::{AlphaMode, Color, Material, Number};
 use super::pictures::{Edit, Encoding, Pictures, stretched};
 use super::texture::TextureRef;
+use crate::log::Log;
+use crate::look::{Coordinates, Principled, Surface};
 
-/// A surface of a scene.
-#[derive(Clone, Debug)]
-pub(super) struct Surface {
-    pub material: Handle<MaterialDesc>,
-    pub area_light: Option<Handle<AreaLightDesc>>,
-    pub alpha: Option<FloatParameter>,
-    pub media: Option<MediumInterface>,
-    /// The coordinates that meshes have.
-    pub coordinates: Coordinates,
-    /// By how much tangents are turned, counter-clockwise.
-    pub tangent_rotation: f32,
-}
-
-/// Which texture coordinates of a file those of a mesh are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coordinates {
-    pub set: usize,
-    /// From those of the file with v up.
-    pub transform: DAffine2,
-}
-
-impl Coordinates {
-    /// Normal maps and emission are looked up at the coordinates of the mesh; other textures have
-    /// mappings from there.
-    pub fn of(material: &Material) -> Self {
-        let normals = material.normals.as_ref().or(material.coat_normals()).map(|(texture, _)| texture);
-        let emission = if material.is_unlit { &material.base } else { &material.emissive };
-        let placed = normals.or(emission.texture.as_ref()).filter(|texture| is_regular(texture));
-        if let Some(texture) = placed {
-            return Self { set: texture.set, transform: texture.transform };
-        }
-        let set = material.base.texture.as_ref().or(material.textures().first().map(|&(texture, _)| texture));
-        Self { set: set.map_or(0, |texture| texture.set), transform: DAffine2::IDENTITY }
+/// Which texture coordinates of a file the meshes of a material have. Normal maps and emission are
+/// looked up at the coordinates of the mesh; other textures have mappings from there.
+pub(super) fn coordinates(material: &Material) -> Coordinates {
+    let normals = material.normals.as_ref().or(material.coat_normals()).map(|(texture, _)| texture);
+    let emission = if material.is_unlit { &material.base } else { &material.emissive };
+    let placed = normals.or(emission.texture.as_ref()).filter(|texture| is_regular(texture));
+    if let Some(texture) = placed {
+        return Coordinates { set: texture.set, transform: texture.transform };
     }
+    let set = material.base.texture.as_ref().or(material.textures().first().map(|&(texture, _)| texture));
+    Coordinates { set: set.map_or(0, |texture| texture.set), transform: DAffine2::IDENTITY }
 }
 
 fn is_regular(texture: &TextureRef) -> bool {
@@ -85,7 +63,7 @@ impl Builder<'_> {
         is_mirrored: bool,
         colors: Option<Handle<ImageDesc>>,
     ) -> Surface {
-        let coordinates = Coordinates::of(material);
+        let coordinates = coordinates(material);
         let mut part = Part { builder: self, material, coordinates, colors };
         let alpha = part.alpha();
         let area_light = part.area_light();
@@ -317,7 +295,7 @@ impl Part<'_, '_, '_> {
         if material.is_unlit {
             return (MaterialKind::Diffuse { reflectance: 0.0.into() }, 0.0);
         }
-        let mut surface = Principled(Box::default());
+        let mut surface = Principled::default();
         let base = self.base();
         surface.color("base_color", base);
         surface.number("specular_ior", self.ior(material.ior));
@@ -333,7 +311,7 @@ impl Part<'_, '_, '_> {
         self.sheen(&mut surface);
         self.iridescence(&mut surface);
         self.transmission(&mut surface);
-        (MaterialKind::OpenPbr(surface.0), rotation)
+        (MaterialKind::OpenPbr(surface.desc), rotation)
     }
 
     fn ior(&mut self, ior: f32) -> FloatParameter {
@@ -526,21 +504,6 @@ impl Part<'_, '_, '_> {
                 (20.0 / material.dispersion.max(1.0)).max(1.0).into(),
             );
         }
-        surface.0.thin_walled = !self.is_thick();
-    }
-}
-
-/// A principled surface whose parameters are set by name.
-struct Principled(Box<OpenPbrDesc>);
-
-impl Principled {
-    fn number(&mut self, name: &str, value: FloatParameter) {
-        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
-        self.0.numbers[index.expect("invariant: a name of OpenPBR")] = value;
-    }
-
-    fn color(&mut self, name: &str, value: SpectrumParameter) {
-        let index = OpenPbrDesc::COLORS.iter().position(|(known, _)| *known == name);
-        self.0.colors[index.expect("invariant: a name of OpenPBR")] = value;
+        surface.desc.thin_walled = !self.is_thick();
     }
 }

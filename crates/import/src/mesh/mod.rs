@@ -3,7 +3,7 @@
 pub(crate) mod contours;
 mod obj;
 mod ply;
-mod polygon;
+pub(crate) mod polygon;
 pub(crate) mod scene;
 mod stl;
 pub(crate) mod studio;

@@ -13,14 +13,14 @@ use math::{DVec3, Point3};
 pub(super) const MOST_CORNERS: usize = 4096;
 
 /// Whether a face is convex: whether it turns the same way at every corner (seen along its normal).
-pub(super) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
+pub(crate) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
     let points = project(positions, corners);
     let n = points.len();
     (0..n).all(|i| cross(points[i], points[(i + 1) % n], points[(i + 2) % n]) >= 0.0)
 }
 
 /// Triangles that cover a polygon, all with its winding.
-pub(super) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]> {
+pub(crate) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]> {
     if corners.len() > MOST_CORNERS {
         return (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
     }

@@ -13,7 +13,7 @@ use super::primitive::Primitive;
 
 /// A primitive whose triangles share no vertices and are mapped to the image of their colours,
 /// which are multiplied by a factor.
-pub(super) fn unwrapped(primitive: &Primitive, factor: [f32; 3]) -> (Primitive, Image) {
+pub(crate) fn unwrapped(primitive: &Primitive, factor: [f32; 3]) -> (Primitive, Image) {
     let count = primitive.triangles.len().max(1);
     let columns = (count as f64).sqrt().ceil() as usize;
     let rows = count.div_ceil(columns);

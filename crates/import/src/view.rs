@@ -3,14 +3,10 @@
 
 use std::f64::consts::PI;
 
-use description::{IntegratorDesc, LightKind, PathDesc, SceneDesc};
-use math::DVec3;
+use description::{CameraDesc, IntegratorDesc, LightKind, PathDesc, SceneDesc};
+use math::{DMat4, DVec3};
 
-use super::camera::Camera;
-use super::json::{Fault, Result};
-use super::log::Log;
-use super::scene::Drawn;
-use super::selection::Selection;
+use crate::log::Log;
 use crate::mesh::studio;
 
 /// The radiance of a white surface in the lights of a scene that needs no other exposure.
@@ -20,35 +16,36 @@ const EXPOSED: f64 = 0.8;
 /// Most scattering events of a path, without and with transparent surfaces.
 const DEPTHS: [u32; 2] = [8, 16];
 
-/// The camera that is looked through, and its place: the chosen one, else the first of the scene.
-pub(super) fn camera<'c>(
-    drawn: &Drawn,
-    cameras: &'c [Option<Camera>],
-    selection: &Selection,
-) -> Result<Option<(&'c Camera, description::TransformDesc)>> {
-    let nodes = &drawn.poses[0].nodes.nodes;
-    let mut placed = drawn.nodes.iter().filter_map(|&node| Some((nodes[node].camera?, node)));
-    let first = match &selection.camera {
-        Some(choice) => {
-            let name = |index| drawn.document.item("cameras", index)?.string("name").ok().flatten();
-            let names: Vec<_> = (0..cameras.len()).map(|index| name(index).unwrap_or_default()).collect();
-            let chosen = choice.index("camera", &names)?;
-            let found = placed.find(|&(camera, _)| camera == chosen);
-            let message = || format!("the camera `{}` is at no node of the scene", choice.0);
-            Some(found.ok_or_else(|| Fault::new("unknown-choice", format!("/cameras/{chosen}"), message()))?)
-        }
-        None => placed.next(),
-    };
-    Ok(first.and_then(|(camera, node)| Some((cameras[camera].as_ref()?, drawn.motion(node)))))
+/// A camera at its place.
+pub(crate) struct View {
+    pub camera: CameraDesc,
+    /// The size of its picture.
+    pub resolution: [i32; 2],
+    /// From a space in which it looks along −z, with y up.
+    pub world_from_camera: DMat4,
+}
+
+/// The size of a picture of an aspect ratio: as large as 1280 × 720 pixels hold.
+pub(crate) fn resolution(aspect: f64) -> [i32; 2] {
+    const LARGEST: [f64; 2] = [1280.0, 720.0];
+    let [width, height] = LARGEST;
+    let (width, height) = (width.min(height * aspect), height.min(width / aspect));
+    [width, height].map(|side| (side.round() as i32).max(1))
+}
+
+/// From the world to the space of a camera that looks along −z of a node, whose scale does not
+/// matter.
+pub(crate) fn camera_from_world(world_from_node: DMat4) -> DMat4 {
+    let back = world_from_node.z_axis.truncate().normalize_or(DVec3::Z);
+    let right = world_from_node.y_axis.truncate().cross(back).normalize_or(DVec3::X);
+    let up = back.cross(right);
+    let eye = world_from_node.w_axis.truncate();
+    let columns = [right, up, -back].map(|axis| axis.extend(0.0));
+    DMat4::from_cols(columns[0], columns[1], columns[2], eye.extend(1.0)).inverse()
 }
 
 /// Completes a scene whose surfaces are in a box.
-pub(super) fn complete(
-    desc: &mut SceneDesc,
-    camera: Option<(&Camera, description::TransformDesc)>,
-    [low, high]: [DVec3; 2],
-    log: &mut Log,
-) {
+pub(crate) fn complete(desc: &mut SceneDesc, view: Option<View>, [low, high]: [DVec3; 2], log: &mut Log) {
     let (low, high) = if low.cmple(high).all() && (low + high).is_finite() {
         (low, high)
     } else {
@@ -59,13 +56,13 @@ pub(super) fn complete(
     }
     // Emission of an object alone is more often that of its lamps than the light of a scene.
     let is_lit = !desc.lights.is_empty()
-        || (camera.is_some() && !desc.area_lights.is_empty())
+        || (view.is_some() && !desc.area_lights.is_empty())
         || desc.area_lights.iter().any(|(_, light)| light.scale > 1.0);
-    let axes = match camera {
-        Some((camera, motion)) => {
-            desc.camera = camera.desc([motion.start, motion.end]).into();
-            desc.film.resolution = camera.resolution();
-            let node = motion.start;
+    let has_camera = view.is_some();
+    let axes = match view {
+        Some(View { camera, resolution, world_from_camera: node }) => {
+            desc.camera = camera.into();
+            desc.film.resolution = resolution;
             let axis = |v: math::DVec3| v.normalize_or(DVec3::Y);
             [axis(node.x_axis.truncate()), axis(node.y_axis.truncate()), -axis(node.z_axis.truncate())]
         }
@@ -75,7 +72,7 @@ pub(super) fn complete(
         expose(desc, (low + high) / 2.0, (high - low).length() / 2.0, log);
     } else {
         studio::add_light(desc, &axes);
-        if camera.is_none() {
+        if !has_camera {
             studio::add_ground(desc, low, high);
         }
         log.warn("no-light", "", "the file has no light; drawn in the light of a studio");

@@ -6,26 +6,28 @@ use description::{MeshDesc, MeshKey, SceneDesc, ShapeDesc, ShapeKind};
 use math::{DVec2, Point2, Vec3};
 
 use super::emission::Emitting;
-use super::material::Material;
 use super::primitive::Primitive;
 use super::surface::{Coordinates, Surface};
 
 /// The vertices of a primitive, at the start and, where they move, at the end of the shutter's
 /// time.
-pub(super) struct Vertices {
+pub(crate) struct Vertices {
     pub start: Primitive,
     pub end: Option<Primitive>,
 }
 
 /// What shapes are made with.
-pub(super) struct Look<'a> {
-    pub material: &'a Material,
+pub(crate) struct Look {
+    /// Whether the surface has a normal map.
+    pub has_normals: bool,
+    /// Whether its highlights have a direction.
+    pub is_stretched: bool,
     /// Triangles with their surface, and with that where texture coordinates are mirrored. All
     /// surfaces are of one material.
     pub parts: Vec<(Vec<[u32; 3]>, [Surface; 2])>,
 }
 
-impl Look<'_> {
+impl Look {
     /// The shapes of a primitive: of each part one for each of the triangles that emit or do not,
     /// and that have mirrored texture coordinates or not.
     pub fn shapes(&self, vertices: &Vertices, desc: &SceneDesc) -> Vec<ShapeDesc> {
@@ -52,7 +54,7 @@ impl Look<'_> {
         let mut parts = [const { Vec::new() }; 4];
         for triangle in triangles {
             let corners = (!uvs.is_empty()).then(|| triangle.map(|vertex| uvs[vertex as usize]));
-            let is_mirrored = self.material.has_normal_map() && is_mirrored(primitive, triangle, corners);
+            let is_mirrored = self.has_normals && is_mirrored(primitive, triangle, corners);
             let is_dark = match (emitting, corners) {
                 (Some(emitting), Some(corners)) => !emitting.is_met(corners),
                 _ => false,
@@ -95,7 +97,7 @@ impl Look<'_> {
 
     /// The tangents that shading needs besides the directions of increasing u.
     fn tangents(&self, primitive: &Primitive, uvs: &[Point2], angle: f32) -> Vec<Vec3> {
-        let is_used = self.material.has_normal_map() || self.material.anisotropy.is_some();
+        let is_used = self.has_normals || self.is_stretched;
         if !is_used || primitive.normals.is_empty() || (angle == 0.0 && primitive.tangents.is_empty()) {
             return Vec::new();
         }

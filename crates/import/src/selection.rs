@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::json::{Fault, Result};
 use crate::assets::AssetSource;
+use crate::log::{Fault, Result};
 use crate::number;
 
 /// A choice by its name or its number.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Choice(pub String);
+pub(crate) struct Choice(pub String);
 
 impl Choice {
     /// The index of the chosen one of some names.
@@ -26,7 +26,7 @@ impl Choice {
 
 /// What is drawn of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Selection {
+pub(crate) struct Selection {
     pub scene: Option<usize>,
     pub camera: Option<Choice>,
     pub variant: Option<Choice>,

@@ -4,12 +4,30 @@ use std::collections::HashMap;
 
 use description::{Diagnostic, Span};
 
-use super::json::Fault;
 use crate::report::Report;
+
+/// What is wrong with a file, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fault {
+    /// The kind of message.
+    pub code: &'static str,
+    /// The place in the file: a JSON pointer, the path of a prim; empty for the file as a whole.
+    pub place: String,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(code: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { code, place: place.into(), message: message.into() }
+    }
+}
+
+pub(crate) type Result<T> = std::result::Result<T, Fault>;
 
 /// Collects messages about a file.
 #[derive(Default)]
-pub(super) struct Log {
+pub(crate) struct Log {
     report: Report,
     /// Warnings by what they say: their first place, and their number.
     warnings: HashMap<(&'static str, String), usize>,
@@ -18,20 +36,20 @@ pub(super) struct Log {
 
 impl Log {
     pub fn fault(&mut self, fault: Fault) {
-        let message = match fault.pointer.as_str() {
+        let message = match fault.place.as_str() {
             "" => fault.message,
-            pointer => format!("{pointer}: {}", fault.message),
+            place => format!("{place}: {}", fault.message),
         };
         self.report.error(fault.code, message, Span::NONE);
     }
 
     /// The value, or its fault in the report.
-    pub fn keep<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+    pub fn keep<T>(&mut self, result: Result<T>) -> Option<T> {
         result.map_err(|fault| self.fault(fault)).ok()
     }
 
     /// Says once that something of the file is not drawn as it is described.
-    pub fn warn(&mut self, code: &'static str, pointer: impl Into<String>, message: impl Into<String>) {
+    pub fn warn(&mut self, code: &'static str, place: impl Into<String>, message: impl Into<String>) {
         let message = message.into();
         let key = (code, message.clone());
         if let Some(&index) = self.warnings.get(&key) {
@@ -39,7 +57,7 @@ impl Log {
             return;
         }
         self.warnings.insert(key, self.order.len());
-        self.order.push((code, pointer.into(), message, 1));
+        self.order.push((code, place.into(), message, 1));
     }
 
     /// Whether so much is wrong that reading stops.
@@ -49,8 +67,8 @@ impl Log {
 
     /// All messages.
     pub fn finish(mut self) -> Vec<Diagnostic> {
-        for (code, pointer, message, count) in self.order {
-            let place = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
+        for (code, place, message, count) in self.order {
+            let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
             let text = format!("{place}{message}");
             self.report.push(Diagnostic { count, ..Diagnostic::warning(code, text, Span::NONE) });
         }
