@@ -131,7 +131,6 @@ impl Archive {
         };
         self.zip.index_for_name(&name)
     }
-
 }
 
 /// An archive whose copies share its bytes.

@@ -25,7 +25,7 @@ pub use elementary::map_lanes;
 pub use error::{Point3Error, offset_ray_origin};
 pub use float::*;
 pub use frame::{Frame, coordinate_system};
-pub use glam::{DAffine2, DMat2, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat4, Vec4};
+pub use glam::{DAffine2, DMat2, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, Mat3, Mat4, Vec4};
 pub use interval::Interval;
 pub use lanes::{exp, ln, sin_cos};
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, wrap_equal_area_square};

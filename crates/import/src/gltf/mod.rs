@@ -46,6 +46,8 @@ use light::Light;
 use material::Material;
 use node::Nodes;
 use pictures::Pictures;
+#[cfg(feature = "usd")]
+pub(crate) use pictures::mirrored;
 use scene::{Assembly, Drawn, Pose};
 use skin::Skin;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use description::{
     AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc,
-    MappingDesc, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, SceneDesc,
+    MappingDesc, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, SceneDesc,
     SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
 use math::DAffine2;

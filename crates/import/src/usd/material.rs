@@ -105,8 +105,15 @@ impl<'a> Materials<'a> {
             log.warn("not-drawn", prim.path(), message);
             return Ok(None);
         }
-        let mut builder =
-            Builder { shader, desc, pictures: &mut self.pictures, files: self.files, log, coordinates: NO_MAP, set: None };
+        let mut builder = Builder {
+            shader,
+            desc,
+            pictures: &mut self.pictures,
+            files: self.files,
+            log,
+            coordinates: NO_MAP,
+            set: None,
+        };
         builder.material(prim, is_two_sided).map(Some)
     }
 }
@@ -114,7 +121,14 @@ impl<'a> Materials<'a> {
 /// A diffuse surface.
 pub(super) fn diffuse(reflectance: SpectrumParameter, desc: &mut SceneDesc) -> Surface {
     let material = desc.materials.push(MaterialKind::Diffuse { reflectance }.into());
-    Surface { material, area_light: None, alpha: None, media: None, coordinates: NO_MAP, tangent_rotation: 0.0 }
+    Surface {
+        material,
+        area_light: None,
+        alpha: None,
+        media: None,
+        coordinates: NO_MAP,
+        tangent_rotation: 0.0,
+    }
 }
 
 /// A number or a colour with what is known of it.
@@ -170,7 +184,8 @@ impl Builder<'_, '_> {
         });
         let coordinates = self.coordinates;
         let surfaces = normal_maps.map(|normal_map| {
-            let material = MaterialDesc { name: name.clone(), normal_map, ..MaterialDesc::from(kind.clone()) };
+            let material =
+                MaterialDesc { name: name.clone(), normal_map, ..MaterialDesc::from(kind.clone()) };
             Surface {
                 material: self.desc.materials.push(material),
                 area_light,
@@ -270,7 +285,9 @@ impl Builder<'_, '_> {
             [ImageChannel::Red, ImageChannel::Green, ImageChannel::Blue, ImageChannel::Alpha];
         let is_scaled = bias == 0.0 && scale >= 0.0;
         let edit = if is_scaled { Edit::None } else { Edit::Number(channel, scale, bias) };
-        let Some(image) = self.texture(texture, edit) else { return (texture.constant()[channel] as f32).into() };
+        let Some(image) = self.texture(texture, edit) else {
+            return (texture.constant()[channel] as f32).into();
+        };
         let (channel, scale) =
             if is_scaled { (CHANNELS[channel], scale as f32) } else { (ImageChannel::Red, 1.0) };
         let image = ImageTextureDesc { channel: Some(channel), scale, ..image };

@@ -1,1 +1,109 @@
-//! x
+//! USD: scenes of layers as texts (`.usda`), in binary (`.usdc`) or packed (`.usdz`).
+//!
+//! The crate `openusd` parses layers and composes them to one stage: sublayers, references,
+//! payloads, variants, and values at a time. What prims mean is read here: `stage` has prims and
+//! their values, a file each reads one noun of the schemas, and `scene` puts all together. Every
+//! fault names its place as the path of a prim and the name of a property.
+
+mod camera;
+mod curves;
+mod files;
+mod instancer;
+mod layer;
+mod light;
+mod material;
+mod mesh;
+mod pictures;
+mod primvar;
+mod scene;
+mod solid;
+mod stage;
+mod subdivision;
+mod texture;
+mod topology;
+mod value;
+mod xform;
+
+use std::path::Path;
+
+use description::{SceneDesc, SourceMap};
+
+use crate::Imported;
+use crate::assets::AssetSource;
+use crate::log::{Fault, Log, Result};
+use crate::selection::Selection;
+use crate::view;
+use files::{Files, Resolver};
+use material::Materials;
+use scene::Assembly;
+use stage::{INVALID, Stage};
+
+/// The stack of the thread that reads, which goes down the prims of a scene.
+const STACK: usize = 256 << 20;
+
+/// Reads a file as a scene.
+pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
+    let (mut desc, mut log) = (SceneDesc::default(), Log::default());
+    let (file, selection) = Selection::of(path, assets);
+    let filled = selection.and_then(|selection| {
+        assets.read(&file).map_err(|error| {
+            Fault::new("unreadable-file", "", format!("cannot read `{}`: {error}", file.display()))
+        })?;
+        guarded(&mut desc, &file, &selection, assets, &mut log)
+    });
+    log.keep(filled);
+    Imported { desc, sources: SourceMap::default(), diagnostics: log.finish() }
+}
+
+/// Reads in a thread of its own, for a stack that is large enough, while this one answers for its
+/// files. A panic of `openusd` over a damaged file ends that thread only, and is a fault.
+fn guarded(
+    desc: &mut SceneDesc,
+    path: &Path,
+    selection: &Selection,
+    assets: &dyn AssetSource,
+    log: &mut Log,
+) -> Result<()> {
+    let files = Files::new(assets);
+    let (resolver, questions) = Resolver::new();
+    std::thread::scope(|scope| {
+        let reader = std::thread::Builder::new().name("usd".to_owned()).stack_size(STACK);
+        let reader = reader.spawn_scoped(scope, || fill(desc, path, selection, (&files, resolver), log));
+        let reader = reader
+            .map_err(|error| Fault::new("unreadable-file", "", format!("cannot start a thread: {error}")))?;
+        files.answer(&questions);
+        reader
+            .join()
+            .unwrap_or_else(|_| Err(Fault::new(INVALID, "", "the file is damaged so that it cannot be read")))
+    })
+}
+
+fn fill(
+    desc: &mut SceneDesc,
+    path: &Path,
+    selection: &Selection,
+    (files, resolver): (&Files, Resolver),
+    log: &mut Log,
+) -> Result<()> {
+    for (name, is_given) in [
+        ("animation", selection.animation.is_some()),
+        ("scene", selection.scene.is_some()),
+        ("variant", selection.variant.is_some()),
+    ] {
+        if is_given {
+            let message =
+                format!("a USD file has no choice of `{name}`; there are `camera`, `shutter` and `time`");
+            return Err(Fault::new("unknown-choice", "", message));
+        }
+    }
+    let stage = Stage::open(&path.to_string_lossy(), resolver, selection.time, selection.shutter)?;
+    let mut assembly = Assembly::new(desc, log, Materials::new(files));
+    let bounds = assembly.add_all(&stage)?;
+    let views = std::mem::take(&mut assembly.views);
+    for fault in stage.composition_faults() {
+        log.fault(fault);
+    }
+    let view = scene::chosen(views, selection.camera.as_ref())?;
+    view::complete(desc, view, bounds, log);
+    Ok(())
+}

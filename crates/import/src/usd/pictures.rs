@@ -41,7 +41,9 @@ impl Pictures {
         let fault = |message: String| Fault::new("unreadable-image", &texture.place, message);
         let read = match &texture.file {
             Err(name) if name.is_empty() => Err(fault("the texture has no image".to_owned())),
-            Err(name) if name.contains("<UDIM>") => Err(fault(format!("tiles of images are not read: `{name}`"))),
+            Err(name) if name.contains("<UDIM>") => {
+                Err(fault(format!("tiles of images are not read: `{name}`")))
+            }
             Err(name) => Err(fault(format!("there is no image `{name}`"))),
             Ok(name) => files.read(name).map_err(|error| fault(format!("cannot read `{name}`: {error}"))),
         };

@@ -1,6 +1,8 @@
 //! The composed scene: prims, and values of their attributes at the times that are drawn.
 
-use openusd::sdf::Value;
+use std::fmt::Display;
+
+use openusd::sdf::{Specifier, Value};
 use openusd::usd;
 
 use super::files::Resolver;
@@ -87,7 +89,7 @@ impl<'s> Prim<'s> {
     }
 
     /// The result of the crate, or a fault of a property.
-    fn kept<T>(&self, property: &str, result: anyhow::Result<T>) -> Result<T> {
+    fn kept<T>(&self, property: &str, result: std::result::Result<T, impl Display>) -> Result<T> {
         result.map_err(|error| self.fault(property, message(&error)))
     }
 
@@ -96,10 +98,11 @@ impl<'s> Prim<'s> {
         Ok(self.kept("", self.inner.type_name())?.map(String::from).unwrap_or_default())
     }
 
-    /// Whether it is there to be drawn: active, defined, loaded and no class.
+    /// Whether it is there to be drawn: active, and defined as no class. What is above it is not
+    /// asked.
     pub fn is_drawn(&self) -> Result<bool> {
-        let is = |result| self.kept("", result);
-        Ok(is(self.inner.is_active())? && is(self.inner.is_defined())? && !is(self.inner.is_abstract())?)
+        let specifier = self.kept("", self.inner.specifier())?;
+        Ok(specifier == Some(Specifier::Def) && self.kept("", self.inner.is_active())?)
     }
 
     /// The path of the prototype that it is an instance of.
@@ -269,6 +272,6 @@ impl<'s> Prim<'s> {
 }
 
 /// An error with all its causes.
-fn message(error: &anyhow::Error) -> String {
+fn message(error: &impl Display) -> String {
     format!("{error:#}")
 }

@@ -285,7 +285,7 @@ fn normals(faces: &Faces, points: &[[f64; 3]]) -> Vec<[f64; 3]> {
 
 /// Points as single floats.
 pub(super) fn positions(points: &[[f64; 3]]) -> Vec<Vec3> {
-    points.iter().map(|point| DVec3::from(*point).as_vec3()).collect()
+    points.iter().map(|point| Vec3::from(DVec3::from(*point).as_vec3())).collect()
 }
 
 #[cfg(test)]
@@ -326,10 +326,7 @@ mod tests {
         let mut surface = cube();
         for (_, corners) in surface.faces.clone().iter() {
             for index in 0..4 {
-                surface
-                    .creases
-                    .edges
-                    .insert(edge_key(corners[index], corners[(index + 1) % 4]), SHARP);
+                surface.creases.edges.insert(edge_key(corners[index], corners[(index + 1) % 4]), SHARP);
             }
         }
         let smooth = surface.smooth();

@@ -1,5 +1,6 @@
 //! Values of attributes as numbers, whatever their precision.
 
+use half::f16;
 use openusd::sdf::Value;
 
 /// Numbers of a value, one after another, and how many an element of it has.
@@ -19,11 +20,11 @@ pub(super) fn numbers(value: Value) -> Option<Numbers> {
         Some(Numbers { values: elements.into_iter().flat_map(element).collect(), width: N })
     }
     macro_rules! vectors {
-        ($($one:ident $many:ident $components:ident),* $(,)?) => {
+        ($($one:ident $many:ident $number:ident $count:literal),* $(,)?) => {
             match value {
                 $(
-                    Value::$one(v) => one(<[_; $components]>::from(v).map(f64::from)),
-                    Value::$many(v) => all(v, |v| <[_; $components]>::from(v).map(f64::from)),
+                    Value::$one(v) => one(<[$number; $count]>::from(v).map(f64::from)),
+                    Value::$many(v) => all(v, |v| <[$number; $count]>::from(v).map(f64::from)),
                 )*
                 Value::Bool(v) => one([f64::from(u8::from(v))]),
                 Value::BoolVec(v) => all(v, |v| [f64::from(u8::from(v))]),
@@ -52,14 +53,11 @@ pub(super) fn numbers(value: Value) -> Option<Numbers> {
             }
         };
     }
-    const TWO: usize = 2;
-    const THREE: usize = 3;
-    const FOUR: usize = 4;
     vectors! {
-        Vec2h Vec2hVec TWO, Vec2f Vec2fVec TWO, Vec2d Vec2dVec TWO, Vec2i Vec2iVec TWO,
-        Vec3h Vec3hVec THREE, Vec3f Vec3fVec THREE, Vec3d Vec3dVec THREE, Vec3i Vec3iVec THREE,
-        Vec4h Vec4hVec FOUR, Vec4f Vec4fVec FOUR, Vec4d Vec4dVec FOUR, Vec4i Vec4iVec FOUR,
-        Quath QuathVec FOUR, Quatf QuatfVec FOUR, Quatd QuatdVec FOUR,
+        Vec2h Vec2hVec f16 2, Vec2f Vec2fVec f32 2, Vec2d Vec2dVec f64 2, Vec2i Vec2iVec i32 2,
+        Vec3h Vec3hVec f16 3, Vec3f Vec3fVec f32 3, Vec3d Vec3dVec f64 3, Vec3i Vec3iVec i32 3,
+        Vec4h Vec4hVec f16 4, Vec4f Vec4fVec f32 4, Vec4d Vec4dVec f64 4, Vec4i Vec4iVec i32 4,
+        Quath QuathVec f16 4, Quatf QuatfVec f32 4, Quatd QuatdVec f64 4,
     }
 }
 
