@@ -1,8 +1,32 @@
 //! Scene formats that are not read, recognised so that a message can name them.
 
+use description::{Diagnostic, Span};
+
+/// What is said of a file where a scene of pbrt-v4 is read; `None` if it may be one.
+pub(crate) fn refused(name: &str, bytes: &[u8], span: Span) -> Option<Diagnostic> {
+    let what = recognise(name, bytes)?;
+    let (message, help) = match what {
+        USD if cfg!(not(feature = "usd")) => (
+            format!("`{name}` is {what}, which this program was built without"),
+            "packages of alhazen read USD; a build from source does with `--features usd`",
+        ),
+        USD => (
+            format!("`{name}` is {what}, but does not end in .usd, .usda, .usdc or .usdz"),
+            "its name says how a USD scene is read",
+        ),
+        _ => (
+            format!("`{name}` is {what}, not one of pbrt-v4"),
+            "scenes are pbrt-v4, glTF, USD, PLY, OBJ or STL files",
+        ),
+    };
+    Some(Diagnostic::error("foreign-format", message, span).with_help(help))
+}
+
+const USD: &str = "a USD scene";
+
 /// The kind of a file, with its article, if it is of a known format other than those that are read.
 /// `name` is its path.
-pub(crate) fn recognise(name: &str, bytes: &[u8]) -> Option<&'static str> {
+fn recognise(name: &str, bytes: &[u8]) -> Option<&'static str> {
     by_content(bytes).or_else(|| by_name(name))
 }
 
@@ -10,8 +34,8 @@ fn by_content(bytes: &[u8]) -> Option<&'static str> {
     /// Bytes that files begin with.
     const SIGNATURES: [(&[u8], &str); 11] = [
         (b"glTF", "a glTF scene"),
-        (b"PXR-USDC", "a USD scene"),
-        (b"#usda", "a USD scene"),
+        (b"PXR-USDC", USD),
+        (b"#usda", USD),
         (b"BLENDER", "a Blender scene"),
         (b"Kaydara FBX", "an FBX scene"),
         (b"Ogawa", "an Alembic scene"),
@@ -32,7 +56,7 @@ fn by_content(bytes: &[u8]) -> Option<&'static str> {
         // USD scenes are also packed into ZIP archives, which begin with a file of theirs.
         let head = &bytes[..bytes.len().min(HEAD)];
         let is_usd = start == b"PK\x03\x04" && contains(head, b".usd");
-        return Some(if is_usd { "a USD scene" } else { what });
+        return Some(if is_usd { USD } else { what });
     }
     if image::Format::from_content(bytes).is_some() {
         return Some("a picture");
@@ -54,7 +78,7 @@ fn by_name(name: &str) -> Option<&'static str> {
     let (_, extension) = name.rsplit_once('.')?;
     Some(match extension {
         "gltf" | "glb" => "a glTF scene",
-        "usd" | "usda" | "usdc" | "usdz" => "a USD scene",
+        "usd" | "usda" | "usdc" | "usdz" => USD,
         "blend" => "a Blender scene",
         "fbx" => "an FBX scene",
         "abc" => "an Alembic scene",

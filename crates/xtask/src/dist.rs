@@ -52,7 +52,7 @@ fn host(root: &Path) -> Result<String, String> {
 /// Builds the program for a target, and returns its path.
 fn build(root: &Path, triple: &str) -> Result<PathBuf, String> {
     let mut command = cargo(root);
-    command.args(["build", "--release", "--package", "alhazen-cli", "--target", triple]);
+    command.args(["build", "--release", "--package", "alhazen-cli", "--features", "usd", "--target", triple]);
     if triple.contains("linux-gnu") {
         // This replaces the flags of `.cargo/config.toml`.
         let processor = if triple.starts_with("x86_64") { "-C target-cpu=x86-64-v3 " } else { "" };

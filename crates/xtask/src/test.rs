@@ -13,9 +13,12 @@ struct Step {
     arguments: &'static [&'static str],
 }
 
+/// What is tested and packed beyond the program of a plain `cargo build`.
+const FEATURES: &str = "alhazen-cli/usd";
+
 /// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
 /// and documentation share one check of the workspace.
-const STEPS: [Step; 4] = [
+const STEPS: [Step; 5] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {
         name: "lints",
@@ -23,6 +26,8 @@ const STEPS: [Step; 4] = [
             "clippy",
             "--quiet",
             "--workspace",
+            "--features",
+            FEATURES,
             "--profile",
             "checked",
             "--all-targets",
@@ -33,12 +38,35 @@ const STEPS: [Step; 4] = [
         ],
     },
     Step {
+        name: "the program without features",
+        arguments: &["check", "--quiet", "--package", "alhazen-cli", "--profile", "checked"],
+    },
+    Step {
         name: "documentation",
-        arguments: &["doc", "--quiet", "--workspace", "--profile", "checked", "--no-deps", "--lib"],
+        arguments: &[
+            "doc",
+            "--quiet",
+            "--workspace",
+            "--features",
+            FEATURES,
+            "--profile",
+            "checked",
+            "--no-deps",
+            "--lib",
+        ],
     },
     Step {
         name: "tests",
-        arguments: &["test", "--quiet", "--workspace", "--profile", "checked", "--no-fail-fast"],
+        arguments: &[
+            "test",
+            "--quiet",
+            "--workspace",
+            "--features",
+            FEATURES,
+            "--profile",
+            "checked",
+            "--no-fail-fast",
+        ],
     },
 ];
 

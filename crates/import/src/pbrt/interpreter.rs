@@ -357,10 +357,8 @@ impl<'a> Interpreter<'a> {
         let shown = path.to_string_lossy().into_owned();
         match read_unpacked(self.assets, path) {
             Ok(text) if u32::try_from(text.len()).is_ok() => {
-                if let Some(what) = foreign::recognise(&shown, &text) {
-                    let message = format!("`{shown}` is {what}, not one of pbrt-v4");
-                    let diagnostic = Diagnostic::error("foreign-format", message, span);
-                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, glTF, PLY, OBJ or STL files"));
+                if let Some(diagnostic) = foreign::refused(&shown, &text, span) {
+                    self.report.push(diagnostic);
                     return None;
                 }
                 let file = self.sources.add(shown, text);

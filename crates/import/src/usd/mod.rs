@@ -41,6 +41,14 @@ use stage::{INVALID, Stage};
 /// The stack of the thread that reads, which goes down the prims of a scene.
 const STACK: usize = 256 << 20;
 
+/// Whether a path names a file of this format, by its extension.
+pub(crate) fn is_named_by(path: &Path, assets: &dyn AssetSource) -> bool {
+    let (file, _) = Selection::of(path, assets);
+    let extension = file.extension().map(|extension| extension.to_ascii_lowercase());
+    let extension = extension.as_ref().and_then(|extension| extension.to_str());
+    matches!(extension, Some("usd" | "usda" | "usdc" | "usdz"))
+}
+
 /// Reads a file as a scene.
 pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
     let (mut desc, mut log) = (SceneDesc::default(), Log::default());
