@@ -6,4 +6,6 @@ mod gltf;
 mod hostile;
 mod meshes;
 mod messages;
+#[cfg(feature = "usd")]
+mod usd;
 mod volumes;
