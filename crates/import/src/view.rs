@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use description::{CameraDesc, IntegratorDesc, LightKind, PathDesc, SceneDesc};
+use description::{CameraDesc, InfiniteRadiance, IntegratorDesc, LightKind, PathDesc, SceneDesc};
 use math::{DMat4, DVec3};
 
 use crate::log::Log;
@@ -23,6 +23,14 @@ pub(crate) struct View {
     pub resolution: [i32; 2],
     /// From a space in which it looks along −z, with y up.
     pub world_from_camera: DMat4,
+}
+
+/// A light with a surface, which is among the shapes of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lamp {
+    pub place: DVec3,
+    /// About how bright it is from afar, in candela.
+    pub intensity: f64,
 }
 
 /// The size of a picture of an aspect ratio: as large as 1280 × 720 pixels hold.
@@ -45,7 +53,13 @@ pub(crate) fn camera_from_world(world_from_node: DMat4) -> DMat4 {
 }
 
 /// Completes a scene whose surfaces are in a box.
-pub(crate) fn complete(desc: &mut SceneDesc, view: Option<View>, [low, high]: [DVec3; 2], log: &mut Log) {
+pub(crate) fn complete(
+    desc: &mut SceneDesc,
+    view: Option<View>,
+    [low, high]: [DVec3; 2],
+    lamps: &[Lamp],
+    log: &mut Log,
+) {
     let (low, high) = if low.cmple(high).all() && (low + high).is_finite() {
         (low, high)
     } else {
@@ -55,7 +69,7 @@ pub(crate) fn complete(desc: &mut SceneDesc, view: Option<View>, [low, high]: [D
         log.warn("empty-scene", "", "the scene has no surfaces");
     }
     // Emission of an object alone is more often that of its lamps than the light of a scene.
-    let is_lit = !desc.lights.is_empty()
+    let is_lit = !(desc.lights.is_empty() && lamps.is_empty())
         || (view.is_some() && !desc.area_lights.is_empty())
         || desc.area_lights.iter().any(|(_, light)| light.scale > 1.0);
     let has_camera = view.is_some();
@@ -69,7 +83,7 @@ pub(crate) fn complete(desc: &mut SceneDesc, view: Option<View>, [low, high]: [D
         None => studio::add_camera(desc, low, high),
     };
     if is_lit {
-        expose(desc, (low + high) / 2.0, (high - low).length() / 2.0, log);
+        expose(desc, (low + high) / 2.0, (high - low).length() / 2.0, lamps, log);
     } else {
         studio::add_light(desc, &axes);
         if !has_camera {
@@ -96,14 +110,24 @@ pub(crate) fn complete(desc: &mut SceneDesc, view: Option<View>, [low, high]: [D
 }
 
 /// Chooses a sensitivity where lights are so bright or so dark that nothing could be seen.
-fn expose(desc: &mut SceneDesc, center: DVec3, radius: f64, log: &mut Log) {
-    let mut illuminance = 0.0;
+fn expose(desc: &mut SceneDesc, center: DVec3, radius: f64, lamps: &[Lamp], log: &mut Log) {
+    let received = |lamp: Lamp| {
+        let distance = (lamp.place - center).length().max(radius / 4.0).max(1e-6);
+        lamp.intensity / (distance * distance)
+    };
+    let mut illuminance: f64 = lamps.iter().copied().map(received).sum();
     for (_, light) in desc.lights.iter() {
-        let distance = (light.world_from_light.start.w_axis.truncate() - center).length();
-        let distance = distance.max(radius / 4.0).max(1e-6);
-        illuminance += match light.kind {
-            LightKind::Distant { .. } => f64::from(light.scale),
-            _ => f64::from(light.scale) / (distance * distance),
+        let scale = f64::from(light.scale);
+        illuminance += match &light.kind {
+            LightKind::Distant { .. } => scale,
+            LightKind::Infinite { radiance: InfiniteRadiance::Constant(_), .. } => PI * scale,
+            LightKind::Infinite { radiance: InfiniteRadiance::Image(image), .. } => {
+                let image = &desc.images[*image].image;
+                let count = f64::from(image.width()) * f64::from(image.height());
+                let sum: f64 = image.values().map(f64::from).sum();
+                PI * scale * sum / (count * image.channel_count() as f64)
+            }
+            _ => received(Lamp { place: light.world_from_light.start.w_axis.truncate(), intensity: scale }),
         };
     }
     let radiance = illuminance / PI;

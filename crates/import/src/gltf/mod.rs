@@ -133,7 +133,7 @@ fn fill(
     assembly.add_all();
     let bounds = assembly.bounds;
     let camera = camera::chosen(&drawn, &cameras, selection)?;
-    view::complete(desc, camera, bounds, log);
+    view::complete(desc, camera, bounds, &[], log);
     Ok(())
 }
 

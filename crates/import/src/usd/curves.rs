@@ -11,8 +11,8 @@ use super::solid::Solid;
 use super::stage::Prim;
 use crate::log::{Log, Result};
 
-/// Width of curves and points that have none.
-const WIDTH: f64 = 1.0;
+/// Width of curves and points that have none, as a part of the box around them.
+const WIDTH: f64 = 1.0 / 500.0;
 
 /// A shape with the number of the curve or point whose colour it has.
 pub(super) type Numbered = (usize, Solid);
@@ -49,7 +49,7 @@ pub(super) fn read(prim: &Prim, log: &mut Log) -> Result<Vec<Numbered>> {
     };
     let varying = lengths.iter().map(|&length| ends(length)).sum();
     let counts = Counts { faces: lengths.len(), points: points.len(), varying, corners: points.len() };
-    let widths = widths(prim, counts, log)?;
+    let widths = widths(prim, counts, &points, log)?;
     if prim.array::<3>("normals")?.is_some_and(|normals| !normals.is_empty()) {
         log.warn("not-drawn", prim.path(), "ribbons are drawn as round curves");
     }
@@ -82,17 +82,17 @@ pub(super) fn read(prim: &Prim, log: &mut Log) -> Result<Vec<Numbered>> {
     Ok(curves)
 }
 
-fn widths(prim: &Prim, counts: Counts, log: &mut Log) -> Result<Primvar<1>> {
+fn widths(prim: &Prim, counts: Counts, points: &[[f64; 3]], log: &mut Log) -> Result<Primvar<1>> {
     let widths = Primvar::<1>::read(prim, "widths", Interpolation::Vertex, counts)?;
     Ok(match widths.map_or_else(|| Primvar::of(prim, "widths", counts), |widths| Ok(Some(widths)))? {
         Some(widths) => widths,
         None => {
-            log.warn(
-                "not-drawn",
-                prim.path(),
-                "curves and points without widths are drawn with a width of 1",
-            );
-            Primvar { interpolation: Interpolation::Constant, values: vec![[WIDTH]] }
+            log.warn("not-drawn", prim.path(), "curves and points without widths are drawn as thin ones");
+            let points = points.iter().map(|point| DVec3::from(*point));
+            let low = points.clone().fold(DVec3::INFINITY, DVec3::min);
+            let size = (points.fold(DVec3::NEG_INFINITY, DVec3::max) - low).length();
+            let width = if size.is_finite() { size * WIDTH } else { 0.0 };
+            Primvar { interpolation: Interpolation::Constant, values: vec![[width]] }
         }
     })
 }
@@ -185,7 +185,7 @@ pub(super) fn points(prim: &Prim, colors: Option<&Primvar<3>>, log: &mut Log) ->
     const MOST_COLORS: usize = 1024;
     let points = prim.array::<3>("points")?.unwrap_or_default();
     let counts = Counts { faces: 1, points: points.len(), varying: points.len(), corners: points.len() };
-    let widths = widths(prim, counts, log)?;
+    let widths = widths(prim, counts, &points, log)?;
     if let Some(index) = points.iter().position(|point| point.iter().any(|v| !v.is_finite())) {
         return Err(prim.fault("points", format!("the point {index} is not finite")));
     }

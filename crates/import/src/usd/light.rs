@@ -20,7 +20,8 @@ use crate::log::{Log, Result};
 /// What a light becomes.
 pub(super) enum Light {
     Light(Box<LightDesc>),
-    Shapes(Vec<Solid>),
+    /// Shapes that shine, and about how bright they are from afar.
+    Shapes(Vec<Solid>, f64),
 }
 
 /// What all lights have.
@@ -152,7 +153,10 @@ pub(super) fn read(
             let material = Some(materials.plain(Some([0.0; 3]), desc).material);
             let lit =
                 |solid: Solid| Solid { shape: ShapeDesc { area_light, material, ..solid.shape }, ..solid };
-            Ok(Some(Light::Shapes(solids.into_iter().map(lit).collect())))
+            // A convex body shows a quarter of its surface.
+            let is_flat = matches!(kind, "RectLight" | "DiskLight");
+            let intensity = scale * area * if is_flat { 1.0 } else { 0.25 };
+            Ok(Some(Light::Shapes(solids.into_iter().map(lit).collect(), intensity)))
         }
     }
 }

@@ -107,11 +107,11 @@ fn fill(
     let stage = Stage::open(&path.to_string_lossy(), resolver, selection.time, selection.shutter)?;
     let mut assembly = Assembly::new(desc, log, Materials::new(files));
     let bounds = assembly.add_all(&stage)?;
-    let views = std::mem::take(&mut assembly.views);
+    let (views, lamps) = (std::mem::take(&mut assembly.views), std::mem::take(&mut assembly.lamps));
     for fault in stage.composition_faults() {
         log.fault(fault);
     }
     let view = scene::chosen(views, selection.camera.as_ref())?;
-    view::complete(desc, view, bounds, log);
+    view::complete(desc, view, bounds, &lamps, log);
     Ok(())
 }

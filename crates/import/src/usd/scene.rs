@@ -14,7 +14,7 @@ use super::solid::{self, Solid};
 use super::stage::{Prim, Stage, TIMES};
 use super::{camera, curves, xform};
 use crate::log::{Fault, Log, Result};
-use crate::view::View;
+use crate::view::{Lamp, View};
 
 /// Deepest prim that is drawn, and deepest instance in instances.
 const DEEPEST: usize = 1000;
@@ -65,11 +65,13 @@ pub(super) struct Assembly<'a> {
     prototypes: HashMap<String, Prototype>,
     /// The cameras with their paths.
     pub views: Vec<(String, View)>,
+    /// The lights with a surface that are in no instance.
+    pub lamps: Vec<Lamp>,
 }
 
 impl<'a> Assembly<'a> {
     pub fn new(desc: &'a mut SceneDesc, log: &'a mut Log, materials: Materials<'a>) -> Self {
-        Self { desc, log, materials, prototypes: HashMap::new(), views: Vec::new() }
+        Self { desc, log, materials, prototypes: HashMap::new(), views: Vec::new(), lamps: Vec::new() }
     }
 
     /// Adds everything that is drawn but the camera; the corners of the box around all surfaces.
@@ -242,7 +244,10 @@ impl<'a> Assembly<'a> {
                 let Some(placement) = self.placement(&state.group_from_prim, prim) else { return Ok(()) };
                 match light::read(prim, kind, placement, &mut self.materials, (self.desc, self.log))? {
                     Some(Light::Light(light)) => group.lights.push(*light),
-                    Some(Light::Shapes(solids)) => {
+                    Some(Light::Shapes(solids, intensity)) => {
+                        if state.nesting == 0 {
+                            self.lamps.push(Lamp { place: placement.start.w_axis.truncate(), intensity });
+                        }
                         solids.into_iter().for_each(|solid| group.add(solid, placement));
                     }
                     None => {}

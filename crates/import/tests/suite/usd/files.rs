@@ -55,7 +55,11 @@ fn what_is_missing_is_an_error() {
     let imported = super::read("def \"r\" (references = @none.usda@) {}");
     let errors: Vec<_> = imported.diagnostics.iter().filter(|d| d.severity == Severity::Error).collect();
     assert_eq!(errors.len(), 1, "{errors:?}");
-    assert!(errors[0].message.contains("none.usda") && errors[0].message.contains("/r"), "{}", errors[0].message);
+    assert!(
+        errors[0].message.contains("none.usda") && errors[0].message.contains("/r"),
+        "{}",
+        errors[0].message
+    );
     let imported = import("none.usda", &MemoryAssets::default());
     assert!(imported.diagnostics[0].message.contains("cannot read `none.usda`"));
 }
@@ -89,7 +93,8 @@ fn packages_hold_layers_and_images() {
     let picture = image::Image::from_fn(1, 1, ["R", "G", "B"], |_, _| [1.0; 3]);
     let png = image::encode(&picture, image::Format::Png, &image::WriteOptions::default()).unwrap();
     let a = part(3);
-    let bytes = package(&[("root.usda", root.as_bytes()), ("parts/a.usda", a.as_bytes()), ("wood.png", &png)]);
+    let bytes =
+        package(&[("root.usda", root.as_bytes()), ("parts/a.usda", a.as_bytes()), ("wood.png", &png)]);
     let assets = MemoryAssets::default().with("s/a.usdz", bytes);
     let desc = without_errors(import("s/a.usdz", &assets));
     assert_eq!(corners(shape(&desc))[0][0], 2000);

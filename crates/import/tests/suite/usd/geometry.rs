@@ -146,7 +146,8 @@ fn values_have_all_interpolations() {
     let uvs = |values: &str| {
         let desc = scene(&format!("def Mesh \"m\" {{ {two} texCoord2f[] primvars:st = {values} }}"));
         let mesh = mesh(shape(&desc));
-        let of = |triangle: &[u32; 3]| triangle.map(|vertex| mesh.uvs[vertex as usize]).map(|uv| [uv.x, uv.y]);
+        let of =
+            |triangle: &[u32; 3]| triangle.map(|vertex| mesh.uvs[vertex as usize]).map(|uv| [uv.x, uv.y]);
         (mesh.positions.len(), mesh.indices.iter().map(of).collect::<Vec<_>>())
     };
     let (a, b, c, d) = ([0.0, 0.0], [0.25, 0.0], [0.25, 0.5], [0.0, 0.5]);
@@ -157,12 +158,16 @@ fn values_have_all_interpolations() {
     }
     assert_eq!(uvs("[(0.25, 0.5)] (interpolation = \"constant\")"), (4, vec![[c; 3]; 2]));
     assert_eq!(uvs("[(0, 0), (0.25, 0)] (interpolation = \"uniform\")"), (6, vec![[a; 3], [b; 3]]));
-    let indexed = format!("{four} (interpolation = \"faceVarying\") int[] primvars:st:indices = [0, 1, 2, 0, 3, 3]");
+    let indexed =
+        format!("{four} (interpolation = \"faceVarying\") int[] primvars:st:indices = [0, 1, 2, 0, 3, 3]");
     assert_eq!(uvs(&indexed), (5, vec![[a, b, c], [a, d, d]]));
     for (wrong, what) in [
         ("[(0, 0)] (interpolation = \"vertex\")", "/m.primvars:st: there must be 4 values, not 1"),
         ("[(0, 0)] (interpolation = \"edge\")", "`edge` is not an interpolation"),
-        ("[(0, 0)] (interpolation = \"vertex\") int[] primvars:st:indices = [0, 0, 1, 0]", "there is an index"),
+        (
+            "[(0, 0)] (interpolation = \"vertex\") int[] primvars:st:indices = [0, 0, 1, 0]",
+            "there is an index",
+        ),
     ] {
         let found = error(&format!("def Mesh \"m\" {{ {two} texCoord2f[] primvars:st = {wrong} }}"));
         assert!(found.contains(what), "{found}");
@@ -202,7 +207,9 @@ fn surfaces_are_subdivided_unless_they_say_otherwise() {
     let desc = scene(&format!("def Mesh \"m\" {{ {cube} uniform token subdivisionScheme = \"bilinear\" }}"));
     assert_eq!(mesh(shape(&desc)).indices.len(), 12);
     let desc = scene(&format!("def Mesh \"m\" {{ {cube} uniform token subdivisionScheme = \"loop\" }}"));
-    assert!(matches!(&shape(&desc).kind, ShapeKind::LoopSubdivision { mesh, levels: 3 } if mesh.indices.len() == 12));
+    assert!(
+        matches!(&shape(&desc).kind, ShapeKind::LoopSubdivision { mesh, levels: 3 } if mesh.indices.len() == 12)
+    );
 }
 
 #[test]
@@ -215,7 +222,9 @@ fn hidden_prims_are_not_drawn() {
         let desc = scene(&format!("def Xform \"a\" {{ {hidden} def Mesh \"m\" {{ {QUAD} }} }}"));
         assert!(shapes(&desc).is_empty(), "{hidden}");
     }
-    let desc = scene(&format!("def Xform \"a\" {{ uniform token purpose = \"render\" def Mesh \"m\" {{ {QUAD} }} }}"));
+    let desc = scene(&format!(
+        "def Xform \"a\" {{ uniform token purpose = \"render\" def Mesh \"m\" {{ {QUAD} }} }}"
+    ));
     assert_eq!(shapes(&desc).len(), 1);
     for kind in ["over", "class Mesh"] {
         assert!(shapes(&scene(&format!("{kind} \"m\" {{ {QUAD} }}"))).is_empty(), "{kind}");
@@ -228,7 +237,8 @@ fn ends(prim: &str) -> Vec<(DVec3, DVec3)> {
     let desc = scene(prim);
     let corners = |shape: &description::ShapeDesc| {
         let (low, high) = match &shape.kind {
-            ShapeKind::Cylinder { radius, z_min, z_max, .. } | ShapeKind::Sphere { radius, z_min, z_max, .. } => {
+            ShapeKind::Cylinder { radius, z_min, z_max, .. }
+            | ShapeKind::Sphere { radius, z_min, z_max, .. } => {
                 (Vec3::new(-radius, -radius, *z_min), Vec3::new(*radius, *radius, *z_max))
             }
             ShapeKind::Cone { radius, height, .. } => {
@@ -243,7 +253,8 @@ fn ends(prim: &str) -> Vec<(DVec3, DVec3)> {
             ),
             kind => panic!("{kind:?}"),
         };
-        let [a, b] = [low, high].map(|corner| shape.world_from_object.start.transform_point3(corner.as_dvec3()));
+        let [a, b] =
+            [low, high].map(|corner| shape.world_from_object.start.transform_point3(corner.as_dvec3()));
         (a.min(b).round(), a.max(b).round())
     };
     shapes(&desc).into_iter().map(corners).collect()
@@ -298,7 +309,8 @@ fn curves(properties: &str) -> Vec<(Vec<Vec3>, [f32; 2])> {
 
 #[test]
 fn curves_of_every_basis_are_bezier_curves() {
-    let points = "int[] curveVertexCounts = [4] point3f[] points = [(0, 0, 0), (6, 0, 0), (12, 6, 0), (18, 6, 0)]";
+    let points =
+        "int[] curveVertexCounts = [4] point3f[] points = [(0, 0, 0), (6, 0, 0), (12, 6, 0), (18, 6, 0)]";
     let constant = "float[] widths = [0.5] (interpolation = \"constant\")";
     let found = curves(&format!("{points} {constant} uniform token type = \"linear\""));
     assert_eq!(found.len(), 1);
@@ -312,22 +324,27 @@ fn curves_of_every_basis_are_bezier_curves() {
     let found = curves(&format!("{points} {constant} uniform token basis = \"catmullRom\""));
     let expected = [(6.0, 0.0), (8.0, 1.0), (10.0, 5.0), (12.0, 6.0)];
     assert_eq!(found[0].0, expected.map(|(x, y)| Vec3::new(x, y, 0.0)));
-    let pinned = format!("{points} {constant} uniform token basis = \"bspline\" uniform token wrap = \"pinned\"");
+    let pinned =
+        format!("{points} {constant} uniform token basis = \"bspline\" uniform token wrap = \"pinned\"");
     let found = curves(&pinned);
     assert_eq!((found[0].0.len(), found[0].0[0], found[0].0[9]), (10, Vec3::ZERO, Vec3::new(18.0, 6.0, 0.0)));
-    let periodic = format!("{points} {constant} uniform token type = \"linear\" uniform token wrap = \"periodic\"");
+    let periodic =
+        format!("{points} {constant} uniform token type = \"linear\" uniform token wrap = \"periodic\"");
     assert_eq!(curves(&periodic)[0].0[12], Vec3::ZERO);
     // Widths that are not linear along a curve divide it.
     let widths = "float[] widths = [1, 2, 3, 4] (interpolation = \"vertex\")";
     assert_eq!(curves(&format!("{points} {widths} uniform token type = \"linear\""))[0].1, [1.0, 4.0]);
     let widths = "float[] widths = [1, 2, 1, 4] (interpolation = \"vertex\")";
     let found = curves(&format!("{points} {widths} uniform token type = \"linear\""));
-    assert_eq!(found.iter().map(|(_, width)| *width).collect::<Vec<_>>(), [[1.0, 2.0], [2.0, 1.0], [1.0, 4.0]]);
+    assert_eq!(
+        found.iter().map(|(_, width)| *width).collect::<Vec<_>>(),
+        [[1.0, 2.0], [2.0, 1.0], [1.0, 4.0]]
+    );
     let wrong = error(&format!("def BasisCurves \"c\" {{ {} }}", points.replace("[4]", "[5]")));
     assert!(wrong.starts_with("/c.curveVertexCounts:"), "{wrong}");
     assert_eq!(
         warnings(&format!("def BasisCurves \"c\" {{ {points} }}")),
-        ["/c: curves and points without widths are drawn with a width of 1"]
+        ["/c: curves and points without widths are drawn as thin ones"]
     );
 }
 
@@ -345,7 +362,9 @@ fn points_are_spheres_of_their_colours() {
         let MaterialKind::Diffuse { reflectance } = &desc.materials[shape.material.unwrap()].kind else {
             panic!("not diffuse")
         };
-        let SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) = reflectance else { panic!("no colour") };
+        let SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) = reflectance else {
+            panic!("no colour")
+        };
         (spheres.radii.to_vec(), *rgb)
     });
     assert_eq!(found.collect::<Vec<_>>(), [(vec![0.5, 2.0], [1.0, 0.0, 0.0]), (vec![1.0], [0.0, 1.0, 0.0])]);

@@ -51,7 +51,8 @@ fn instances_may_hold_instances() {
     ));
     assert_eq!(desc.objects.len(), 2);
     assert_eq!(desc.instances.len(), 1);
-    let nested: Vec<_> = desc.objects.iter().map(|(_, object)| (object.shapes.len(), object.instances.len())).collect();
+    let nested: Vec<_> =
+        desc.objects.iter().map(|(_, object)| (object.shapes.len(), object.instances.len())).collect();
     assert_eq!(nested, [(1, 0), (0, 2)]);
 }
 

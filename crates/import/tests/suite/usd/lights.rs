@@ -30,7 +30,8 @@ fn near(found: f32, expected: f64) {
 
 #[test]
 fn lights_with_a_surface_have_its_luminance() {
-    let desc = lit("SphereLight", "float inputs:radius = 2 float inputs:intensity = 3 float inputs:exposure = 2");
+    let desc =
+        lit("SphereLight", "float inputs:radius = 2 float inputs:intensity = 3 float inputs:exposure = 2");
     let (kind, light) = area(&desc);
     assert!(matches!(kind, ShapeKind::Sphere { radius: 2.0, .. }));
     near(light.scale, 12.0);
@@ -40,7 +41,10 @@ fn lights_with_a_surface_have_its_luminance() {
     let normalized = "float inputs:width = 2 float inputs:height = 3 bool inputs:normalize = 1
         float3 xformOp:scale = (5, 2, 1) uniform token[] xformOpOrder = [\"xformOp:scale\"]";
     near(area(&lit("RectLight", normalized)).1.scale, 1.0 / 60.0);
-    near(area(&lit("DiskLight", "float inputs:radius = 2 bool inputs:normalize = 1")).1.scale, 1.0 / (4.0 * PI));
+    near(
+        area(&lit("DiskLight", "float inputs:radius = 2 bool inputs:normalize = 1")).1.scale,
+        1.0 / (4.0 * PI),
+    );
     let tube = "float inputs:radius = 2 float inputs:length = 3 bool inputs:normalize = 1";
     near(area(&lit("CylinderLight", tube)).1.scale, 1.0 / (12.0 * PI));
     let old = lit("SphereLight", "float intensity = 3 float radius = 2");
@@ -65,7 +69,8 @@ fn flat_lights_shine_towards_negative_z() {
 
 #[test]
 fn lights_without_size_have_an_intensity() {
-    let desc = lit("SphereLight", "float inputs:radius = 0 bool inputs:normalize = 1 float inputs:intensity = 100");
+    let desc =
+        lit("SphereLight", "float inputs:radius = 0 bool inputs:normalize = 1 float inputs:intensity = 100");
     assert!(matches!(only(&desc).kind, LightKind::Point { .. }));
     near(only(&desc).scale, 25.0);
     let desc = lit("SphereLight", "float inputs:radius = 2 bool treatAsPoint = 1 float inputs:intensity = 5");
@@ -73,7 +78,9 @@ fn lights_without_size_have_an_intensity() {
     let cone = "float inputs:radius = 0 bool inputs:normalize = 1 float inputs:shaping:cone:angle = 30
         float inputs:shaping:cone:softness = 0.5";
     let desc = lit("SphereLight", cone);
-    let LightKind::Spot { cone_angle, cone_delta_angle, to, .. } = only(&desc).kind else { panic!("no spot") };
+    let LightKind::Spot { cone_angle, cone_delta_angle, to, .. } = only(&desc).kind else {
+        panic!("no spot")
+    };
     assert_eq!((cone_angle, cone_delta_angle, to.z), (30.0, 15.0, -1.0));
 }
 
@@ -109,7 +116,8 @@ fn colours_and_temperatures_multiply() {
 fn domes_turn_as_they_are_placed() {
     let desc = lit("DomeLight", "float inputs:intensity = 2 color3f inputs:color = (1, 0.5, 0)");
     let light = only(&desc);
-    let LightKind::Infinite { radiance: InfiniteRadiance::Constant(SpectrumDesc::Rgb { rgb, .. }), .. } = &light.kind
+    let LightKind::Infinite { radiance: InfiniteRadiance::Constant(SpectrumDesc::Rgb { rgb, .. }), .. } =
+        &light.kind
     else {
         panic!("{light:?}")
     };
@@ -120,8 +128,10 @@ fn domes_turn_as_they_are_placed() {
     assert_eq!(world.transform_vector3(DVec3::NEG_X), DVec3::Z);
     let picture = image::Image::from_fn(4, 2, ["R", "G", "B"], |x, _| [x as f32, 1.0, 2.0]);
     let exr = image::encode(&picture, image::Format::Exr, &image::WriteOptions::default()).unwrap();
-    let prims = format!("def Mesh \"m\" {{ {QUAD} }} def DomeLight \"d\" {{ asset inputs:texture:file = @./sky.exr@
-        color3f inputs:color = (1, 0.5, 1) }}");
+    let prims = format!(
+        "def Mesh \"m\" {{ {QUAD} }} def DomeLight \"d\" {{ asset inputs:texture:file = @./sky.exr@
+        color3f inputs:color = (1, 0.5, 1) }}"
+    );
     let assets = MemoryAssets::default().with("s/a.usda", text(&prims)).with("s/sky.exr", exr);
     let desc = without_errors(import("s/a.usda", &assets));
     let LightKind::Infinite { radiance: InfiniteRadiance::Image(image), .. } = &only(&desc).kind else {
@@ -133,9 +143,16 @@ fn domes_turn_as_they_are_placed() {
 
 #[test]
 fn what_is_not_drawn_of_lights_is_named() {
-    let of = |kind: &str, properties: &str| warnings(&format!("def Mesh \"m\" {{ {QUAD} }} def {kind} \"l\" {{ {properties} }}"));
-    assert_eq!(of("DistantLight", "bool inputs:normalize = 1"), ["/l: the size of a distant light is not drawn: its shadows are sharp"]);
-    assert!(of("RectLight", "float inputs:shaping:cone:angle = 20")[0].starts_with("/l: the cone of a light"));
+    let of = |kind: &str, properties: &str| {
+        warnings(&format!("def Mesh \"m\" {{ {QUAD} }} def {kind} \"l\" {{ {properties} }}"))
+    };
+    assert_eq!(
+        of("DistantLight", "bool inputs:normalize = 1"),
+        ["/l: the size of a distant light is not drawn: its shadows are sharp"]
+    );
+    assert!(
+        of("RectLight", "float inputs:shaping:cone:angle = 20")[0].starts_with("/l: the cone of a light")
+    );
     assert!(of("SphereLight", "float inputs:shaping:focus = 2")[0].starts_with("/l: the focus"));
     assert!(of("PortalLight", "")[0].starts_with("/l: prims of the schema `PortalLight`"));
     assert!(of("SphereLight", "float inputs:radius = 1").is_empty());
@@ -159,22 +176,30 @@ fn cameras_have_their_lens_and_picture() {
     let eye = desc.camera_from_world.start.inverse();
     assert_eq!(eye.w_axis.truncate(), DVec3::new(0.0, 0.0, 5.0));
     assert_eq!(eye.z_axis.truncate(), DVec3::NEG_Z);
-    let (desc, _) = camera(&format!("{wide} float fStop = 0.5 float focusDistance = 4 float verticalApertureOffset = 9"));
+    let (desc, _) =
+        camera(&format!("{wide} float fStop = 0.5 float focusDistance = 4 float verticalApertureOffset = 9"));
     let CameraKind::Perspective { screen, lens, .. } = &desc.kind else { panic!("{desc:?}") };
     // 0.9 units of focal length, over twice the stop.
     assert_eq!((lens.radius, lens.focal_distance), (0.9, 4.0));
     assert_eq!(screen.window, Some([-2.0, 2.0, 0.0, 2.0]));
-    let (desc, _) = camera("token projection = \"orthographic\" float horizontalAperture = 40 float verticalAperture = 20");
+    let (desc, _) = camera(
+        "token projection = \"orthographic\" float horizontalAperture = 40 float verticalAperture = 20",
+    );
     let CameraKind::Orthographic { screen, .. } = &desc.kind else { panic!("{desc:?}") };
     assert_eq!(screen.window, Some([-2.0, 2.0, -1.0, 1.0]), "in tenths of a unit");
-    assert!(error("def Camera \"c\" { float focalLength = 0 }").starts_with("/c.focalLength: this must be above 0"));
+    assert!(
+        error("def Camera \"c\" { float focalLength = 0 }")
+            .starts_with("/c.focalLength: this must be above 0")
+    );
 }
 
 #[test]
 fn a_camera_may_be_chosen() {
     let at = |name: &str, x: f64| {
-        format!("def Camera \"{name}\" {{ double3 xformOp:translate = ({x}, 0, 5)
-            uniform token[] xformOpOrder = [\"xformOp:translate\"] }}")
+        format!(
+            "def Camera \"{name}\" {{ double3 xformOp:translate = ({x}, 0, 5)
+            uniform token[] xformOpOrder = [\"xformOp:translate\"] }}"
+        )
     };
     let prims = format!("def Mesh \"m\" {{ {QUAD} }} {} {}", at("left", -1.0), at("right", 1.0));
     let x = |path: &str| {
@@ -190,5 +215,7 @@ fn bare_scenes_are_shown_in_a_studio() {
     let desc = scene(&format!("def Mesh \"m\" {{ {QUAD} }}"));
     assert_eq!(desc.lights.len(), 1);
     assert_eq!(desc.shapes.len(), 2, "with a ground");
-    assert!(super::messages("", description::Severity::Warning).iter().any(|text| text.contains("no surfaces")));
+    assert!(
+        super::messages("", description::Severity::Warning).iter().any(|text| text.contains("no surfaces"))
+    );
 }

@@ -3,8 +3,8 @@
 use super::{QUAD, error, mesh, messages, number, scene, shape, shapes, text, warnings, without_errors};
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
-    FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, OpenPbrDesc, SceneDesc, Severity,
-    ShapeDesc, SpectrumDesc, SpectrumParameter, TextureKind, WrapMode,
+    FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, OpenPbrDesc, SceneDesc,
+    Severity, ShapeDesc, SpectrumDesc, SpectrumParameter, TextureKind, WrapMode,
 };
 
 /// A quadrilateral with a material of a `UsdPreviewSurface` with inputs, and other nodes.
@@ -39,7 +39,9 @@ fn principled(desc: &SceneDesc) -> &OpenPbrDesc {
 
 fn diffuse(desc: &SceneDesc, shape: &ShapeDesc) -> [f32; 3] {
     match kind(desc, shape) {
-        MaterialKind::Diffuse { reflectance: SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) } => *rgb,
+        MaterialKind::Diffuse { reflectance: SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) } => {
+            *rgb
+        }
         kind => panic!("{kind:?}"),
     }
 }
@@ -130,7 +132,11 @@ fn materials_may_have_inputs_and_graphs() {
         "float inputs:roughness.connect = </mat.inputs:a>",
         "float inputs:a.connect = </mat.inputs:b> float inputs:b.connect = </mat.inputs:a>",
     );
-    assert!(error(&circle).contains("/mat/s.inputs:roughness: its connections do not end"), "{}", error(&circle));
+    assert!(
+        error(&circle).contains("/mat/s.inputs:roughness: its connections do not end"),
+        "{}",
+        error(&circle)
+    );
 }
 
 /// A texture of an input, with properties of its own and of its transform.
@@ -194,7 +200,9 @@ fn textures_have_their_wrap_and_transform() {
     let moved = "float2 inputs:scale = (2, 3) float2 inputs:translation = (0.25, 0.5)";
     assert_eq!(of("", Some(moved)).1, MappingDesc::Uv { scale: [2.0, 3.0], delta: [0.25, 0.5] });
     // Counter-clockwise: u becomes v.
-    let MappingDesc::Affine { columns } = of("", Some("float inputs:rotation = 90")).1 else { panic!("not affine") };
+    let MappingDesc::Affine { columns } = of("", Some("float inputs:rotation = 90")).1 else {
+        panic!("not affine")
+    };
     assert!((columns[0][1] - 1.0).abs() < 1e-6 && (columns[1][0] + 1.0).abs() < 1e-6, "{columns:?}");
     assert_eq!(of("float4 inputs:scale = (0.5, 0.5, 0.5, 1)", None).2, 0.5);
 }
@@ -226,7 +234,10 @@ fn numbers_are_channels_of_images() {
         (image.channel, image.scale, desc.images[image.image].image.rgb(1, 0))
     };
     assert_eq!(of("g", "").0, Some(ImageChannel::Green));
-    assert_eq!((of("a", "").0, of("b", "float4 inputs:scale = (1, 1, 0.5, 1)").1), (Some(ImageChannel::Alpha), 0.5));
+    assert_eq!(
+        (of("a", "").0, of("b", "float4 inputs:scale = (1, 1, 0.5, 1)").1),
+        (Some(ImageChannel::Alpha), 0.5)
+    );
     // 1 − 0.6 of blue.
     let inverted = of("b", "float4 inputs:scale = (1, 1, -1, 1) float4 inputs:bias = (0, 0, 1, 0)");
     assert!((inverted.2[0] - 0.4).abs() < 1e-6, "{inverted:?}");
@@ -246,7 +257,8 @@ fn normal_maps_are_codes() {
     let desc = without_errors(textured("normal3f inputs:normal", "rgb", usual, None));
     let map = desc.materials[shape(&desc).material.unwrap()].normal_map.expect("a normal map");
     assert_eq!(desc.images[map].image.rgb(1, 0), [1.0, 0.8, 0.6]);
-    let halved = usual.replace("(2, 2, 2, 1)", "(1, 1, 2, 1)").replace("(-1, -1, -1, 0)", "(-0.5, -0.5, -1, 0)");
+    let halved =
+        usual.replace("(2, 2, 2, 1)", "(1, 1, 2, 1)").replace("(-1, -1, -1, 0)", "(-0.5, -0.5, -1, 0)");
     let desc = without_errors(textured("normal3f inputs:normal", "rgb", &halved, None));
     let map = desc.materials[shape(&desc).material.unwrap()].normal_map.expect("a normal map");
     let [x, ..] = desc.images[map].image.rgb(1, 0);
@@ -278,7 +290,9 @@ fn bound(group: &str, own: &str, more: &str) -> SceneDesc {
     let material = |name: &str, color: &str| {
         surfaced(&format!("color3f inputs:diffuseColor = {color}"), "")
             .split_once("def Material")
-            .map(|(_, rest)| format!("def Material{}", rest.replace("mat", name).replace("forname", "format")))
+            .map(|(_, rest)| {
+                format!("def Material{}", rest.replace("mat", name).replace("forname", "format"))
+            })
             .unwrap()
     };
     scene(&format!(
@@ -329,8 +343,11 @@ fn surfaces_without_a_material_have_their_colour() {
     let of = |color: &str| scene(&format!("def Mesh \"m\" {{ {QUAD} {color} }}"));
     let desc = of("color3f[] primvars:displayColor = [(0.5, 0.25, 0)]");
     assert_eq!(diffuse(&desc, shape(&desc)), [0.5, 0.25, 0.0]);
-    let desc = of("color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)] (interpolation = \"vertex\")");
-    let MaterialKind::Diffuse { reflectance: SpectrumParameter::Texture(_) } = kind(&desc, shape(&desc)) else {
+    let desc = of(
+        "color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)] (interpolation = \"vertex\")",
+    );
+    let MaterialKind::Diffuse { reflectance: SpectrumParameter::Texture(_) } = kind(&desc, shape(&desc))
+    else {
         panic!("no texture")
     };
     assert_eq!(desc.images.len(), 2, "and that of the studio");
