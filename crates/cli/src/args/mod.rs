@@ -127,7 +127,7 @@ pub struct Merge {
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 #[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
 pub struct Compare {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
     /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// The algorithms, see the list below, separated by commas. Each may have settings of its own:
@@ -171,7 +171,7 @@ pub struct Compare {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct TracePixel {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, or an archive
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, or an archive
     /// (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Column of the pixel, counted from 0 at the left.
@@ -227,7 +227,7 @@ pub enum Scene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
     /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write one JSON object to standard output instead of text.
@@ -239,7 +239,7 @@ pub struct Check {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct ConvertScene {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
     /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// The scene to write, with the extension .pbrt.

@@ -1,12 +1,15 @@
 //! What is refused of a layer before it is parsed, because the parser would not survive it.
 
+use super::binary;
+
 /// The deepest nesting of a text: the parser calls itself for each level.
 const DEEPEST: usize = 512;
 
 /// What is wrong with the bytes of a layer or a package.
 pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     match bytes {
-        [b'P', b'X' | b'K', ..] => Ok(()),
+        [b'P', b'K', ..] => Ok(()),
+        [b'P', b'X', b'R', b'-', ..] => binary::check(bytes),
         _ => check_text(bytes),
     }
 }

@@ -5,6 +5,7 @@
 //! their values, a file each reads one noun of the schemas, and `scene` puts all together. Every
 //! fault names its place as the path of a prim and the name of a property.
 
+mod binary;
 mod camera;
 mod curves;
 mod files;
