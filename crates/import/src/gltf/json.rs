@@ -179,13 +179,13 @@ mod tests {
         let root = Place::root(&value);
         let items = root.array("a").unwrap();
         assert_eq!(items[0].get("b/c").unwrap().pointer, "/a/0/b~1c");
-        assert_eq!(items[1].as_index(7, "nodes").unwrap_err().pointer, "/a/1");
+        assert_eq!(items[1].as_index(7, "nodes").unwrap_err().place, "/a/1");
         assert_eq!(items[1].as_index(8, "nodes"), Ok(7));
         assert_eq!(root.numbers("n"), Ok(Some([1.0, 2.5])));
         let fault = root.numbers::<3>("n").unwrap_err();
         assert_eq!(fault.message, "this must have 3 numbers, not 2");
-        assert_eq!(root.array("n").unwrap()[1].as_integer().unwrap_err().pointer, "/n/1");
-        assert_eq!(root.object("n").unwrap_err().pointer, "/n");
+        assert_eq!(root.array("n").unwrap()[1].as_integer().unwrap_err().place, "/n/1");
+        assert_eq!(root.object("n").unwrap_err().place, "/n");
         assert_eq!(root.required("q").unwrap_err().message, "`q` is missing");
         assert_eq!(root.number_in("q", 0.5, [0.0, 1.0]), Ok(0.5));
     }

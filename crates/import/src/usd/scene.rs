@@ -47,7 +47,9 @@ pub(super) struct Prototype {
 /// What prims inherit from those above.
 #[derive(Clone)]
 pub(super) struct State<'s> {
-    /// From a prim to its group, at both times.
+    /// From the world to the group.
+    group_from_world: DMat4,
+    /// From a prim to the group, at both times.
     group_from_prim: [DMat4; 2],
     purpose: Option<String>,
     /// The material, and whether it is stronger than those below.
@@ -81,8 +83,14 @@ impl<'a> Assembly<'a> {
             true => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
             false => DMat4::IDENTITY,
         };
-        let state =
-            State { group_from_prim: [upright; 2], purpose: None, material: None, depth: 0, nesting: 0 };
+        let state = State {
+            group_from_world: upright,
+            group_from_prim: [upright; 2],
+            purpose: None,
+            material: None,
+            depth: 0,
+            nesting: 0,
+        };
         let mut world = Group::default();
         for root in stage.roots()? {
             self.prim(&root, &state, &mut world);
@@ -156,8 +164,12 @@ impl<'a> Assembly<'a> {
         let mut state = State { depth: above.depth + 1, ..above.clone() };
         for time in TIMES {
             let local = xform::local(prim, time)?;
+            if local.is_reset && above.nesting > 0 {
+                let message = "transforms that are reset in instances begin at the instance";
+                self.log.warn("not-drawn", prim.path(), message);
+            }
             state.group_from_prim[time] = match local.is_reset {
-                true => local.parent_from_prim,
+                true => above.group_from_world * local.parent_from_prim,
                 false => above.group_from_prim[time] * local.parent_from_prim,
             };
         }
@@ -313,8 +325,12 @@ impl<'a> Assembly<'a> {
         if let Some(known) = self.prototypes.get(key) {
             return Ok(known.clone());
         }
-        let inner =
-            State { group_from_prim: [DMat4::IDENTITY; 2], nesting: state.nesting + 1, ..state.clone() };
+        let inner = State {
+            group_from_world: DMat4::IDENTITY,
+            group_from_prim: [DMat4::IDENTITY; 2],
+            nesting: state.nesting + 1,
+            ..state.clone()
+        };
         let mut group = Group::default();
         fill(self, &inner, &mut group)?;
         let mut object = ObjectDesc {

@@ -147,7 +147,7 @@ fn what_is_not_drawn_of_lights_is_named() {
         warnings(&format!("def Mesh \"m\" {{ {QUAD} }} def {kind} \"l\" {{ {properties} }}"))
     };
     assert_eq!(
-        of("DistantLight", "bool inputs:normalize = 1"),
+        of("DistantLight", "float inputs:intensity = 3 bool inputs:normalize = 1"),
         ["/l: the size of a distant light is not drawn: its shadows are sharp"]
     );
     assert!(

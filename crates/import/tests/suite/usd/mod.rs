@@ -10,7 +10,10 @@ mod lights;
 mod materials;
 
 use alhazen_import::{Imported, MemoryAssets, import};
-use description::{Diagnostic, MeshDesc, OpenPbrDesc, SceneDesc, Severity, ShapeDesc, ShapeKind};
+use description::{
+    Diagnostic, MaterialKind, MeshDesc, OpenPbrDesc, SceneDesc, Severity, ShapeDesc, ShapeKind, SpectrumDesc,
+    SpectrumParameter,
+};
 
 /// A quadrilateral (±1, ±1, 0) with texture coordinates; more of its properties follow.
 pub const QUAD: &str = r#"
@@ -67,8 +70,12 @@ pub fn warnings(prims: &str) -> Vec<String> {
 
 /// The shapes of a scene, without the ground of a studio.
 pub fn shapes(desc: &SceneDesc) -> Vec<&ShapeDesc> {
-    let shapes = desc.shapes.iter().map(|(_, shape)| &**shape);
-    shapes.filter(|shape| !matches!(shape.kind, ShapeKind::Disk { radius, .. } if radius > 5.0)).collect()
+    let is_ground = |shape: &ShapeDesc| {
+        let material = shape.material.map(|material| &desc.materials[material].kind);
+        matches!(material, Some(MaterialKind::Diffuse { reflectance: SpectrumParameter::Value(value) })
+            if *value == SpectrumDesc::Constant(0.36))
+    };
+    desc.shapes.iter().map(|(_, shape)| &**shape).filter(|shape| !is_ground(shape)).collect()
 }
 
 /// The only shape of a scene.
