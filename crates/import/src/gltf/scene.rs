@@ -367,7 +367,7 @@ impl<'s, 'a> Assembly<'s, 'a> {
             (triangles, surfaces)
         });
         let parts = parts.collect();
-        let (has_normals, is_stretched) = (material.normals.is_some(), material.anisotropy.is_some());
+        let (has_normals, is_stretched) = (material.has_normal_map(), material.anisotropy.is_some());
         Look { has_normals, is_stretched, parts }.shapes(&vertices, self.desc)
     }
 

@@ -437,7 +437,7 @@ impl Part<'_, '_, '_> {
         surface.number("coat_ior", 1.5.into());
         // The extension's coat does not darken what is under it.
         surface.number("coat_darkening", 0.0.into());
-        surface.0.geometry_coat_normal = self.normal_map(coat.normals.as_ref(), is_mirrored);
+        surface.desc.geometry_coat_normal = self.normal_map(coat.normals.as_ref(), is_mirrored);
     }
 
     fn sheen(&mut self, surface: &mut Principled) {
