@@ -8,7 +8,8 @@ use film::Film;
 use image::{Image, ImageError};
 use import::{AssetSource, Imported};
 use integrators::{Control, Limits, PassError, Session, SessionState, Stop};
-use scene::View;
+use math::DMat4;
+use scene::{Scene, View};
 
 use crate::sketch::Sketch;
 use crate::{Header, OverrideError, Overrides};
@@ -36,19 +37,43 @@ impl Job {
     /// Compiles everything that a scene needs to be rendered; the error is the list of all its
     /// diagnostics.
     pub fn compile(desc: SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
-        let view = View::compile(&desc, scene::world_from_render(&desc));
-        let (film, integrator) = (film::compile(&desc), integrators::build(&desc));
-        let settings = desc.settings();
-        let parts = (scene::compile(desc), view, film, integrator);
-        let desc = &settings;
+        let settings = desc.without_geometry();
+        let world_from_render = scene::world_from_render(&desc);
+        let scene = scene::compile(desc).map(|compiled| (Arc::new(compiled.scene), compiled.warnings));
+        let mut compiled = Self::assemble(scene, world_from_render, &settings)?;
+        let session = &compiled.job.session;
+        let (scene, resolution) = (session.scene(), session.state().film.full_resolution());
+        let has_background = scene.geometries().is_empty() || !scene.infinite_lights().is_empty();
+        if !has_background && !scene.has_surface_in(session.view(), resolution) {
+            let message = "no surface seems to be in view: none of 4096 camera rays hits one";
+            let span = settings.camera.origin.span;
+            compiled.warnings.push(Diagnostic::warning("nothing-in-view", message, span));
+        }
+        Ok(compiled)
+    }
+
+    /// A job of a scene that is compiled already: with the camera, film, sampler and algorithm of a
+    /// description, whose materials and media are those of the scene. Its geometry does not count.
+    pub fn of_scene(scene: Arc<Scene>, desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
+        let world_from_render = scene.world_from_render();
+        Self::assemble(Ok((scene, Vec::new())), world_from_render, desc)
+    }
+
+    fn assemble(
+        scene: Result<(Arc<Scene>, Vec<Diagnostic>), Vec<Diagnostic>>,
+        world_from_render: DMat4,
+        desc: &SceneDesc,
+    ) -> Result<CompiledJob, Vec<Diagnostic>> {
+        let view = View::compile(desc, world_from_render);
+        let parts = (scene, view, film::compile(desc), integrators::build(desc));
         let of_algorithm = match &parts {
-            (Ok(scene), _, _, Ok(built)) => built.integrator.warnings(&scene.scene),
+            (Ok((scene, _)), _, _, Ok(built)) => built.integrator.warnings(scene),
             _ => Vec::new(),
         };
-        let (Ok(scene), Ok(view), Ok(film), Ok(built)) = parts else {
+        let (Ok((scene, of_scene)), Ok(view), Ok(film), Ok(built)) = parts else {
             let (scene, view, film, built) = parts;
             let diagnostics = [
-                scene.map_or_else(|errors| errors, |scene| scene.warnings),
+                scene.map_or_else(|errors| errors, |(_, warnings)| warnings),
                 view.map_or_else(|errors| errors, |view| view.warnings),
                 film.map_or_else(|errors| errors, |film| film.warnings),
                 built.map_or_else(|errors| errors, |built| built.warnings),
@@ -56,14 +81,8 @@ impl Job {
             ];
             return Err(diagnostics.concat());
         };
-        let mut warnings =
-            [scene.warnings, view.warnings, film.warnings, built.warnings, of_algorithm].concat();
-        let (scene, view, mut film) = (Arc::new(scene.scene), view.view, film.film);
-        let has_background = scene.geometries().is_empty() || !scene.infinite_lights().is_empty();
-        if !has_background && !scene.has_surface_in(&view, film.full_resolution()) {
-            let message = "no surface seems to be in view: none of 4096 camera rays hits one";
-            warnings.push(Diagnostic::warning("nothing-in-view", message, desc.camera.origin.span));
-        }
+        let warnings = [of_scene, view.warnings, film.warnings, built.warnings, of_algorithm].concat();
+        let (view, mut film) = (view.view, film.film);
         if built.integrator.splats() {
             film.reserve_splats().map_err(|error| {
                 vec![Diagnostic::error("invalid-film", error.to_string(), desc.film.origin.span)]

@@ -45,3 +45,4 @@ pub use pack::{ConvertError, PackError, Packed, pack, pack_converted};
 pub use picture::{InSrgb, write_picture};
 pub use schedule::PreviewSchedule;
 pub use settings::{Group, PARTS, Part, integrator_names};
+pub use sketch::draft;

@@ -2,22 +2,22 @@
 //! size of the picture.
 //!
 //! A sketch is a [`Session`] of its own: of the same scene and algorithm, with a view and a film
-//! that have n times fewer pixels along each side. So it shows what the picture will show, with the
-//! noise of one sample in squares of n × n pixels. Work that does not depend on the number of
+//! that have n times fewer pixels along each side ([`draft`]). So it shows what the picture will
+//! show, with the noise of one sample in squares of n × n pixels. Work that does not depend on the number of
 //! pixels, such as tracing photons, is divided by n²; `whitted` follows no more than five
 //! scattering events, and `radiosity` does not subdivide its patches. Film, statistics and
 //! integrator of the picture are not touched.
 
 use std::sync::Arc;
 
-use description::{BdptDesc, IntegratorDesc, RadiosityDesc, SceneDesc};
+use description::{BdptDesc, Diagnostic, IntegratorDesc, RadiosityDesc, SceneDesc};
 use film::Film;
 use image::{Image, Pixels, Window};
 use integrators::{Control, Limits, Session, SessionState};
 use math::Bounds2i;
-use scene::View;
+use scene::{Scene, View};
 
-use crate::{Header, Overrides};
+use crate::Header;
 
 /// The maximum number of pixels of a sketch.
 const MOST_PIXELS: usize = 1 << 16;
@@ -26,8 +26,30 @@ const MOST_PIXELS: usize = 1 << 16;
 pub(crate) struct Sketch {
     /// Pixels of the picture along a side of a pixel of the sketch.
     n: u32,
-    /// Film, sampler and algorithm of the sketch.
+    /// The description of the picture, without geometry.
     desc: SceneDesc,
+}
+
+/// A session of the picture that `desc` describes, on the compiled scene, in pixels `n` times as
+/// wide and high, with this number of samples per pixel. Film position x of it is n·x of the
+/// picture. The geometry of the description does not count.
+pub fn draft(
+    scene: &Arc<Scene>,
+    mut desc: SceneDesc,
+    n: u32,
+    samples: u32,
+) -> Result<Session, Vec<Diagnostic>> {
+    let view = View::compile(&desc, scene.world_from_render())?.view.coarser(n);
+    lighten(&mut desc, n, samples);
+    let mut film = film::compile(&desc)?.film;
+    let integrator = integrators::build(&desc)?.integrator;
+    if integrator.splats() {
+        film.reserve_splats().map_err(|error| {
+            vec![Diagnostic::error("invalid-film", error.to_string(), desc.film.origin.span)]
+        })?;
+    }
+    let view = View { samples_per_pixel: samples, ..view };
+    Ok(Session::new(Arc::clone(scene), view, integrator, SessionState::new(film)))
 }
 
 impl Sketch {
@@ -38,24 +60,13 @@ impl Sketch {
             return None;
         }
         let n = (2..i32::MAX).find(|&n| coarse(&bounds, n).area() <= MOST_PIXELS)?;
-        let Bounds2i { min, max } = coarse(&bounds, n);
-        let mut small = desc.settings();
-        small.film.resolution = desc.film.resolution.map(|side| div_ceil(side, n));
-        small.film.crop_window = None;
-        small.film.pixel_bounds = Some([min[0], max[0], min[1], max[1]]);
-        lighten(&mut small.integrator, n);
-        Overrides { samples_per_pixel: Some(1), ..Overrides::default() }.apply(&mut small).ok()?;
-        Some(Self { n: n as u32, desc: small })
+        Some(Self { n: n as u32, desc: desc.without_geometry() })
     }
 
     /// Renders the sketch of the picture of `session`; `None` if it was cancelled, or memory is
     /// short.
     pub fn draw(&self, session: &Session, header: &Header, control: &Control) -> Option<Image> {
-        let integrator = integrators::build(&self.desc).ok()?.integrator;
-        let film = film::compile(&self.desc).ok()?.film;
-        let view = View { samples_per_pixel: 1, ..session.view().coarser(self.n) };
-        let state = SessionState::new(film);
-        let mut sketch = Session::new(Arc::clone(session.scene()), view, integrator, state);
+        let mut sketch = draft(session.scene(), self.desc.clone(), self.n, 1).ok()?;
         sketch.run(0..1, &Limits::default(), control, &mut |_| ()).ok()?;
         let samples = session.integrator().passes();
         let picture = header.picture_of(sketch.state(), samples).ok()?;
@@ -72,10 +83,22 @@ fn div_ceil(x: i32, n: i32) -> i32 {
     x / n + i32::from(x % n > 0)
 }
 
-/// Reduces work that does not depend on the number of pixels, and removes other outputs.
-fn lighten(integrator: &mut IntegratorDesc, n: i32) {
-    let fewer = |count: &mut u32| *count = count.div_ceil((n as u32).saturating_pow(2));
-    match integrator {
+/// Reduces film and sampler of a description, and work that does not depend on the number of
+/// pixels, and removes other outputs. Pixels as large as those of the picture keep all its work.
+fn lighten(desc: &mut SceneDesc, n: u32, samples: u32) {
+    let Bounds2i { min, max } = coarse(&film::pixel_bounds(&desc.film), n as i32);
+    desc.film.resolution = desc.film.resolution.map(|side| div_ceil(side, n as i32));
+    desc.film.crop_window = None;
+    desc.film.pixel_bounds = Some([min[0], max[0], min[1], max[1]]);
+    desc.sampler.kind.set_samples_per_pixel(samples);
+    if let IntegratorDesc::Mlt(mlt) = &mut desc.integrator.value {
+        mlt.mutations_per_pixel = samples;
+    }
+    if n == 1 {
+        return;
+    }
+    let fewer = |count: &mut u32| *count = count.div_ceil(n.saturating_pow(2));
+    match &mut desc.integrator.value {
         // At glass, rays double at each event.
         IntegratorDesc::Whitted(desc) => desc.max_depth = desc.max_depth.min(5),
         IntegratorDesc::PhotonMapping(desc) => {

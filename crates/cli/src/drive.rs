@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use alhazen::description::schema::Settings;
+use alhazen::description::{Diagnostic, SceneDesc};
 use alhazen::image::DisplaySettings;
 use alhazen::import::{AssetSource, Imported, import};
 use alhazen::integrators::{Control, Limits, PassError, Session};
@@ -75,14 +76,22 @@ impl Prepared {
     }
 
     /// Compiles the scene.
-    pub fn compile(mut self) -> Result<(Job, Compiled), Failure> {
+    pub fn compile(self) -> Result<(Job, Compiled), Failure> {
+        self.compile_as(|desc| Job::compile(desc).map(|compiled| (compiled.job, compiled.warnings)))
+    }
+
+    /// Compiles the scene by a function that gives warnings, too.
+    pub fn compile_as<T>(
+        mut self,
+        compile: impl FnOnce(SceneDesc) -> Result<(T, Vec<Diagnostic>), Vec<Diagnostic>>,
+    ) -> Result<(T, Compiled), Failure> {
         let integrator = self.imported.desc.integrator.name();
-        match Job::compile(std::mem::take(&mut self.imported.desc)) {
-            Ok(compiled) => {
-                self.imported.diagnostics.extend(compiled.warnings);
+        match compile(std::mem::take(&mut self.imported.desc)) {
+            Ok((compiled, warnings)) => {
+                self.imported.diagnostics.extend(warnings);
                 let Self { imported, begin, imported_at, .. } = self;
                 let compiled_at = Instant::now();
-                Ok((compiled.job, Compiled { imported, integrator, begin, imported_at, compiled_at }))
+                Ok((compiled, Compiled { imported, integrator, begin, imported_at, compiled_at }))
             }
             Err(errors) => {
                 if let Some(error) = self.overrides.blamed(&errors) {
@@ -108,6 +117,11 @@ impl Compiled {
     /// The name of the algorithm.
     pub fn integrator(&self) -> &'static str {
         self.integrator
+    }
+
+    /// What was imported, without its description, with all warnings.
+    pub fn imported(&self) -> &Imported {
+        &self.imported
     }
 }
 

@@ -28,6 +28,7 @@ mod summary;
 mod threads;
 mod trace;
 mod values;
+mod view;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => resume::resume(arguments),
         Command::Merge(arguments) => merge::merge(arguments).map(done),
         Command::Compare(arguments) => compare::compare(arguments),
+        Command::View(arguments) => view::view(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
         Command::Scene(args::Scene::Convert(arguments)) => scene::convert(arguments).map(done),
         Command::Scene(args::Scene::Pack(arguments)) => pack::pack(arguments).map(done),

@@ -90,4 +90,19 @@ impl SceneDesc {
             ..Self::default()
         }
     }
+
+    /// The same without shapes, objects and instances: all that film, camera and algorithm depend
+    /// on.
+    pub fn without_geometry(&self) -> Self {
+        Self {
+            images: self.images.clone(),
+            float_textures: self.float_textures.clone(),
+            spectrum_textures: self.spectrum_textures.clone(),
+            materials: self.materials.clone(),
+            media: self.media.clone(),
+            lights: self.lights.clone(),
+            area_lights: self.area_lights.clone(),
+            ..self.settings()
+        }
+    }
 }

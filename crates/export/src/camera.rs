@@ -6,6 +6,9 @@ use description::{
     ApertureDesc, CameraDesc, CameraKind, ImageDesc, RealisticCameraDesc, SceneDesc, TransformDesc,
 };
 
+use math::{DMat4, DVec3};
+
+use crate::ExportError;
 use crate::files::Files;
 use crate::names::Names;
 use crate::number::decimal;
@@ -78,6 +81,55 @@ pub(crate) fn camera(
         }
     }
     text.statement(statement);
+}
+
+/// A camera alone: the statements that place it where it is when its motion begins, and the camera
+/// itself. `LookAt` places it, after a `Scale` if it mirrors; a camera that is not rigid has its
+/// matrix. A `realistic` one, whose lens is a file, is placed only.
+pub fn export_camera(camera: &CameraDesc) -> Result<String, ExportError> {
+    let mut text = Text::new();
+    let matrix = camera.camera_from_world.start;
+    match LookAt::new(&matrix) {
+        Some(look_at) => look_at.write(&mut text),
+        None => text.matrix(&matrix),
+    }
+    if !matches!(camera.kind, CameraKind::Realistic(_)) {
+        text.statement(statement("Camera", camera, &mut BTreeSet::new()));
+    }
+    text.finish().map_err(ExportError::Unsupported)
+}
+
+/// A rigid camera, which may mirror.
+struct LookAt {
+    eye: DVec3,
+    target: DVec3,
+    up: DVec3,
+    mirrors: bool,
+}
+
+impl LookAt {
+    /// The place of a camera by its transform from world space.
+    fn new(camera_from_world: &DMat4) -> Option<Self> {
+        let world_from_camera = camera_from_world.inverse();
+        let [right, up, forward] = [0, 1, 2].map(|i| world_from_camera.col(i).truncate());
+        let is = |a: f64, b: f64| (a - b).abs() < 1e-5;
+        let lengths = [right, up, forward].map(DVec3::length);
+        let angles = [right.dot(up), up.dot(forward), forward.dot(right)];
+        let is_rigid = lengths.into_iter().all(|l| is(l, 1.0)) && angles.into_iter().all(|cos| is(cos, 0.0));
+        // The frame of the format has its right where up × forward is.
+        let (eye, mirrors) = (world_from_camera.w_axis.truncate(), up.cross(forward).dot(right) < 0.0);
+        // Far enough for the precision of floats.
+        let target = eye + forward * eye.length().max(1.0);
+        is_rigid.then_some(Self { eye, target, up, mirrors })
+    }
+
+    fn write(&self, text: &mut Text) {
+        if self.mirrors {
+            text.line("Scale -1 1 1");
+        }
+        let numbers = [self.eye, self.target, self.up].map(|v| v.to_array().map(|x| decimal(x as f32 + 0.0)));
+        text.line(&format!("LookAt {}", numbers.map(|v| v.join(" ")).join("  ")));
+    }
 }
 
 /// The times of the first and of the last transform of all motions; an error if they differ.

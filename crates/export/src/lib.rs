@@ -24,6 +24,8 @@ use std::{fmt, io};
 
 use description::SceneDesc;
 
+pub use crate::camera::export_camera;
+
 use crate::files::Files;
 use crate::names::Names;
 use crate::number::decimal;

@@ -157,7 +157,7 @@ impl Layer {
 
     /// The names of its channels in a picture; none where they depend on the pixels or the scene. A
     /// geometry buffer has the format's names.
-    pub(crate) fn channels(self, gbuffer: Option<GBufferSpace>) -> &'static [&'static str] {
+    pub fn channels(self, gbuffer: Option<GBufferSpace>) -> &'static [&'static str] {
         match gbuffer {
             Some(space) => self.format_channels(space).unwrap_or(self.own_channels()),
             None => self.own_channels(),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use math::Vec3;
 
 use super::cutaway::cutaway;
-use super::edges::{Edge, Kind, color, ends, shown_length};
+use super::edges::{Edge, EdgeKind};
 use super::frame::Frame;
 use super::{PixelTrace, TraceStep};
 use crate::Job;
@@ -52,7 +52,7 @@ impl<'a> Drawing<'a> {
     /// space.
     pub fn new(trace: &'a PixelTrace, job: &Job, side: Option<Side>) -> Self {
         let session = &job.session;
-        let edges = ends(trace, shown_length(trace));
+        let edges = trace.edges();
         let camera = session.view().camera.transform().camera_from_world(0.0).inverse();
         let axis = |v: Vec3| Vec3::from(camera.transform_vector3(v.as_dvec3()).as_vec3()).normalize_or_zero();
         let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(axis);
@@ -88,7 +88,8 @@ impl<'a> Drawing<'a> {
         );
         // Shadow rays are below the paths.
         for is_path in [false, true] {
-            for edge in self.edges.iter().filter(|edge| is_path == (color(edge.kind) == color(Kind::Path))) {
+            let of_path = |edge: &&Edge| matches!(edge.kind, EdgeKind::Path | EdgeKind::Escape);
+            for edge in self.edges.iter().filter(|edge| is_path == of_path(edge)) {
                 self.line(&mut svg, edge);
             }
         }
@@ -109,12 +110,12 @@ impl<'a> Drawing<'a> {
 
     fn line(&self, svg: &mut String, edge: &Edge) {
         let [[x1, y1], [x2, y2]] = edge.ends.map(|p| self.frame.place(p, WIDTH));
-        let [r, g, b] = color(edge.kind);
+        let [r, g, b] = edge.kind.color();
         let (width, dashes) = match edge.kind {
-            Kind::Path => (2.5, ""),
-            Kind::Escape => (2.5, " stroke-dasharray=\"8 5\""),
-            Kind::Light => (1.2, ""),
-            Kind::Shadow => (1.2, " stroke-dasharray=\"2 4\""),
+            EdgeKind::Path => (2.5, ""),
+            EdgeKind::Escape => (2.5, " stroke-dasharray=\"8 5\""),
+            EdgeKind::Light => (1.2, ""),
+            EdgeKind::Shadow => (1.2, " stroke-dasharray=\"2 4\""),
         };
         // Writing to a text never fails.
         let _ = writeln!(

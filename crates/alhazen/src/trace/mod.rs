@@ -21,6 +21,7 @@ use scene::light::LightId;
 use spectrum::SampledSpectrum;
 
 pub use drawing::{Drawing, Side};
+pub use edges::{Edge, EdgeKind};
 pub use ply::to_ply;
 
 use crate::Job;

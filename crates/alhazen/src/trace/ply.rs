@@ -3,12 +3,11 @@
 use math::Vec3;
 
 use super::PixelTrace;
-use super::edges::{color, ends, shown_length};
 
 /// A PLY file in ASCII: two vertices for each ray, and an edge between them. Rays of paths are
 /// blue, shadow rays that reach a light orange, others grey.
 pub fn to_ply(trace: &PixelTrace) -> String {
-    let edges = ends(trace, shown_length(trace));
+    let edges = trace.edges();
     let mut text = format!(
         "ply\nformat ascii 1.0\ncomment rays of pixel {} {}\nelement vertex {}\n",
         trace.pixel[0],
@@ -21,7 +20,7 @@ pub fn to_ply(trace: &PixelTrace) -> String {
     text +=
         &format!("element edge {}\nproperty int vertex1\nproperty int vertex2\nend_header\n", edges.len());
     for edge in &edges {
-        let [r, g, b] = color(edge.kind);
+        let [r, g, b] = edge.kind.color();
         for Vec3 { x, y, z } in edge.ends {
             text += &format!("{x} {y} {z} {r} {g} {b}\n");
         }

@@ -86,6 +86,20 @@ fn a_sketch_has_the_means_of_the_picture() {
     }
 }
 
+#[test]
+fn a_sketch_has_media() {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/fog.pbrt");
+    let mut desc = import(scene, &Files).desc;
+    Overrides { samples_per_pixel: Some(1), resolution: Some([320, 320]), ..Overrides::default() }
+        .apply(&mut desc)
+        .unwrap();
+    let mut job = Job::compile(desc).unwrap().job;
+    let sketch = sketch(&mut job).unwrap();
+    job.render(&Control::default()).unwrap();
+    let [found, expected] = [&sketch, &job.picture().unwrap()].map(|image| means(image).iter().sum::<f64>());
+    assert!((found / expected - 1.0).abs() < 0.1, "{found}, not {expected}");
+}
+
 /// The centroid of the picture, in pixels.
 fn middle(image: &Image) -> [f64; 2] {
     let width = image.width() as usize;

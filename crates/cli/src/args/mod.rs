@@ -62,6 +62,13 @@ pub enum Command {
     /// arrives, of the algorithms that estimate pixels one by one. The picture adds the same
     /// samples.
     TracePixel(Box<TracePixel>),
+    /// Walk through a scene in a window, or measure how fast that is without one.
+    ///
+    /// While the camera moves, pictures are coarse enough to be quick; when it rests, they become
+    /// the picture of `render`, sample by sample. Lights and materials can be changed, and the
+    /// paths of a pixel be seen. Programs built from source have the window with the cargo feature
+    /// `view`.
+    View(Box<View>),
     /// Check and convert scene files.
     #[command(subcommand)]
     Scene(Scene),
@@ -94,6 +101,7 @@ impl Command {
             Self::Image(Image::Diff(diff)) => diff.json,
             Self::Image(Image::Convert(convert)) => convert.json,
             Self::TracePixel(trace) => trace.json,
+            Self::View(view) => view.json,
             Self::Doctor(doctor) => doctor.json,
             Self::Completions(_) | Self::Man(_) => false,
         }
@@ -202,6 +210,37 @@ pub struct TracePixel {
     pub changes: Changes,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `alhazen view`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
+pub struct View {
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
+    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    pub scene: PathBuf,
+    /// The algorithm to begin with, see the list below. [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<String>,
+    /// Samples per pixel of the finished picture. [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// Changes to the scene.
+    #[command(flatten)]
+    pub changes: Changes,
+    /// How the light is shown to begin with.
+    #[command(flatten)]
+    pub display: DisplayOptions,
+    /// Open no window, but render a camera path, once around what the camera looks at, and report
+    /// the times of its frames.
+    #[arg(long)]
+    pub headless: bool,
+    /// The number of frames of that path.
+    #[arg(long, value_name = "N", default_value_t = 60, requires = "headless", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub frames: u32,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long, requires = "headless")]
     pub json: bool,
 }
 

@@ -2,17 +2,18 @@
 
 use std::sync::Arc;
 
-use alhazen_export::{ExportError, export};
+use alhazen_export::{ExportError, export, export_camera};
 use description::{
-    AreaLightDesc, CoatedConductorDesc, ConductorDesc, ImageDesc, ImageTextureDesc, InfiniteRadiance,
-    LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, RoughnessDesc, SceneDesc,
-    ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc,
+    AreaLightDesc, CameraDesc, CameraKind, CoatedConductorDesc, ConductorDesc, ImageDesc, ImageTextureDesc,
+    InfiniteRadiance, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, RoughnessDesc,
+    SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc,
 };
 use image::{ColorEncoding, Image, Pixels};
-use math::Vec3;
+use import::MemoryAssets;
+use math::{DMat4, DVec3, Vec3};
 
 use crate::plain::difference;
-use crate::round_trip;
+use crate::{read, round_trip};
 
 fn check(desc: &SceneDesc) -> String {
     let (exported, again) = round_trip(desc);
@@ -121,6 +122,34 @@ fn what_the_format_cannot_express_is_an_error() {
     let mut desc = SceneDesc::default();
     desc.shapes.push(ShapeDesc { alpha: Some(f32::NAN.into()), ..sphere() });
     assert!(problem(&desc).contains("`alpha` has a value that is not finite"), "{}", problem(&desc));
+}
+
+#[test]
+fn a_camera_alone_is_read_back_where_it_was() {
+    let turn = DMat4::from_rotation_x(0.3) * DMat4::from_rotation_y(-1.2);
+    let place = turn * DMat4::from_translation(DVec3::new(300.0, -20.0, 7.5));
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    let stretch = DMat4::from_scale(DVec3::new(1.0, 2.0, 1.0));
+    for (matrix, statement) in [
+        (DMat4::IDENTITY, "LookAt 0 0 0  0 0 1  0 1 0\n"),
+        (place, "LookAt -300 20 -7.5  "),
+        (mirror * place, "Scale -1 1 1\nLookAt -300 20 -7.5  "),
+        (stretch * place, "Transform ["),
+    ] {
+        let kind =
+            CameraKind::Perspective { screen: Default::default(), lens: Default::default(), fov: 40.0 };
+        let camera_from_world = TransformDesc::fixed(matrix);
+        let text = export_camera(&CameraDesc { kind, camera_from_world, ..CameraDesc::default() }).unwrap();
+        assert!(
+            text.starts_with(statement) && text.contains("Camera \"perspective\" \"float fov\" 40"),
+            "{text}"
+        );
+        let scene = format!("{text}WorldBegin\nShape \"sphere\"\n");
+        let read = read(&MemoryAssets::default().with("scene.pbrt", scene.as_bytes()));
+        let error = (read.camera.camera_from_world.start - matrix).to_cols_array();
+        assert!(error.iter().all(|e| e.abs() < 1e-4), "{text}: {error:?}");
+        assert!(matches!(read.camera.kind, CameraKind::Perspective { fov: 40.0, .. }));
+    }
 }
 
 #[test]

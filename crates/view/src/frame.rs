@@ -1,0 +1,81 @@
+//! Pictures as they are shown: the values of one layer, with how they came about.
+
+use std::time::Duration;
+
+use alhazen::film::Layer;
+use alhazen::image::PixelSource;
+use alhazen::integrators::Session;
+use alhazen::math::Bounds2i;
+use alhazen::spectrum::RgbColorSpace;
+use rayon::prelude::*;
+
+/// A picture.
+pub struct Frame {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Pixels of the film along a side of one of these.
+    pub n: u32,
+    /// Column and row of the first pixel, in pixels of its size.
+    first: [i32; 2],
+    /// Linear colours in `color_space`, or the numbers of `layer`; row by row from the upper left.
+    pub pixels: Vec<[f32; 3]>,
+    /// What is shown instead of colours.
+    pub layer: Option<Layer>,
+    /// The space of colours.
+    pub color_space: &'static RgbColorSpace,
+    /// Samples per pixel so far.
+    pub samples: u32,
+    /// Samples per pixel of the finished picture.
+    pub planned: u32,
+    /// How long it took since the one before.
+    pub time: Duration,
+    /// Rays traced for it.
+    pub rays: u64,
+}
+
+impl Frame {
+    /// The picture of a session so far, in pixels `n` times as wide and high as those of the film.
+    pub fn of(session: &Session, n: u32, layer: Option<Layer>) -> Self {
+        let film = &session.state().film;
+        let development = session.state().development();
+        let channels = development.channels();
+        let index = |name: &str| channels.iter().position(|channel| channel.name == name);
+        let names = layer.map_or(&["R", "G", "B"][..], |layer| layer.channels(film.settings().gbuffer));
+        // A layer of one number is grey, and one of two has no blue.
+        let shown = |i: usize| index(names.get(i).or(names.first().filter(|_| names.len() == 1))?);
+        let shown = [0, 1, 2].map(shown);
+        let size = [development.width(), development.height()];
+        let mut pixels = vec![[0.0; 3]; size[0] as usize * size[1] as usize];
+        let rows = pixels.par_chunks_exact_mut(size[0].max(1) as usize).zip(0..size[1]);
+        rows.for_each(|(row, y)| {
+            let mut values = vec![0.0; row.len() * channels.len()];
+            development.row(y, &mut values);
+            for (pixel, values) in row.iter_mut().zip(values.chunks_exact(channels.len())) {
+                *pixel = shown.map(|channel| channel.map_or(0.0, |channel| values[channel]));
+            }
+        });
+        Self {
+            size,
+            n,
+            first: film.pixel_bounds().min,
+            pixels,
+            layer,
+            color_space: film.color_space(),
+            samples: session.state().done.count(),
+            planned: session.integrator().passes(),
+            time: Duration::ZERO,
+            rays: session.progress().stats.rays,
+        }
+    }
+
+    /// The part that shows these pixels of the film, as fractions of width and height, from the
+    /// upper left to the lower right corner: large pixels may reach beyond them.
+    pub fn part(&self, bounds: &Bounds2i) -> [[f32; 2]; 2] {
+        [bounds.min, bounds.max].map(|corner| {
+            let along = |axis: usize| {
+                (corner[axis] as f32 / self.n as f32 - self.first[axis] as f32) / self.size[axis] as f32
+            };
+            [along(0), along(1)]
+        })
+    }
+}

@@ -1,0 +1,119 @@
+//! A camera path without a window: how fast pictures of a moving camera are.
+
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use alhazen::integrators::Control;
+use serde_json::{Value, json};
+
+use crate::renderer::StepError;
+use crate::{Flight, Renderer, Shot};
+
+/// The frame times of a camera path.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// From the begin of the program to the first picture.
+    pub first_picture: Duration,
+    /// How long it took to compile the scene.
+    pub compiled_in: Duration,
+    /// The time of each frame.
+    pub frames: Vec<Duration>,
+    /// Width and height of each frame in pixels.
+    pub sizes: Vec<[u32; 2]>,
+    /// Width and height of the whole picture.
+    pub resolution: [u32; 2],
+    /// Samples per pixel of a frame.
+    pub samples: u32,
+    /// Rays of all frames.
+    pub rays: u64,
+    /// The algorithm.
+    pub integrator: String,
+}
+
+impl Report {
+    /// Renders `frames` frames of a camera that orbits once around what it looks at. `begin` is
+    /// when the program began.
+    pub fn of_orbit(
+        renderer: &mut Renderer,
+        flight: &mut Flight,
+        frames: u32,
+        begin: Instant,
+        control: &Control,
+    ) -> Result<Self, StepError> {
+        let shot = renderer.shot().clone();
+        let bounds = renderer.world().bounds();
+        let mut report = Self {
+            first_picture: Duration::ZERO,
+            compiled_in: renderer.world().compiled_in,
+            frames: Vec::new(),
+            sizes: Vec::new(),
+            resolution: [bounds.width() as u32, bounds.height() as u32],
+            samples: shot.samples,
+            rays: 0,
+            integrator: shot.integrator.clone(),
+        };
+        for frame in 0..frames {
+            renderer.aim(Shot { camera: flight.camera().clone(), ..shot.clone() });
+            let Some(picture) = renderer.step(control)? else { continue };
+            if frame == 0 {
+                report.first_picture = begin.elapsed();
+            }
+            report.frames.push(picture.time);
+            report.sizes.push(picture.size);
+            report.rays += picture.rays;
+            flight.orbit(TAU / f64::from(frames), 0.0);
+        }
+        Ok(report)
+    }
+
+    /// The time that this share of the frames does not exceed.
+    pub fn quantile(&self, share: f64) -> Duration {
+        let mut times = self.frames.clone();
+        times.sort_unstable();
+        let index = (share * times.len() as f64).ceil() as usize;
+        times.get(index.saturating_sub(1)).copied().unwrap_or_default()
+    }
+
+    /// Frames per second.
+    pub fn fps(&self) -> f64 {
+        self.frames.len() as f64 / self.seconds()
+    }
+
+    /// Rays per second.
+    pub fn rays_per_second(&self) -> f64 {
+        self.rays as f64 / self.seconds()
+    }
+
+    fn seconds(&self) -> f64 {
+        self.frames.iter().sum::<Duration>().as_secs_f64().max(f64::MIN_POSITIVE)
+    }
+
+    /// The size of the frame in the middle, if all are ordered by their size.
+    pub fn median_size(&self) -> [u32; 2] {
+        let mut sizes = self.sizes.clone();
+        sizes.sort_unstable_by_key(|[width, height]| width * height);
+        sizes.get(sizes.len() / 2).copied().unwrap_or_default()
+    }
+
+    /// The report as JSON; times are in milliseconds.
+    pub fn to_json(&self) -> Value {
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        json!({
+            "status": "done",
+            "integrator": self.integrator,
+            "frames": self.frames.len(),
+            "frame_ms": {
+                "median": ms(self.quantile(0.5)),
+                "p95": ms(self.quantile(0.95)),
+                "max": ms(self.quantile(1.0)),
+            },
+            "fps": self.fps(),
+            "first_picture_ms": ms(self.first_picture),
+            "compile_ms": ms(self.compiled_in),
+            "resolution": self.resolution,
+            "frame_resolution": { "median": self.median_size(), "last": self.sizes.last() },
+            "samples_per_pixel": self.samples,
+            "rays_per_second": self.rays_per_second(),
+        })
+    }
+}

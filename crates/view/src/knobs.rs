@@ -1,0 +1,181 @@
+//! What can be changed of a scene while it is shown: lights and materials, as far as they are
+//! constants.
+
+use alhazen::description::{
+    ColorSpaceDesc, ConductorReflectance, FloatParameter, InfiniteRadiance, LightKind, MaterialKind,
+    OpenPbrDesc, Parameter, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter,
+};
+
+/// A thing with what can be changed of it.
+pub struct Thing<'a> {
+    /// Its name, or its kind and number.
+    pub name: String,
+    /// What can be changed.
+    pub knobs: Vec<Knob<'a>>,
+}
+
+/// A value that can be changed.
+pub struct Knob<'a> {
+    /// What it is.
+    pub label: &'static str,
+    /// The value.
+    pub value: Value<'a>,
+}
+
+/// The value of a knob.
+pub enum Value<'a> {
+    /// A colour, whose parts are from 0 to 1.
+    Color(ColorKnob<'a>),
+    /// The colour of a light, which has no upper limit.
+    Light(ColorKnob<'a>),
+    /// A factor of 0 or more.
+    Scale(&'a mut f32),
+    /// A number from 0 to 1.
+    Share(&'a mut f32),
+}
+
+/// A spectrum that is a colour: a constant, the white of a colour space, or red, green and blue.
+pub struct ColorKnob<'a>(&'a mut SpectrumDesc);
+
+impl<'a> ColorKnob<'a> {
+    fn new(spectrum: &'a mut SpectrumDesc) -> Option<Self> {
+        match spectrum {
+            SpectrumDesc::Constant(_) | SpectrumDesc::Rgb { .. } | SpectrumDesc::Illuminant(_) => {
+                Some(Self(spectrum))
+            }
+            SpectrumDesc::Named(_) | SpectrumDesc::Samples(_) | SpectrumDesc::Blackbody(_) => None,
+        }
+    }
+
+    /// Linear red, green and blue.
+    pub fn rgb(&self) -> [f32; 3] {
+        match *self.0 {
+            SpectrumDesc::Constant(value) => [value; 3],
+            SpectrumDesc::Rgb { rgb, .. } => rgb,
+            _ => [1.0; 3],
+        }
+    }
+
+    /// Changes the colour, in the colour space that it has.
+    pub fn set(&mut self, rgb: [f32; 3]) {
+        let space = match *self.0 {
+            SpectrumDesc::Rgb { space, .. } | SpectrumDesc::Illuminant(space) => space,
+            _ => ColorSpaceDesc::Srgb,
+        };
+        *self.0 = SpectrumDesc::Rgb { rgb, space };
+    }
+}
+
+/// The lights, first those that are not surfaces.
+pub fn lights(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
+    let lights = desc.lights.iter_mut().map(|(handle, light)| {
+        let light = &mut light.value;
+        let name = format!("{} light {}", light.kind.name(), handle.index() + 1);
+        let color = match &mut light.kind {
+            LightKind::Point { intensity, .. }
+            | LightKind::Spot { intensity, .. }
+            | LightKind::Goniometric { intensity, .. } => Some(intensity),
+            LightKind::Distant { radiance, .. }
+            | LightKind::Infinite { radiance: InfiniteRadiance::Constant(radiance), .. } => Some(radiance),
+            LightKind::Projection { .. } | LightKind::Infinite { .. } => None,
+        };
+        Thing { name, knobs: light_knobs(color, &mut light.scale) }
+    });
+    let surfaces = desc.area_lights.iter_mut().map(|(handle, light)| {
+        let light = &mut light.value;
+        let color = light.image.is_none().then_some(&mut light.radiance);
+        let name = format!("area light {}", handle.index() + 1);
+        Thing { name, knobs: light_knobs(color, &mut light.scale) }
+    });
+    lights.chain(surfaces).collect()
+}
+
+fn light_knobs<'a>(color: Option<&'a mut SpectrumDesc>, scale: &'a mut f32) -> Vec<Knob<'a>> {
+    let color = color.and_then(ColorKnob::new).map(Value::Light);
+    let color = color.map(|value| Knob { label: "colour", value });
+    color.into_iter().chain([Knob { label: "scale", value: Value::Scale(scale) }]).collect()
+}
+
+/// The materials that have something to change.
+pub fn materials(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
+    let things = desc.materials.iter_mut().map(|(handle, material)| {
+        let material = &mut material.value;
+        let name = match material.name.as_str() {
+            "" => format!("{} {}", material.kind.name(), handle.index() + 1),
+            name => name.to_owned(),
+        };
+        Thing { name, knobs: material_knobs(&mut material.kind) }
+    });
+    things.filter(|thing| !thing.knobs.is_empty()).collect()
+}
+
+fn material_knobs(kind: &mut MaterialKind) -> Vec<Knob<'_>> {
+    let mut knobs = Vec::new();
+    match kind {
+        MaterialKind::Diffuse { reflectance } => color(&mut knobs, "reflectance", reflectance),
+        MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
+            color(&mut knobs, "reflectance", reflectance);
+            color(&mut knobs, "transmittance", transmittance);
+        }
+        MaterialKind::Conductor(metal) => {
+            metal_color(&mut knobs, &mut metal.reflectance);
+            roughness(&mut knobs, &mut metal.roughness);
+        }
+        MaterialKind::Dielectric { roughness: rough, .. }
+        | MaterialKind::Subsurface { roughness: rough, .. } => {
+            roughness(&mut knobs, rough);
+        }
+        MaterialKind::CoatedDiffuse(coated) => {
+            color(&mut knobs, "reflectance", &mut coated.reflectance);
+            roughness(&mut knobs, &mut coated.roughness);
+        }
+        MaterialKind::CoatedConductor(coated) => {
+            metal_color(&mut knobs, &mut coated.conductor.reflectance);
+            roughness(&mut knobs, &mut coated.conductor.roughness);
+        }
+        MaterialKind::OpenPbr(principled) => {
+            let OpenPbrDesc { numbers, colors, .. } = &mut **principled;
+            for ((label, _), value) in OpenPbrDesc::COLORS.iter().zip(colors) {
+                if *label == "base_color" {
+                    color(&mut knobs, label, value);
+                }
+            }
+            for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(numbers) {
+                if matches!(number.name, "base_metalness" | "specular_roughness" | "transmission_weight") {
+                    share(&mut knobs, number.name, value);
+                }
+            }
+        }
+        MaterialKind::Mix { amount, .. } => share(&mut knobs, "amount", amount),
+        MaterialKind::ThinDielectric { .. }
+        | MaterialKind::Hair { .. }
+        | MaterialKind::Measured { .. }
+        | MaterialKind::Interface => (),
+    }
+    knobs
+}
+
+fn color<'a>(knobs: &mut Vec<Knob<'a>>, label: &'static str, parameter: &'a mut SpectrumParameter) {
+    if let Parameter::Value(spectrum) = parameter
+        && let Some(color) = ColorKnob::new(spectrum)
+    {
+        knobs.push(Knob { label, value: Value::Color(color) });
+    }
+}
+
+fn metal_color<'a>(knobs: &mut Vec<Knob<'a>>, reflectance: &'a mut ConductorReflectance) {
+    if let ConductorReflectance::Reflectance(parameter) = reflectance {
+        color(knobs, "reflectance", parameter);
+    }
+}
+
+fn roughness<'a>(knobs: &mut Vec<Knob<'a>>, roughness: &'a mut RoughnessDesc) {
+    share(knobs, "roughness u", &mut roughness.u);
+    share(knobs, "roughness v", &mut roughness.v);
+}
+
+fn share<'a>(knobs: &mut Vec<Knob<'a>>, label: &'static str, parameter: &'a mut FloatParameter) {
+    if let Parameter::Value(value) = parameter {
+        knobs.push(Knob { label, value: Value::Share(value) });
+    }
+}

@@ -1,0 +1,31 @@
+//! Scenes walked through.
+//!
+//! An [`Engine`] renders on a thread of its own what a [`Shot`] asks for: drafts while the camera
+//! moves, in a resolution that holds the frame time ([`Pace`]), and the picture itself when it
+//! rests, sample by sample, until it is that of `alhazen render`. A [`Flight`] moves the camera,
+//! [`knobs`] change lights and materials, [`lines`] shows the paths of a pixel. All this works
+//! without a display; a [`Report`] has the frame times of a camera path.
+//!
+//! With the feature `window` there is a window of it: [`window`].
+
+mod darkroom;
+mod engine;
+mod flight;
+mod frame;
+mod headless;
+pub mod knobs;
+pub mod lines;
+mod pace;
+mod renderer;
+#[cfg(feature = "window")]
+pub mod window;
+mod world;
+
+pub use darkroom::{develop, layers};
+pub use engine::{Engine, Output};
+pub use flight::{Flight, Mode};
+pub use frame::Frame;
+pub use headless::Report;
+pub use pace::Pace;
+pub use renderer::{Renderer, StepError};
+pub use world::{Shot, World};

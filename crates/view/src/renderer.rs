@@ -1,0 +1,230 @@
+//! Renders a scene step by step: at once a draft in large pixels, then finer ones, then the picture
+//! itself, sample by sample. Where the camera moves, it begins again.
+//!
+//! The picture itself is the [`Session`](alhazen::integrators::Session) of a whole render, so that
+//! in the end it has the bits of `alhazen render`.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use alhazen::Job;
+use alhazen::image::{DisplaySettings, ImageError};
+use alhazen::integrators::{Control, Limits, PassError};
+use alhazen::trace::{PixelTrace, TraceError};
+use alhazen::write_picture;
+
+use crate::{Frame, Pace, Shot, World};
+
+/// The shortest time between two pictures of a camera at rest.
+const SHORTEST: Duration = Duration::from_millis(40);
+
+/// The least ratio of that time to the one that making a picture of the film takes.
+const SHARE: u32 = 4;
+
+/// A scene that is being rendered.
+pub struct Renderer {
+    world: Arc<World>,
+    shot: Shot,
+    pace: Pace,
+    stage: Stage,
+}
+
+/// What the next step does.
+enum Stage {
+    /// A picture as coarse as the pace has it.
+    Draft,
+    /// A picture in pixels this many times as wide and high; the picture itself from 1 on.
+    Refine(u32),
+    /// The next samples of the picture.
+    Samples(Box<Samples>),
+    /// Nothing: the picture is done, or cannot be rendered.
+    Rest(Option<Box<Job>>),
+}
+
+/// The picture with its next samples.
+struct Samples {
+    job: Job,
+    /// When the last picture was shown, and the rays that had been traced then.
+    shown: Instant,
+    rays: u64,
+    /// How long it took to make it of the film.
+    cost: Duration,
+}
+
+/// Why a step has no picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StepError {
+    /// It was cancelled.
+    Cancelled,
+    /// It cannot be rendered; the text says why.
+    Problem(String),
+}
+
+impl From<PassError> for StepError {
+    fn from(error: PassError) -> Self {
+        match error {
+            PassError::Cancelled => Self::Cancelled,
+            PassError::OutOfMemory(problem) => Self::Problem(problem),
+        }
+    }
+}
+
+impl From<String> for StepError {
+    fn from(problem: String) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+impl Renderer {
+    /// A renderer that shows what the scene's author shows of it, in drafts that take about
+    /// `target`.
+    pub fn new(world: Arc<World>, target: Duration) -> Self {
+        let (shot, pace) = (world.shot(), Pace::new(target, world.bounds()));
+        Self { world, shot, pace, stage: Stage::Draft }
+    }
+
+    /// The scene.
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// What is shown.
+    pub fn shot(&self) -> &Shot {
+        &self.shot
+    }
+
+    /// Shows something else.
+    pub fn aim(&mut self, shot: Shot) {
+        self.shot = shot;
+        self.stage = Stage::Draft;
+    }
+
+    /// Shows a changed scene.
+    pub fn replace(&mut self, world: Arc<World>) {
+        self.world = world;
+        self.stage = Stage::Draft;
+    }
+
+    /// Begins the picture itself again, without drafts; after its samples were cancelled.
+    pub fn restart(&mut self) {
+        self.stage = Stage::Refine(1);
+    }
+
+    /// Whether the next step is the draft that follows a motion.
+    pub fn is_draft(&self) -> bool {
+        matches!(self.stage, Stage::Draft)
+    }
+
+    /// Whether there is nothing to do.
+    pub fn is_at_rest(&self) -> bool {
+        matches!(self.stage, Stage::Rest(_))
+    }
+
+    /// The picture itself, once it has samples.
+    pub fn job(&self) -> Option<&Job> {
+        let job = match &self.stage {
+            Stage::Samples(samples) => Some(&samples.job),
+            Stage::Rest(job) => job.as_deref(),
+            Stage::Draft | Stage::Refine(_) => None,
+        };
+        job.filter(|job| !job.session.state().done.is_empty())
+    }
+
+    /// Does the next step, and gives its picture where there is a new one. After an error there is
+    /// nothing more to do, unless it was cancelled.
+    pub fn step(&mut self, control: &Control) -> Result<Option<Frame>, StepError> {
+        let result = self.try_step(control);
+        if matches!(result, Err(StepError::Problem(_))) {
+            self.stage = Stage::Rest(None);
+        }
+        result
+    }
+
+    fn try_step(&mut self, control: &Control) -> Result<Option<Frame>, StepError> {
+        match &mut self.stage {
+            Stage::Draft => {
+                let n = self.pace.n();
+                let frame = self.draft(n, control)?;
+                self.pace.after(frame.pixels.len(), self.shot.samples, frame.time);
+                self.stage = Stage::Refine((n / 2).max(1));
+                Ok(Some(frame))
+            }
+            Stage::Refine(n) if *n > 1 => {
+                let n = *n;
+                let frame = self.draft(n, control)?;
+                self.stage = Stage::Refine(n / 2);
+                Ok(Some(frame))
+            }
+            Stage::Refine(_) => {
+                let job = self.world.job(&self.shot)?;
+                let (shown, rays, cost) = (Instant::now(), 0, Duration::ZERO);
+                self.stage = Stage::Samples(Box::new(Samples { job, shown, rays, cost }));
+                self.try_step(control)
+            }
+            Stage::Samples(samples) => {
+                let frame = samples.step(&self.shot, control)?;
+                if samples.is_done()
+                    && let Stage::Samples(samples) = std::mem::replace(&mut self.stage, Stage::Rest(None))
+                {
+                    self.stage = Stage::Rest(Some(Box::new(samples.job)));
+                }
+                Ok(frame)
+            }
+            Stage::Rest(_) => Ok(None),
+        }
+    }
+
+    fn draft(&self, n: u32, control: &Control) -> Result<Frame, StepError> {
+        let begin = Instant::now();
+        let mut session = self.world.draft(&self.shot, n)?;
+        session.run(0..self.shot.samples, &Limits::default(), control, &mut |_| ())?;
+        let mut frame = Frame::of(&session, n, self.shot.layer);
+        frame.time = begin.elapsed();
+        Ok(frame)
+    }
+
+    /// The paths of the first samples of a pixel.
+    pub fn trace(&self, pixel: [i32; 2], samples: u32, control: &Control) -> Result<PixelTrace, String> {
+        let mut job = self.world.job(&self.shot)?;
+        PixelTrace::new(&mut job, pixel, 0..samples, control).map_err(|error| match error {
+            TraceError::NoPixel => "there is no such pixel".into(),
+            TraceError::Cancelled => "cancelled".into(),
+            TraceError::Algorithm => {
+                format!("`{}` does not estimate pixels one by one; `path` does", self.shot.integrator)
+            }
+        })
+    }
+
+    /// Writes the picture so far; gives its number of samples per pixel, or `None` where there is
+    /// no picture yet.
+    pub fn save(&self, path: &std::path::Path, display: &DisplaySettings) -> Option<Result<u32, ImageError>> {
+        let job = self.job()?;
+        let state = job.session.state();
+        let written = write_picture(&job.header().development(state), path, display);
+        Some(written.map(|()| state.done.count()))
+    }
+}
+
+impl Samples {
+    /// The next samples; a picture if it is time for one.
+    fn step(&mut self, shot: &Shot, control: &Control) -> Result<Option<Frame>, StepError> {
+        let done = self.job.session.state().done.count();
+        let passes = done..(done + shot.samples).min(self.job.planned());
+        self.job.session.run(passes, &Limits::default(), control, &mut |_| ())?;
+        let time = self.shown.elapsed();
+        if done > 0 && !self.is_done() && time < SHORTEST.max(SHARE * self.cost) {
+            return Ok(None);
+        }
+        let begin = Instant::now();
+        let mut frame = Frame::of(&self.job.session, 1, shot.layer);
+        self.cost = begin.elapsed();
+        (frame.time, self.shown) = (time + self.cost, Instant::now());
+        let all = std::mem::replace(&mut self.rays, frame.rays);
+        frame.rays -= all;
+        Ok(Some(frame))
+    }
+
+    fn is_done(&self) -> bool {
+        self.job.session.state().done.count() >= self.job.planned()
+    }
+}

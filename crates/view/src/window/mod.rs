@@ -1,0 +1,73 @@
+//! The window: the picture between two panels. It asks the engine for what it shows, and never
+//! waits for it.
+
+mod developer;
+mod panels;
+mod stage;
+mod state;
+
+use std::time::Duration;
+
+use alhazen::description::SceneDesc;
+use alhazen::image::DisplaySettings;
+use eframe::egui::{CentralPanel, Color32, Frame, Margin, Panel, ScrollArea, Ui, ViewportBuilder, Visuals};
+
+use crate::World;
+use state::State;
+
+/// The width of a panel in points.
+const PANEL: f32 = 270.0;
+
+/// Behind the picture.
+const BACKGROUND: Color32 = Color32::from_gray(18);
+
+/// Opens a window that shows a scene, compiled and as its description for changes, until it is
+/// closed; while the camera moves, frames take about `target`. The error says why there is no window.
+pub fn open(
+    title: &str,
+    world: World,
+    desc: SceneDesc,
+    display: DisplaySettings,
+    target: Duration,
+) -> Result<(), String> {
+    let options = eframe::NativeOptions {
+        viewport: ViewportBuilder::default().with_inner_size([1280.0, 800.0]).with_title(title),
+        ..eframe::NativeOptions::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(move |context| {
+        context.egui_ctx.set_visuals(Visuals::dark());
+        let repaint = context.egui_ctx.clone();
+        let wake = move || repaint.request_repaint();
+        Ok(Box::new(Window { state: State::new(world, desc, display, target, wake) }))
+    });
+    eframe::run_native("alhazen", options, create).map_err(|error| error.to_string())
+}
+
+struct Window {
+    state: State,
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let state = &mut self.state;
+        state.refresh(ui.ctx());
+        stage::keys(ui, state);
+        let left = Panel::left("left").exact_size(PANEL).resizable(false);
+        left.show(ui, |ui| {
+            ScrollArea::vertical().show(ui, |ui| {
+                panels::rendering(ui, state);
+                panels::camera(ui, state);
+                panels::picture(ui, state);
+            });
+        });
+        let right = Panel::right("right").exact_size(PANEL).resizable(false);
+        right.show(ui, |ui| {
+            ScrollArea::vertical().show(ui, |ui| {
+                panels::paths(ui, state);
+                panels::scene(ui, state);
+            });
+        });
+        let frame = Frame::NONE.fill(BACKGROUND).inner_margin(Margin::same(8));
+        CentralPanel::default().frame(frame).show(ui, |ui| stage::stage(ui, state));
+    }
+}

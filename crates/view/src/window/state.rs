@@ -1,0 +1,163 @@
+//! What the window shows and has been asked for.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use alhazen::description::SceneDesc;
+use alhazen::export::export_camera;
+use alhazen::image::{DisplaySettings, replace_file};
+use alhazen::math::Bounds2i;
+use alhazen::scene::View;
+use eframe::egui::{Context, TextureHandle, TextureOptions};
+
+use super::developer::Developer;
+use crate::{Engine, Flight, Frame, Mode, Output, Shot, World};
+
+/// The state of the window.
+pub struct State {
+    engine: Engine,
+    developer: Developer,
+    /// What the engine has found.
+    pub output: Output,
+    /// The scene with all changes.
+    pub desc: SceneDesc,
+    /// What is shown.
+    pub shot: Shot,
+    /// The camera.
+    pub flight: Flight,
+    /// How the camera is moved.
+    pub mode: Mode,
+    /// Units of the scene per second.
+    pub speed: f64,
+    /// The current view.
+    pub view: Option<View>,
+    /// How colours are shown.
+    pub display: DisplaySettings,
+    /// The picture on the screen, and how its light was shown.
+    pub texture: Option<(TextureHandle, Arc<Frame>)>,
+    /// What was developed last.
+    asked: Option<(Arc<Frame>, DisplaySettings)>,
+    /// How many paths of a pixel are traced, and of which pixel.
+    pub paths: u32,
+    /// The pixel whose paths are shown.
+    pub pixel: Option<[i32; 2]>,
+    /// The file of the picture, beside which that of the camera is.
+    pub file: String,
+    /// What was written.
+    pub note: Option<Result<String, String>>,
+}
+
+impl State {
+    /// Shows a scene.
+    pub fn new(
+        world: World,
+        desc: SceneDesc,
+        display: DisplaySettings,
+        target: Duration,
+        wake: impl Fn() + Clone + Send + 'static,
+    ) -> Self {
+        let shot = world.shot();
+        let view = world.view(&shot);
+        let flight = world.flight();
+        let file = PathBuf::from(&desc.film.filename).with_extension("png").display().to_string();
+        let engine = Engine::start(world, target, wake.clone());
+        Self {
+            output: engine.output(),
+            engine,
+            developer: Developer::start(wake),
+            desc,
+            shot,
+            speed: 0.4 * flight.distance().max(f64::MIN_POSITIVE),
+            flight,
+            mode: Mode::default(),
+            view,
+            display,
+            texture: None,
+            asked: None,
+            paths: 4,
+            pixel: None,
+            file,
+            note: None,
+        }
+    }
+
+    /// Takes what is new: a picture of the engine to be developed, and one that was developed.
+    pub fn refresh(&mut self, context: &Context) {
+        self.output = self.engine.output();
+        if let Some(frame) = &self.output.frame {
+            let is_asked = self
+                .asked
+                .as_ref()
+                .is_some_and(|(asked, display)| Arc::ptr_eq(asked, frame) && *display == self.display);
+            if !is_asked {
+                self.asked = Some((Arc::clone(frame), self.display));
+                self.developer.develop(Arc::clone(frame), self.display);
+            }
+        }
+        if let Some(developed) = self.developer.take() {
+            let options = TextureOptions::LINEAR;
+            match &mut self.texture {
+                Some((texture, frame)) => {
+                    texture.set(developed.codes, options);
+                    *frame = developed.frame;
+                }
+                None => {
+                    let texture = context.load_texture("picture", developed.codes, options);
+                    self.texture = Some((texture, developed.frame));
+                }
+            }
+        }
+    }
+
+    /// The pixels of the picture.
+    pub fn bounds(&self) -> Bounds2i {
+        self.output.world.bounds()
+    }
+
+    /// Shows the camera where it is now, and other settings of the shot.
+    pub fn aim(&mut self) {
+        self.shot.camera = self.flight.camera().clone();
+        self.view = self.output.world.view(&self.shot);
+        self.engine.show(self.shot.clone());
+    }
+
+    /// Shows the changed scene.
+    pub fn edit(&self) {
+        self.engine.replace(self.desc.clone());
+    }
+
+    /// Shows the paths of a pixel, or of none.
+    pub fn trace(&mut self, pixel: Option<[i32; 2]>) {
+        self.pixel = pixel;
+        match pixel {
+            Some(pixel) => self.engine.trace(pixel, self.paths),
+            None => self.engine.forget_trace(),
+        }
+    }
+
+    /// Looks at what is seen at a position of the film.
+    pub fn look_at(&mut self, film: [f32; 2]) {
+        let view = self.view.as_ref();
+        if let Some(focus) = view.and_then(|view| self.output.world.seen_at(view, film)) {
+            self.flight.look_at(focus);
+            self.aim();
+        }
+    }
+
+    /// Writes the picture.
+    pub fn save_picture(&mut self) {
+        self.note = None;
+        self.engine.save(PathBuf::from(&self.file), self.display);
+    }
+
+    /// Writes the camera as text of the format beside the picture.
+    pub fn save_camera(&mut self) {
+        let path = PathBuf::from(&self.file).with_extension("camera.pbrt");
+        let written = export_camera(&self.shot.camera).map_err(|error| error.to_string());
+        let written = written.and_then(|text| {
+            replace_file(&path, text.as_bytes()).map_err(|error| format!("{}: {error}", path.display()))
+        });
+        self.note = Some(written.map(|()| path.display().to_string()));
+    }
+}

@@ -1,0 +1,51 @@
+//! The paths of a pixel over the picture.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use alhazen::integrators::Control;
+use alhazen_view::Renderer;
+use alhazen_view::lines::{Projector, vertices};
+
+use crate::world;
+
+#[test]
+fn paths_begin_at_their_pixel_and_add_up() {
+    let world = Arc::new(world(16));
+    let renderer = Renderer::new(Arc::clone(&world), Duration::from_millis(33));
+    let pixel = [50, 60];
+    let trace = renderer.trace(pixel, 16, &Control::default()).unwrap();
+    let view = world.view(renderer.shot()).unwrap();
+    let projector = Projector::new(world.scene(), &view);
+    let mut brought = 0;
+    for sample in &trace.samples {
+        let vertices = vertices(sample);
+        assert!(vertices.len() > 1 && vertices[0].p.is_none());
+        assert!(vertices.iter().enumerate().all(|(i, vertex)| vertex.number == i));
+        // The filter reaches over the pixel's border.
+        let first = projector.film(vertices[1].p.unwrap()).unwrap();
+        assert!((0..2).all(|axis| (first[axis] - pixel[axis] as f32 - 0.5).abs() < 2.5), "{first:?}");
+        for c in 0..3 {
+            let sum: f32 = vertices.iter().map(|vertex| vertex.rgb[c]).sum();
+            assert!((sum - sample.rgb[c]).abs() < 1e-3 * (1.0 + sum.abs()), "{sum} {:?}", sample.rgb);
+        }
+        brought += usize::from(vertices.iter().any(|vertex| vertex.rgb != [0.0; 3]));
+    }
+    assert!(brought > 8, "{brought}");
+    assert!(projector.lines(&trace).len() > 64);
+    // What is behind the camera is not seen.
+    let flight = world.flight();
+    let behind = flight.position() - flight.forward();
+    assert_eq!(projector.film(behind.as_vec3().into()), None);
+}
+
+#[test]
+fn the_middle_of_the_picture_is_what_the_camera_looks_at() {
+    let world = world(1);
+    let view = world.view(&world.shot()).unwrap();
+    let focus = world.flight().focus();
+    let film = Projector::new(world.scene(), &view).film(focus.as_vec3().into()).unwrap();
+    assert!((film[0] - 48.0).abs() < 0.01 && (film[1] - 36.0).abs() < 0.01, "{film:?}");
+    let seen = world.seen_at(&view, film).unwrap();
+    assert!(seen.distance(focus) < 1e-3 * focus.length().max(1.0));
+}
