@@ -3,8 +3,10 @@
 
 use alhazen::description::{
     ColorSpaceDesc, ConductorReflectance, FloatParameter, InfiniteRadiance, LightKind, MaterialKind,
-    OpenPbrDesc, Parameter, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter,
+    OpenPbrDesc, Parameter, RoughnessDesc, SceneDesc, Span, SpectrumDesc, SpectrumParameter,
 };
+use alhazen::scene::texture::{SpectrumType, compile_spectrum};
+use alhazen::spectrum::{DenselySampled, RgbColorSpace, Spectrum};
 
 /// A thing with what can be changed of it.
 pub struct Thing<'a> {
@@ -34,35 +36,47 @@ pub enum Value<'a> {
     Share(&'a mut f32),
 }
 
-/// A spectrum that is a colour: a constant, the white of a colour space, or red, green and blue.
-pub struct ColorKnob<'a>(&'a mut SpectrumDesc);
+/// A spectrum as a colour.
+pub struct ColorKnob<'a> {
+    spectrum: &'a mut SpectrumDesc,
+    is_light: bool,
+}
 
-impl<'a> ColorKnob<'a> {
-    fn new(spectrum: &'a mut SpectrumDesc) -> Option<Self> {
-        match spectrum {
-            SpectrumDesc::Constant(_) | SpectrumDesc::Rgb { .. } | SpectrumDesc::Illuminant(_) => {
-                Some(Self(spectrum))
-            }
-            SpectrumDesc::Named(_) | SpectrumDesc::Samples(_) | SpectrumDesc::Blackbody(_) => None,
-        }
-    }
-
-    /// Linear red, green and blue.
+impl ColorKnob<'_> {
+    /// Linear red, green and blue; of a measured spectrum those of the colour that it looks like, in
+    /// sRGB.
     pub fn rgb(&self) -> [f32; 3] {
-        match *self.0 {
-            SpectrumDesc::Constant(value) => [value; 3],
+        match *self.spectrum {
+            SpectrumDesc::Constant(value) if !self.is_light => [value; 3],
             SpectrumDesc::Rgb { rgb, .. } => rgb,
-            _ => [1.0; 3],
+            SpectrumDesc::Illuminant(_) => [1.0; 3],
+            _ => self.looks_like(),
         }
     }
 
-    /// Changes the colour, in the colour space that it has.
+    /// Replaces the spectrum by a colour, in the colour space that it has.
     pub fn set(&mut self, rgb: [f32; 3]) {
-        let space = match *self.0 {
+        let space = match *self.spectrum {
             SpectrumDesc::Rgb { space, .. } | SpectrumDesc::Illuminant(space) => space,
             _ => ColorSpaceDesc::Srgb,
         };
-        *self.0 = SpectrumDesc::Rgb { rgb, space };
+        *self.spectrum = SpectrumDesc::Rgb { rgb, space };
+    }
+
+    /// The colour of a light of the luminance 1, or of a surface in white light.
+    fn looks_like(&self) -> [f32; 3] {
+        let (space, kind) = (RgbColorSpace::srgb(), SpectrumType::Unbounded);
+        let spectrum = compile_spectrum(self.spectrum, kind, Span::NONE, &mut Vec::new());
+        let white = space.illuminant();
+        let (xyz, luminance) = if self.is_light {
+            let xyz = spectrum.to_xyz();
+            (xyz, xyz.y)
+        } else {
+            let reflected = DenselySampled::from_fn(|lambda| spectrum.at(lambda) * white.at(lambda));
+            (Spectrum::from(reflected).to_xyz(), white.to_xyz().y)
+        };
+        let rgb = space.to_rgb(xyz).to_array();
+        rgb.map(|part| (part / luminance.max(f32::MIN_POSITIVE)).max(0.0))
     }
 }
 
@@ -91,8 +105,10 @@ pub fn lights(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
 }
 
 fn light_knobs<'a>(color: Option<&'a mut SpectrumDesc>, scale: &'a mut f32) -> Vec<Knob<'a>> {
-    let color = color.and_then(ColorKnob::new).map(Value::Light);
-    let color = color.map(|value| Knob { label: "colour", value });
+    let color = color.map(|spectrum| {
+        let value = Value::Light(ColorKnob { spectrum, is_light: true });
+        Knob { label: "colour", value }
+    });
     color.into_iter().chain([Knob { label: "scale", value: Value::Scale(scale) }]).collect()
 }
 
@@ -156,10 +172,9 @@ fn material_knobs(kind: &mut MaterialKind) -> Vec<Knob<'_>> {
 }
 
 fn color<'a>(knobs: &mut Vec<Knob<'a>>, label: &'static str, parameter: &'a mut SpectrumParameter) {
-    if let Parameter::Value(spectrum) = parameter
-        && let Some(color) = ColorKnob::new(spectrum)
-    {
-        knobs.push(Knob { label, value: Value::Color(color) });
+    if let Parameter::Value(spectrum) = parameter {
+        let value = Value::Color(ColorKnob { spectrum, is_light: false });
+        knobs.push(Knob { label, value });
     }
 }
 

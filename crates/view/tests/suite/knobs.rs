@@ -45,6 +45,28 @@ fn lights_become_brighter_and_coloured() {
 }
 
 #[test]
+fn measured_spectra_become_the_colours_that_they_look_like() {
+    let mut desc = desc("cornell-box.pbrt", 16);
+    let before = mean(&desc);
+    let mut count = 0;
+    let mut replace = |things: Vec<Thing<'_>>| {
+        for knob in things.into_iter().flat_map(|thing| thing.knobs) {
+            if let Value::Color(mut color) | Value::Light(mut color) = knob.value {
+                let rgb = color.rgb();
+                color.set(rgb);
+                assert_eq!(color.rgb(), rgb);
+                count += 1;
+            }
+        }
+    };
+    replace(lights(&mut desc));
+    replace(materials(&mut desc));
+    assert!(count >= 4);
+    let after = mean(&desc);
+    assert!((0..3).all(|c| (after[c] / before[c] - 1.0).abs() < 0.15), "{before:?} {after:?}");
+}
+
+#[test]
 fn every_constant_of_a_material_can_be_changed() {
     let mut desc = SceneDesc::default();
     let texture = desc.spectrum_textures.push(TextureDesc::new(TextureKind::Constant(0.5.into())));
