@@ -1,8 +1,11 @@
 //! `cargo xtask dist`: archives of the program for people without Rust.
 //!
 //! An archive has the program, its man pages, completions for shells, the README and the licences.
-//! On Linux the program is linked statically, so that it runs on any distribution, and there is a
-//! Debian package, too.
+//! On Linux there is a Debian package, too.
+//!
+//! The program has the window of `alhazen view`. Libraries of a graphics driver can be loaded by a
+//! dynamically linked program only, so on Linux it needs a glibc as new as that of the machine that
+//! built it. With `--static` it has no window, and runs on any distribution.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,16 +21,20 @@ const DOCUMENTS: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
 /// Builds for this machine, or for another target, into `target/dist`.
 pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let host = host(root)?;
+    let (is_static, arguments) = match arguments {
+        ["--static", rest @ ..] => (true, rest),
+        _ => (false, arguments),
+    };
     let triple = match arguments {
         [] => host.as_str(),
         [triple] => triple,
-        _ => return Err("expected one target, such as aarch64-unknown-linux-gnu".into()),
+        _ => return Err("expected --static or a target, such as aarch64-unknown-linux-gnu".into()),
     };
-    let program = build(root, triple)?;
+    let program = build(root, triple, is_static)?;
     // Pages and completions are the same everywhere, and only a program of this machine runs.
-    let own = if triple == host { program.clone() } else { build(root, &host)? };
+    let own = if triple == host { program.clone() } else { build(root, &host, is_static)? };
     let dist = target(root).join("dist");
-    let name = format!("alhazen-{VERSION}-{triple}");
+    let name = format!("alhazen-{VERSION}-{triple}{}", if is_static { "-static" } else { "" });
     let folder = dist.join(&name);
     io(&folder, || assemble(root, &folder, &program))?;
     describe(&own, &folder)?;
@@ -35,7 +42,7 @@ pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let archive = format!("{name}.tar.gz");
     succeed(Command::new("tar").current_dir(&dist).args(["-czf", &archive, &name]))?;
     println!("{}", dist.join(archive).display());
-    if triple.contains("linux") {
+    if triple.contains("linux") && !is_static {
         debian(&folder, triple, &dist)?;
     }
     Ok(())
@@ -50,10 +57,11 @@ fn host(root: &Path) -> Result<String, String> {
 }
 
 /// Builds the program for a target, and returns its path.
-fn build(root: &Path, triple: &str) -> Result<PathBuf, String> {
+fn build(root: &Path, triple: &str, is_static: bool) -> Result<PathBuf, String> {
     let mut command = cargo(root);
-    command.args(["build", "--release", "--package", "alhazen-cli", "--features", "usd", "--target", triple]);
-    if triple.contains("linux-gnu") {
+    let features = if is_static { "usd" } else { "usd,view" };
+    command.args(["build", "--release", "--package", "alhazen-cli", "--features", features, "--target", triple]);
+    if is_static && triple.contains("linux-gnu") {
         // This replaces the flags of `.cargo/config.toml`.
         let processor = if triple.starts_with("x86_64") { "-C target-cpu=x86-64-v3 " } else { "" };
         let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
@@ -132,7 +140,8 @@ fn lay_out(folder: &Path, package: &Path, architecture: &str) -> std::io::Result
     fs::create_dir_all(package.join("DEBIAN"))?;
     let control = format!(
         "Package: alhazen\nVersion: {VERSION}\nArchitecture: {architecture}\nSection: graphics\n\
-         Priority: optional\nInstalled-Size: {size}\nMaintainer: The authors of alhazen \
+         Priority: optional\nInstalled-Size: {size}\nDepends: libc6, libgcc-s1\nRecommends: \
+         libvulkan1, mesa-vulkan-drivers, libxkbcommon-x11-0, libxcursor1, libxi6\nMaintainer: The authors of alhazen \
          <alhazen@localhost>\nDescription: physically based renderer\n Renders pbrt-v4 scenes and meshes \
          by every algorithm of light transport.\n"
     );

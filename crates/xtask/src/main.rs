@@ -24,8 +24,9 @@ usage: cargo xtask TASK
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
   wheel      build the Python package, into target/wheels
-  dist [TARGET]
-             archives of the program, and on Debian a package, into target/dist
+  dist [--static] [TARGET]
+             archives of the program, and on Debian a package, into target/dist;
+             with --static without a window, for any Linux
   gallery [NAME…]
              the pages of docs/gallery with these in their names, with their pictures
   scenes [NAME…]

@@ -13,11 +13,12 @@ struct Step {
     arguments: &'static [&'static str],
 }
 
-/// What is tested and packed beyond the program of a plain `cargo build`.
-const FEATURES: &str = "alhazen-cli/usd";
+/// What is checked beyond the program of a plain `cargo build`, and what of it is tested.
+const CHECKED: &str = "alhazen-cli/usd,alhazen-cli/view";
+const TESTED: &str = "alhazen-cli/usd";
 
 /// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
-/// and documentation share one check of the workspace.
+/// and documentation share one check of the workspace, which has the window; tests do without.
 const STEPS: [Step; 5] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {
@@ -27,7 +28,7 @@ const STEPS: [Step; 5] = [
             "--quiet",
             "--workspace",
             "--features",
-            FEATURES,
+            CHECKED,
             "--profile",
             "checked",
             "--all-targets",
@@ -48,7 +49,7 @@ const STEPS: [Step; 5] = [
             "--quiet",
             "--workspace",
             "--features",
-            FEATURES,
+            CHECKED,
             "--profile",
             "checked",
             "--no-deps",
@@ -62,7 +63,7 @@ const STEPS: [Step; 5] = [
             "--quiet",
             "--workspace",
             "--features",
-            FEATURES,
+            TESTED,
             "--profile",
             "checked",
             "--no-fail-fast",
