@@ -89,6 +89,7 @@ impl Engine {
             control: Control::new(Arc::clone(&shared.cancel), system_clock()),
             shared: Arc::clone(&shared),
             wake: Box::new(wake),
+            pixel: None,
             save: None,
         };
         Self { shared, thread: Some(std::thread::spawn(move || worker.run())) }
@@ -168,6 +169,8 @@ struct Worker {
     control: Control,
     shared: Arc<Shared>,
     wake: Box<dyn Fn() + Send>,
+    /// The pixel whose paths are asked for.
+    pixel: Option<([i32; 2], u32)>,
     /// What is to be written when there is a picture.
     save: Option<(PathBuf, DisplaySettings)>,
 }
@@ -181,12 +184,13 @@ impl Worker {
                 Err(StepError::Problem(problem)) => self.tell(|output| output.problem = Some(problem)),
                 Ok(None) | Err(StepError::Cancelled) => (),
             }
+            self.trace();
             self.write();
         }
     }
 
     fn read(&mut self, mail: Mail) {
-        if mail.shot.is_some() || mail.desc.is_some() {
+        if !mail.is_empty() {
             locked(&self.shared.output).problem = None;
         }
         if let Some(shot) = mail.shot {
@@ -207,14 +211,19 @@ impl Worker {
                 }
             }
         }
-        if let Some((pixel, samples)) = mail.pixel {
-            let trace = self.renderer.trace(pixel, samples, &self.control);
-            self.tell(|output| match trace {
-                Ok(trace) => (output.trace, output.problem) = (Some(Arc::new(trace)), None),
-                Err(problem) => output.problem = Some(problem),
-            });
-        }
+        self.pixel = mail.pixel.or(self.pixel);
         self.save = mail.save.or(self.save.take());
+    }
+
+    fn trace(&mut self) {
+        let Some((pixel, samples)) = self.pixel else { return };
+        match self.renderer.trace(pixel, samples, &self.control) {
+            Ok(trace) => self.tell(|output| output.trace = Some(Arc::new(trace))),
+            Err(StepError::Problem(problem)) => self.tell(|output| output.problem = Some(problem)),
+            // It is tried again after what has cancelled it.
+            Err(StepError::Cancelled) => return,
+        }
+        self.pixel = None;
     }
 
     fn write(&mut self) {

@@ -6,6 +6,7 @@ use alhazen::film::Layer;
 use alhazen::image::PixelSource;
 use alhazen::integrators::Session;
 use alhazen::math::Bounds2i;
+use alhazen::scene::View;
 use alhazen::spectrum::RgbColorSpace;
 use rayon::prelude::*;
 
@@ -17,6 +18,8 @@ pub struct Frame {
     pub n: u32,
     /// Column and row of the first pixel, in pixels of its size.
     first: [i32; 2],
+    /// The view that it shows, in pixels of its size.
+    pub view: View,
     /// Linear colours in `color_space`, or the numbers of `layer`; row by row from the upper left.
     pub pixels: Vec<[f32; 3]>,
     /// What is shown instead of colours.
@@ -58,6 +61,7 @@ impl Frame {
             size,
             n,
             first: film.pixel_bounds().min,
+            view: session.view().clone(),
             pixels,
             layer,
             color_space: film.color_space(),

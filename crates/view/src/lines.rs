@@ -1,34 +1,36 @@
 //! The paths of a pixel over the picture: their lines as a camera sees them, and what each vertex
 //! brings.
 
-use alhazen::math::{DVec3, Vec2, Vec3};
+use alhazen::math::{DMat4, Vec2, Vec3};
 use alhazen::scene::{Scene, View};
 use alhazen::trace::{EdgeKind, PixelTrace, SampleTrace, TraceStep};
+
+use crate::Frame;
 
 /// The pieces of a line, each of which is projected apart: some may lie behind the camera.
 const PIECES: u32 = 64;
 
-/// Projects points of the world to the film of a view.
+/// Projects points of the world to the film as a picture shows them.
 pub struct Projector<'a> {
-    scene: &'a Scene,
+    render_from_world: DMat4,
     view: &'a View,
+    n: f32,
 }
 
 impl<'a> Projector<'a> {
-    /// For a view of a scene.
-    pub fn new(scene: &'a Scene, view: &'a View) -> Self {
-        Self { scene, view }
+    /// For a picture of a scene.
+    pub fn new(scene: &Scene, frame: &'a Frame) -> Self {
+        let render_from_world = scene.world_from_render().inverse();
+        Self { render_from_world, view: &frame.view, n: frame.n as f32 }
     }
 
     /// The film position of a point in pixels, perhaps beside the film; `None` if the camera does
     /// not see it, for which a `realistic` one is too complex.
     pub fn film(&self, p: Vec3) -> Option<[f32; 2]> {
         let camera = &self.view.camera;
-        let render_from_world = self.scene.world_from_render().inverse();
-        let p: DVec3 = render_from_world.transform_point3(p.as_dvec3());
-        let time = camera.sample_time(0.5);
-        let film = camera.sample_wi(p.as_vec3().into(), time, Vec2::splat(0.5))?.film;
-        Some([film.x, film.y])
+        let p = self.render_from_world.transform_point3(p.as_dvec3()).as_vec3().into();
+        let film = camera.sample_wi(p, camera.sample_time(0.5), Vec2::splat(0.5))?.film;
+        Some([film.x * self.n, film.y * self.n])
     }
 
     /// The visible pieces of the rays of a trace.

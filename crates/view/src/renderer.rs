@@ -184,14 +184,15 @@ impl Renderer {
     }
 
     /// The paths of the first samples of a pixel.
-    pub fn trace(&self, pixel: [i32; 2], samples: u32, control: &Control) -> Result<PixelTrace, String> {
+    pub fn trace(&self, pixel: [i32; 2], samples: u32, control: &Control) -> Result<PixelTrace, StepError> {
         let mut job = self.world.job(&self.shot)?;
         PixelTrace::new(&mut job, pixel, 0..samples, control).map_err(|error| match error {
-            TraceError::NoPixel => "there is no such pixel".into(),
-            TraceError::Cancelled => "cancelled".into(),
-            TraceError::Algorithm => {
-                format!("`{}` does not estimate pixels one by one; `path` does", self.shot.integrator)
-            }
+            TraceError::NoPixel => StepError::Problem("there is no such pixel".into()),
+            TraceError::Cancelled => StepError::Cancelled,
+            TraceError::Algorithm => StepError::Problem(format!(
+                "`{}` does not estimate pixels one by one; `path` does",
+                self.shot.integrator
+            )),
         })
     }
 

@@ -87,7 +87,7 @@ impl World {
         session.map_err(|errors| summary(&errors))
     }
 
-    /// The view of a shot.
+    /// The view of a shot; `None` if its camera or its settings have errors.
     pub fn view(&self, shot: &Shot) -> Option<View> {
         let settings = self.settings(shot).ok()?;
         Some(View::compile(&settings, self.scene.world_from_render()).ok()?.view)

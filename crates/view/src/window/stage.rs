@@ -56,9 +56,9 @@ pub fn stage(ui: &mut Ui, state: &mut State) {
 
 /// Draws the paths of the pixel over the picture.
 fn paths(ui: &Ui, state: &State, place: &Place) {
-    let (Some(trace), Some(view)) = (&state.output.trace, &state.view) else { return };
+    let (Some(trace), Some((_, frame))) = (&state.output.trace, &state.texture) else { return };
     let painter = ui.painter().with_clip_rect(place.rect);
-    let projector = Projector::new(state.output.world.scene(), view);
+    let projector = Projector::new(state.output.world.scene(), frame);
     for (ends, kind) in projector.lines(trace) {
         let ends = ends.map(|end| place.point(end));
         let [r, g, b] = kind.color();

@@ -8,7 +8,6 @@ use alhazen::description::SceneDesc;
 use alhazen::export::export_camera;
 use alhazen::image::{DisplaySettings, replace_file};
 use alhazen::math::Bounds2i;
-use alhazen::scene::View;
 use eframe::egui::{Context, TextureHandle, TextureOptions};
 
 use super::developer::Developer;
@@ -30,8 +29,6 @@ pub struct State {
     pub mode: Mode,
     /// Units of the scene per second.
     pub speed: f64,
-    /// The current view.
-    pub view: Option<View>,
     /// How colours are shown.
     pub display: DisplaySettings,
     /// The picture on the screen, and how its light was shown.
@@ -58,7 +55,6 @@ impl State {
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Self {
         let shot = world.shot();
-        let view = world.view(&shot);
         let flight = world.flight();
         let file = PathBuf::from(&desc.film.filename).with_extension("png").display().to_string();
         let engine = Engine::start(world, target, wake.clone());
@@ -71,7 +67,6 @@ impl State {
             speed: 0.4 * flight.distance().max(f64::MIN_POSITIVE),
             flight,
             mode: Mode::default(),
-            view,
             display,
             texture: None,
             asked: None,
@@ -118,7 +113,6 @@ impl State {
     /// Shows the camera where it is now, and other settings of the shot.
     pub fn aim(&mut self) {
         self.shot.camera = self.flight.camera().clone();
-        self.view = self.output.world.view(&self.shot);
         self.engine.show(self.shot.clone());
     }
 
@@ -138,8 +132,9 @@ impl State {
 
     /// Looks at what is seen at a position of the film.
     pub fn look_at(&mut self, film: [f32; 2]) {
-        let view = self.view.as_ref();
-        if let Some(focus) = view.and_then(|view| self.output.world.seen_at(view, film)) {
+        let Some((_, frame)) = &self.texture else { return };
+        let film = film.map(|x| x / frame.n as f32);
+        if let Some(focus) = self.output.world.seen_at(&frame.view, film) {
             self.flight.look_at(focus);
             self.aim();
         }

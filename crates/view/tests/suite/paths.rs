@@ -9,14 +9,17 @@ use alhazen_view::lines::{Projector, vertices};
 
 use crate::world;
 
+const TARGET: Duration = Duration::from_millis(33);
+
 #[test]
 fn paths_begin_at_their_pixel_and_add_up() {
     let world = Arc::new(world(16));
-    let renderer = Renderer::new(Arc::clone(&world), Duration::from_millis(33));
+    let mut renderer = Renderer::new(Arc::clone(&world), TARGET);
     let pixel = [50, 60];
     let trace = renderer.trace(pixel, 16, &Control::default()).unwrap();
-    let view = world.view(renderer.shot()).unwrap();
-    let projector = Projector::new(world.scene(), &view);
+    let frame = renderer.step(&Control::default()).unwrap().unwrap();
+    assert!(frame.n > 1);
+    let projector = Projector::new(world.scene(), &frame);
     let mut brought = 0;
     for sample in &trace.samples {
         let vertices = vertices(sample);
@@ -41,11 +44,11 @@ fn paths_begin_at_their_pixel_and_add_up() {
 
 #[test]
 fn the_middle_of_the_picture_is_what_the_camera_looks_at() {
-    let world = world(1);
-    let view = world.view(&world.shot()).unwrap();
+    let world = Arc::new(world(1));
+    let frame = Renderer::new(Arc::clone(&world), TARGET).step(&Control::default()).unwrap().unwrap();
     let focus = world.flight().focus();
-    let film = Projector::new(world.scene(), &view).film(focus.as_vec3().into()).unwrap();
+    let film = Projector::new(world.scene(), &frame).film(focus.as_vec3().into()).unwrap();
     assert!((film[0] - 48.0).abs() < 0.01 && (film[1] - 36.0).abs() < 0.01, "{film:?}");
-    let seen = world.seen_at(&view, film).unwrap();
+    let seen = world.seen_at(&frame.view, film.map(|x| x / frame.n as f32)).unwrap();
     assert!(seen.distance(focus) < 1e-3 * focus.length().max(1.0));
 }
