@@ -1,16 +1,12 @@
 //! From the numbers of a picture to the codes of a display.
 
 use std::num::NonZero;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::available_parallelism;
 
 use alhazen::film::Layer;
 use alhazen::image::{ColorEncoding, Display, DisplaySettings};
 
 use crate::Frame;
-
-/// Pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 14;
 
 /// Distances from here on are those of nothing.
 const FAR: f32 = 1e9;
@@ -24,26 +20,17 @@ pub fn develop(frame: &Frame, display: &DisplaySettings) -> Vec<u8> {
     let display = Display::new(display, frame.color_space);
     let show = Shown::of(frame);
     let mut codes = vec![255; 4 * frame.pixels.len()];
-    let parts: Vec<_> = codes.chunks_mut(4 * CHUNK).zip(frame.pixels.chunks(CHUNK)).map(Some).collect();
-    let parts = std::sync::Mutex::new(parts);
-    let next = AtomicUsize::new(0);
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let part = {
-                let mut parts = parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                parts.get_mut(index).and_then(Option::take)
-            };
-            let Some((codes, pixels)) = part else { return };
-            for (code, pixel) in codes.chunks_exact_mut(4).zip(pixels) {
-                code[..3].copy_from_slice(&show.codes(*pixel, &display));
-            }
-        }
-    };
-    let threads = available_parallelism().map_or(1, NonZero::get).min(frame.pixels.len().div_ceil(CHUNK));
+    let threads = available_parallelism().map_or(1, NonZero::get);
+    let part = frame.pixels.len().div_ceil(threads).max(1);
     std::thread::scope(|scope| {
-        (1..threads).for_each(|_| drop(scope.spawn(work)));
-        work();
+        for (codes, pixels) in codes.chunks_mut(4 * part).zip(frame.pixels.chunks(part)) {
+            let (show, display) = (&show, &display);
+            scope.spawn(move || {
+                for (code, pixel) in codes.chunks_exact_mut(4).zip(pixels) {
+                    code[..3].copy_from_slice(&show.codes(*pixel, display));
+                }
+            });
+        }
     });
     codes
 }

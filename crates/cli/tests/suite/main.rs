@@ -18,3 +18,4 @@ mod scene;
 mod serve;
 mod tev;
 mod trace;
+mod view;

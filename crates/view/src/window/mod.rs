@@ -54,7 +54,7 @@ impl eframe::App for Window {
         stage::keys(ui, state);
         let left = Panel::left("left").exact_size(PANEL).resizable(false);
         left.show(ui, |ui| {
-            ScrollArea::vertical().show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 panels::rendering(ui, state);
                 panels::camera(ui, state);
                 panels::picture(ui, state);
@@ -62,7 +62,7 @@ impl eframe::App for Window {
         });
         let right = Panel::right("right").exact_size(PANEL).resizable(false);
         right.show(ui, |ui| {
-            ScrollArea::vertical().show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 panels::paths(ui, state);
                 panels::scene(ui, state);
             });
