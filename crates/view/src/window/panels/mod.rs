@@ -16,10 +16,12 @@ use eframe::egui::{CollapsingHeader, RichText, Ui};
 
 /// A group of controls under a head.
 fn group(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
-    let head = CollapsingHeader::new(RichText::new(name).strong()).default_open(true);
-    head.show_unindented(ui, |ui| {
-        ui.add_space(2.0);
-        contents(ui);
-        ui.add_space(6.0);
+    ui.push_id(name, |ui| {
+        let head = CollapsingHeader::new(RichText::new(name).strong()).default_open(true);
+        head.show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            contents(ui);
+            ui.add_space(6.0);
+        });
     });
 }

@@ -38,16 +38,19 @@ fn path(ui: &mut Ui, sample: &SampleTrace) {
             swatch(ui, vertex.rgb);
             ui.small(format!("{} {}", vertex.number, vertex.what));
             if vertex.rgb != [0.0; 3] {
-                let [r, g, b] = vertex.rgb;
-                ui.small(format!("+ {r:.3} {g:.3} {b:.3}"));
+                ui.small(format!("+ {}", numbers(vertex.rgb)));
             }
         });
     }
-    let [r, g, b] = sample.rgb;
     ui.horizontal(|ui| {
         swatch(ui, sample.rgb);
-        ui.small(format!("together {r:.3} {g:.3} {b:.3}"));
+        ui.small(format!("together {}", numbers(sample.rgb)));
     });
+}
+
+fn numbers(rgb: [f32; 3]) -> String {
+    // Adding zero makes −0 a 0.
+    rgb.map(|part| format!("{:.3}", (part * 1e3).round() / 1e3 + 0.0)).join(" ")
 }
 
 /// A square of a colour.
