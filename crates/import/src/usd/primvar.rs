@@ -93,7 +93,7 @@ impl<const N: usize> Primvar<N> {
             Interpolation::Vertex => counts.points,
             Interpolation::FaceVarying => counts.corners,
         };
-        if values.len() != wanted && !(interpolation == Interpolation::Constant && !values.is_empty()) {
+        if values.is_empty() || (values.len() != wanted && interpolation != Interpolation::Constant) {
             let message = format!("there must be {wanted} values, not {}", values.len());
             return Err(prim.fault(property, message));
         }

@@ -7,7 +7,7 @@ use math::{DMat4, DVec3};
 
 use super::instancer;
 use super::light::{self, Light};
-use super::material::Materials;
+use super::material::{Material, Materials};
 use super::mesh::Mesh;
 use super::primvar::{Counts, Primvar};
 use super::solid::{self, Solid};
@@ -291,9 +291,9 @@ impl<'a> Assembly<'a> {
             }
             None => None,
         };
-        let [surface, _] = match material {
-            Some(material) => material.surfaces,
-            None => [const { () }; 2].map(|()| self.materials.plain(color, self.desc)),
+        let surface = match material {
+            Some(Material { surfaces: [surface, _], .. }) => surface,
+            None => self.materials.plain(color, self.desc),
         };
         let shape = ShapeDesc {
             material: Some(surface.material),

@@ -188,10 +188,10 @@ fn textures_have_their_wrap_and_transform() {
         let desc = without_errors(textured("color3f inputs:diffuseColor", "rgb", own, moved));
         let base = base(&desc);
         let image = &desc.images[base.image].image;
-        (base.wrap, base.mapping.clone(), base.scale, [image.width(), image.height()])
+        (base.wrap, base.mapping, base.scale, [image.width(), image.height()])
     };
     let plain = MappingDesc::Uv { scale: [1.0; 2], delta: [0.0; 2] };
-    assert_eq!(of("", None), (WrapMode::Black, plain.clone(), 1.0, [2, 1]));
+    assert_eq!(of("", None), (WrapMode::Black, plain, 1.0, [2, 1]));
     let repeat = "token inputs:wrapS = \"repeat\" token inputs:wrapT = \"repeat\"";
     assert_eq!(of(repeat, None).0, WrapMode::Repeat);
     assert_eq!(of(&repeat.replace("repeat", "clamp"), None).0, WrapMode::Clamp);
