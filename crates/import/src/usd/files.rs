@@ -6,8 +6,8 @@
 use std::collections::HashMap;
 use std::io::{self, Cursor};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Mutex, MutexGuard};
 use std::time::SystemTime;
 
 use openusd::ar::{self, Asset, ResolvedPath};
@@ -15,16 +15,19 @@ use openusd::ar::{self, Asset, ResolvedPath};
 use super::layer;
 use crate::archive;
 use crate::assets::AssetSource;
+use crate::log::Fault;
 
 /// The files beside a scene.
 pub(super) struct Files<'a> {
     assets: &'a dyn AssetSource,
     packages: Mutex<HashMap<String, Option<archive::Zip>>>,
+    /// The layers that were read.
+    layers: Mutex<Vec<String>>,
 }
 
 impl<'a> Files<'a> {
     pub fn new(assets: &'a dyn AssetSource) -> Self {
-        Self { assets, packages: Mutex::default() }
+        Self { assets, packages: Mutex::default(), layers: Mutex::default() }
     }
 
     /// The content of a file.
@@ -53,9 +56,21 @@ impl<'a> Files<'a> {
 
     /// A package, which is opened once.
     fn package(&self, name: &str) -> Option<archive::Zip> {
-        let mut packages = self.packages.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let open = || archive::open(self.assets.read(Path::new(name)).ok()?).ok();
-        packages.entry(name.to_owned()).or_insert_with(open).clone()
+        lock(&self.packages).entry(name.to_owned()).or_insert_with(open).clone()
+    }
+
+    /// Where texts that were read are no USD, of which the stage tells no places.
+    pub fn text_faults(&self) -> Vec<Fault> {
+        let mut names = std::mem::take(&mut *lock(&self.layers));
+        names.sort();
+        names.dedup();
+        let fault = |name: String| {
+            let bytes = self.read(&name).ok()?;
+            let (place, message) = layer::text_error(&bytes)?;
+            Some(Fault::new("invalid-usd", format!("{name}:{place}"), message))
+        };
+        names.into_iter().filter_map(fault).collect()
     }
 
     /// Answers until nobody can ask any more.
@@ -70,11 +85,16 @@ impl<'a> Files<'a> {
                             .map_err(|message| io::Error::new(io::ErrorKind::InvalidData, message))?;
                         Ok(bytes)
                     });
+                    lock(&self.layers).push(name);
                     _ = reply.send(checked);
                 }
             }
         }
     }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// What is asked about a file.

@@ -105,12 +105,22 @@ fn fill(
             return Err(Fault::new("unknown-choice", "", message));
         }
     }
-    let stage = Stage::open(&path.to_string_lossy(), resolver, selection.time, selection.shutter)?;
+    let stage = match Stage::open(&path.to_string_lossy(), resolver, selection.time, selection.shutter) {
+        Ok(stage) => stage,
+        Err(fault) => {
+            let faults = files.text_faults();
+            let faults = if faults.is_empty() { vec![fault] } else { faults };
+            faults.into_iter().for_each(|fault| log.fault(fault));
+            return Ok(());
+        }
+    };
     let mut assembly = Assembly::new(desc, log, Materials::new(files));
     let bounds = assembly.add_all(&stage)?;
     let (views, lamps) = (std::mem::take(&mut assembly.views), std::mem::take(&mut assembly.lamps));
-    for fault in stage.composition_faults() {
-        log.fault(fault);
+    let (faults, left_out) = stage.composition();
+    left_out.into_iter().for_each(|text| log.warn("not-drawn", "", text));
+    if !faults.is_empty() {
+        faults.into_iter().chain(files.text_faults()).for_each(|fault| log.fault(fault));
     }
     let view = scene::chosen(views, selection.camera.as_ref())?;
     view::complete(desc, view, bounds, &lamps, log);

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use openusd::sdf::{Specifier, Value};
-use openusd::usd;
+use openusd::{pcp, usd};
 
 use super::files::Resolver;
 use super::value;
@@ -39,13 +39,30 @@ impl Stage {
         Ok(Self { inner, times, start })
     }
 
-    /// What is wrong with references, payloads and layers that were met until now.
-    pub fn composition_faults(&self) -> Vec<Fault> {
-        let mut messages: Vec<_> =
-            self.inner.composition_errors().iter().map(|error| error.to_string()).collect();
-        messages.sort();
-        messages.dedup();
-        messages.into_iter().map(|message| Fault::new("unreadable-file", "", message)).collect()
+    /// What is wrong with references, payloads and layers that were met until now, and what is only
+    /// left out: targets and values that a layer says in vain.
+    pub fn composition(&self) -> (Vec<Fault>, Vec<String>) {
+        use pcp::Error::*;
+        let is_left_out = |error: &pcp::Error| {
+            matches!(
+                error,
+                InvalidExternalTargetPath { .. }
+                    | InvalidInstanceTargetPath { .. }
+                    | InconsistentPropertyType { .. }
+                    | OpinionAtRelocationSource { .. }
+                    | ProhibitedRelocationSource { .. }
+            )
+        };
+        let (left_out, wrong): (Vec<_>, Vec<_>) =
+            self.inner.composition_errors().into_iter().partition(is_left_out);
+        let sorted = |errors: Vec<pcp::Error>| {
+            let mut texts: Vec<_> = errors.iter().map(|error| error.to_string()).collect();
+            texts.sort();
+            texts.dedup();
+            texts
+        };
+        let fault = |text| Fault::new("unreadable-file", "", text);
+        (sorted(wrong).into_iter().map(fault).collect(), sorted(left_out))
     }
 
     /// Whether +z is up, not +y.

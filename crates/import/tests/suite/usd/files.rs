@@ -64,6 +64,20 @@ fn what_is_missing_is_an_error() {
     assert!(imported.diagnostics[0].message.contains("cannot read `none.usda`"));
 }
 
+#[test]
+fn texts_that_are_no_usd_have_a_line() {
+    let text = super::text("def Xform \"a\" {\n    float b = = 3\n}");
+    let assets = MemoryAssets::default().with("a.usda", text.as_str());
+    let imported = import("a.usda", &assets);
+    assert_eq!(imported.diagnostics.len(), 1, "{}", shown(&imported));
+    assert!(imported.diagnostics[0].message.starts_with("a.usda:7:"), "{}", imported.diagnostics[0].message);
+    let root = super::text("def \"r\" (references = @a.usda@) {}");
+    let imported = import("b.usda", &assets.clone().with("b.usda", root));
+    assert!(shown(&imported).contains("a.usda:7:"), "{}", shown(&imported));
+    let imported = import("c.usda", &assets.with("c.usda", b"#usda 1.0\n\xff\xfe".to_vec()));
+    assert!(shown(&imported).contains("c.usda:2: this is no UTF-8"), "{}", shown(&imported));
+}
+
 /// A package of files.
 pub(super) fn package(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));

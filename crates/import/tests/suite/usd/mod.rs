@@ -62,10 +62,10 @@ pub fn error(prims: &str) -> String {
     errors.into_iter().next().unwrap()
 }
 
-/// The warnings of a scene other than those of scenes without light.
+/// The warnings of a scene other than those about how much light there is.
 pub fn warnings(prims: &str) -> Vec<String> {
     let warnings = messages(prims, Severity::Warning).into_iter();
-    warnings.filter(|text| !text.contains("light of a studio")).collect()
+    warnings.filter(|text| !text.contains("light of a studio") && !text.contains("exposed by")).collect()
 }
 
 /// The shapes of a scene, without the ground of a studio.
