@@ -117,7 +117,8 @@ pub fn materials(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
     let things = desc.materials.iter_mut().map(|(handle, material)| {
         let material = &mut material.value;
         let name = match material.name.as_str() {
-            "" => format!("{} {}", material.kind.name(), handle.index() + 1),
+            // As the paths of a pixel call it.
+            "" => format!("material-{} ({})", handle.index(), material.kind.name()),
             name => name.to_owned(),
         };
         Thing { name, knobs: material_knobs(&mut material.kind) }

@@ -74,10 +74,6 @@ fn paths(ui: &Ui, state: &State, place: &Place) {
         let (font, number) = (FontId::proportional(10.0), vertex.number.to_string());
         painter.text(at, Align2::CENTER_CENTER, number, font, Color32::WHITE);
     }
-    if let Some([x, y]) = state.pixel {
-        let at = place.point([x as f32 + 0.5, y as f32 + 0.5]);
-        painter.circle_stroke(at, 4.0, Stroke::new(1.0, Color32::WHITE));
-    }
 }
 
 fn mouse(ui: &Ui, state: &mut State, place: &Place, response: &Response) {

@@ -77,7 +77,7 @@ fn every_constant_of_a_material_can_be_changed() {
     desc.materials.push(MaterialKind::Interface.into());
     let found = materials(&mut desc);
     let names: Vec<_> = found.iter().map(|Thing { name, knobs }| (name.as_str(), knobs.len())).collect();
-    assert_eq!(names, [("diffuse 2", 1), ("dielectric 3", 2)]);
+    assert_eq!(names, [("material-1 (diffuse)", 1), ("material-2 (dielectric)", 2)]);
     for knob in found.into_iter().flat_map(|thing| thing.knobs) {
         match knob.value {
             Value::Color(mut color) => {
