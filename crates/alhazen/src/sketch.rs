@@ -1,10 +1,10 @@
 //! A preview before the first pass: one sample per pixel in a lower resolution, enlarged to the
 //! size of the picture.
 //!
-//! A sketch is a [`Session`] of its own: of the same scene and algorithm, with a view and a film
-//! that have n times fewer pixels along each side ([`draft`]). So it shows what the picture will
-//! show, with the noise of one sample in squares of n × n pixels. Work that does not depend on the number of
-//! pixels, such as tracing photons, is divided by n²; `whitted` follows no more than five
+//! A sketch is a [`Session`] of its own ([`draft`]): of the same scene and algorithm, with a view
+//! and a film that have n times fewer pixels along each side. So it shows what the picture will
+//! show, with the noise of one sample in squares of n × n pixels. Work that does not depend on the
+//! number of pixels, such as tracing photons, is divided by n²; `whitted` follows no more than five
 //! scattering events, and `radiosity` does not subdivide its patches. Film, statistics and
 //! integrator of the picture are not touched.
 

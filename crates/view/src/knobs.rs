@@ -43,8 +43,8 @@ pub struct ColorKnob<'a> {
 }
 
 impl ColorKnob<'_> {
-    /// Linear red, green and blue; of a measured spectrum those of the colour that it looks like, in
-    /// sRGB.
+    /// Linear red, green and blue; of a measured spectrum those of the colour that it looks like,
+    /// in sRGB.
     pub fn rgb(&self) -> [f32; 3] {
         match *self.spectrum {
             SpectrumDesc::Constant(value) if !self.is_light => [value; 3],

@@ -22,7 +22,8 @@ const PANEL: f32 = 270.0;
 const BACKGROUND: Color32 = Color32::from_gray(18);
 
 /// Opens a window that shows a scene, compiled and as its description for changes, until it is
-/// closed; while the camera moves, frames take about `target`. The error says why there is no window.
+/// closed; while the camera moves, frames take about `target`. The error says why there is no
+/// window.
 pub fn open(
     title: &str,
     world: World,
@@ -40,7 +41,19 @@ pub fn open(
         let wake = move || repaint.request_repaint();
         Ok(Box::new(Window { state: State::new(world, desc, display, target, wake) }))
     });
-    eframe::run_native("alhazen", options, create).map_err(|error| error.to_string())
+    eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
+}
+
+fn reason(error: &eframe::Error) -> String {
+    let text = error.to_string();
+    let reason = match error {
+        // Before what the system says there is the place in the source of the library.
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
+            text.rsplit(": ").next().unwrap_or_default().trim_end_matches('.')
+        }
+        _ => &text,
+    };
+    format!("cannot open a window: {reason}")
 }
 
 struct Window {

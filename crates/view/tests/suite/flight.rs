@@ -4,7 +4,7 @@ use alhazen::description::{CameraDesc, TransformDesc};
 use alhazen::math::{DMat4, DVec3};
 use alhazen_view::Flight;
 
-/// A camera at (0, 2, −10) that looks at the origin, as `LookAt` makes it: its right is up × forward.
+/// A camera at (0, 2, −10) that looks at the origin, as `LookAt` makes it, or mirrored.
 fn flight(mirrors: bool) -> Flight {
     let (position, up) = (DVec3::new(0.0, 2.0, -10.0), DVec3::Y);
     let forward = -position.normalize();
@@ -51,7 +51,7 @@ fn motions_are_to_the_sides_that_they_say() {
         assert!(moved.position().y > home.position().y);
         moved.go_home();
         moved.look(0.2, 0.1);
-        assert_eq!(moved.position(), home.position());
+        assert!(moved.position().distance(home.position()) < 1e-9);
         let turned = home.camera().camera_from_world.start.transform_vector3(moved.forward());
         assert!(turned.x > 0.0 && turned.y > 0.0, "{turned}");
         assert!((moved.distance() - home.distance()).abs() < 1e-9);

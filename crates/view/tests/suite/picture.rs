@@ -38,7 +38,7 @@ fn every_layer_can_be_shown() {
         // Without motion, volumes and transmission these are black, and all samples are in view.
         let is_empty = [Layer::Motion, Layer::Volume, Layer::Transmission, Layer::Specular].contains(&layer);
         let is_even = [Layer::Samples, Layer::Alpha, Layer::Variance].contains(&layer);
-        assert!(is_empty || is_even || distinct.len() > 10, "{layer}: {}", distinct.len());
+        assert!(is_empty || is_even || distinct.len() > 2, "{layer}: {}", distinct.len());
     }
     // The wall at the back is a grey between those of the floor's front and of what is farthest.
     let depth = frame(Some(Layer::Depth));
