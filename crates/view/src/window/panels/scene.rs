@@ -1,6 +1,6 @@
 //! Lights and materials.
 
-use eframe::egui::{CollapsingHeader, Slider, Ui};
+use eframe::egui::{CollapsingHeader, DragValue, Slider, Ui};
 
 use super::group;
 use crate::knobs::{Thing, Value, lights, materials};
@@ -58,8 +58,8 @@ fn turn(ui: &mut Ui, label: &str, value: Value<'_>) -> bool {
             has_changed
         }
         Value::Scale(scale) => {
-            let most = (4.0 * *scale).max(10.0);
-            ui.add(Slider::new(scale, 0.0..=most).logarithmic(true)).changed()
+            let speed = 0.01 * scale.max(0.01);
+            ui.add(DragValue::new(scale).range(0.0..=1e9).speed(speed)).changed()
         }
         Value::Share(share) => ui.add(Slider::new(share, 0.0..=1.0)).changed(),
     };
