@@ -23,6 +23,9 @@ pub struct Job {
     planned: u32,
     /// Whether samples depend on the number that is planned.
     is_arranged: bool,
+    /// What it is rendered by.
+    #[cfg(feature = "gpu")]
+    settings: SceneDesc,
 }
 
 /// The result of [`Job::compile`].
@@ -93,7 +96,25 @@ impl Job {
         let planned = built.integrator.passes();
         let is_arranged = is_arranged(desc, scene.needs_footprints(&view));
         let session = Session::new(scene, view, built.integrator, SessionState::new(film));
-        Ok(CompiledJob { job: Self { session, header, sketch, planned, is_arranged }, warnings })
+        let job = Self {
+            session,
+            header,
+            sketch,
+            planned,
+            is_arranged,
+            #[cfg(feature = "gpu")]
+            settings,
+        };
+        Ok(CompiledJob { job, warnings })
+    }
+
+    /// Goes on with the engine for GPUs. The error says what that does not draw, and leaves the job as
+    /// it was.
+    #[cfg(feature = "gpu")]
+    pub fn move_to(&mut self, kernels: &Arc<crate::device::Kernels>) -> Result<(), Vec<Diagnostic>> {
+        let integrator = crate::device::integrator(&self.settings, &self.session, kernels)?;
+        self.session.set_integrator(integrator);
+        Ok(())
     }
 
     /// A preview of the picture before it is rendered: in a resolution so low that a render takes
@@ -191,7 +212,7 @@ impl From<PassError> for RenderError {
     fn from(error: PassError) -> Self {
         match error {
             PassError::Cancelled => Self::Cancelled,
-            PassError::OutOfMemory(problem) => Self::OutOfMemory(problem),
+            PassError::OutOfMemory(problem) | PassError::Device(problem) => Self::OutOfMemory(problem),
         }
     }
 }

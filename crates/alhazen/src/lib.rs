@@ -23,6 +23,8 @@ pub use spectrum;
 
 mod clock;
 pub mod compare;
+#[cfg(feature = "gpu")]
+pub mod device;
 mod film_file;
 mod fingerprint;
 mod header;

@@ -83,7 +83,9 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     current.iter().for_each(|(_, bar)| bar.finish());
     let mut comparison = match outcome {
         Ok(comparison) => comparison,
-        Err(PassError::OutOfMemory(problem)) => return Err(Failure::Input(problem)),
+        Err(PassError::OutOfMemory(problem) | PassError::Device(problem)) => {
+            return Err(Failure::Input(problem));
+        }
         Err(PassError::Cancelled) => {
             let message = "interrupted before anything could be compared; there is no report";
             if arguments.json {

@@ -123,6 +123,12 @@ impl Compiled {
     pub fn imported(&self) -> &Imported {
         &self.imported
     }
+
+    /// Adds warnings to those of the scene.
+    #[cfg(feature = "gpu")]
+    pub fn add(&mut self, warnings: Vec<Diagnostic>) {
+        self.imported.diagnostics.extend(warnings);
+    }
 }
 
 /// A job with everything that it is run with.
@@ -189,7 +195,7 @@ impl Task<'_> {
 
         let session = &self.job.session;
         let out_of_memory = match &outcome {
-            Err(PassError::OutOfMemory(problem)) => Some(problem),
+            Err(PassError::OutOfMemory(problem) | PassError::Device(problem)) => Some(problem),
             Ok(_) | Err(PassError::Cancelled) => None,
         };
         if let Some(problem) = out_of_memory

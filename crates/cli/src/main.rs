@@ -5,6 +5,8 @@ mod bar;
 mod checkpoint;
 mod compare;
 mod console;
+#[cfg(feature = "gpu")]
+mod device;
 mod diagnostics;
 mod doctor;
 mod drive;

@@ -47,7 +47,15 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         arguments.output.clone()
     };
     let display = output::display(&arguments.display, &outputs).map_err(Failure::Usage)?;
-    let (job, compiled) = prepared.compile()?;
+    #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a job that moves changes"))]
+    let (mut job, mut compiled) = prepared.compile()?;
+    #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a device is noted"))]
+    let mut notes = Vec::new();
+    #[cfg(feature = "gpu")]
+    if let Err(warnings) = crate::device::choose(arguments.device, &mut job) {
+        compiled.add(warnings);
+        notes.push(("device", "CPU".to_owned()));
+    }
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
     let all = all_passes(&job, arguments);
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
@@ -75,7 +83,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         None => None,
     };
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
-    let (scene, notes) = (&arguments.scene, Vec::new());
+    let scene = &arguments.scene;
     let task = Task { scene, job, passes, limits, outputs, display, checkpoint, live, notes, verbosity };
     task.run(compiled, &interrupt)
 }

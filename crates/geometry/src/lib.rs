@@ -29,14 +29,14 @@ pub use lanes::InstructionSet;
 pub use patch::{Patch, PatchPoints};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
-    MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,
-    ShapeSampleContext, Solid, Sphere, Triangle, TriangleMesh,
+    MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, PlainShape, Plane, RevolvedKind, Shape,
+    ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle, TriangleMesh,
 };
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
     AcceptAll, Filter, Geometry, GeometryId, GroupId, Hit, HitColumns, Instance, InstanceId, InstancePath,
-    PlainChild, PlainTree, PlainTriangle, PointColumns, RayBuffer, RayColumns, RayStats, RefitError, World,
-    WorldBuilder,
+    PlainChild, PlainItem, PlainTree, PlainTriangle, PointColumns, RayBuffer, RayColumns, RayStats,
+    RefitError, World, WorldBuilder,
 };

@@ -32,6 +32,11 @@ impl Placement {
         }
     }
 
+    /// Outer space from inner space.
+    pub fn forward(&self) -> DMat4 {
+        self.forward
+    }
+
     /// Origin and direction of an outer ray in inner space; t keeps its meaning.
     #[inline]
     pub fn ray_inward(&self, ray: &Ray) -> (DVec3, DVec3) {

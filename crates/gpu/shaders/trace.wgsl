@@ -1,23 +1,26 @@
 // Rays through the trees of a world.
 //
-// A kernel that traces declares the uniform or storage `world` and the buffers `nodes`, `triangles`
-// and `instances`; `bvh/mod.rs` and `bvh/node.rs` have their formats.
+// A kernel that traces declares the buffers `world`, `nodes`, `triangles` and `items`; `bvh/` has
+// their formats.
 
 const STACK = 128;
 const NO_HIT = 0xffffffffu;
 
-// The bits of references: leaves, leaves of instances, the number of primitives.
+// The bits of references: leaves, leaves of items, the number of primitives.
 const LEAF = 0x80000000u;
-const INSTANCES = 0x40000000u;
+const ITEMS = 0x40000000u;
 const COUNT_BITS = 5u;
 
 struct Hit {
     t: f32,
-    // Barycentric coordinates of corners 1 and 2.
+    // Barycentric coordinates of corners 1 and 2, or the parameters of a parallelogram.
     uv: vec2f,
     geometry: u32,
     primitive: u32,
-    // `NO_HIT` outside of instances.
+    // The index of the triangle or of the item.
+    place: u32,
+    is_triangle: bool,
+    // The index of the instance's item; `NO_HIT` outside of instances.
     instance: u32,
     found: bool,
 }
@@ -105,8 +108,110 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
     let is_first = instance == (*best).instance && (corner[0].w < (*best).geometry
         || corner[0].w == (*best).geometry && corner[1].w < (*best).primitive);
     if (t < (*best).t || (*best).found && t == (*best).t && is_first) {
-        *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, instance, true);
+        *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, index, true, instance, true);
     }
+}
+
+// The kinds of items.
+const INSTANCE = 0u;
+const PARALLELOGRAM = 1u;
+const SPHERE = 2u;
+const CYLINDER = 3u;
+const DISK = 4u;
+const PLANE = 5u;
+
+// Takes the hit on a shape if it is the nearest so far.
+fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<function, Hit>) {
+    let at = 5 * index;
+    let ids = items[at + 4];
+    var uv = vec2f();
+    var t = -1.0;
+    if (ids.x == PARALLELOGRAM) {
+        t = hit_parallelogram(o, d, at, (*best).t, &uv);
+    } else {
+        let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
+        // Relative to the object's origin, so that little is lost near it.
+        let q = o - vec3f(row[0].w, row[1].w, row[2].w);
+        let inner_o = vec3f(dot(row[0].xyz, q), dot(row[1].xyz, q), dot(row[2].xyz, q));
+        let inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
+        let numbers = bitcast<vec4f>(items[at + 3]);
+        if (ids.x == DISK || ids.x == PLANE) {
+            t = hit_flat(inner_o, inner_d, dot(abs(row[2].xyz), abs(q)), ids.x == DISK, numbers, (*best).t);
+        } else {
+            t = hit_round(inner_o, inner_d, ids.x == SPHERE, numbers, (*best).t);
+        }
+    }
+    if (t > 0) {
+        *best = Hit(t, uv, ids.y, ids.z, index, false, instance, true);
+    }
+}
+
+// Errors of distances, relative to the numbers that they come from.
+const ROUNDING = 4e-7;
+
+// Cramer's rule for o + t·d = corner + u·right + v·up ([Möller 1997]); t is 0 or less without a hit.
+fn hit_parallelogram(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+    let right = bitcast<vec3f>(items[at + 1].xyz);
+    let up = bitcast<vec3f>(items[at + 2].xyz);
+    let q = o - bitcast<vec3f>(items[at].xyz);
+    let normal = cross(right, up);
+    let inverse = -1 / dot(d, normal);
+    let t = dot(q, normal) * inverse;
+    let moment = cross(q, d);
+    let u = dot(up, moment) * inverse;
+    let v = -dot(right, moment) * inverse;
+    // Patches with a common edge overlap a little, so that no ray leaks.
+    let is_inside = min(u, v) >= -1e-6 && max(u, v) <= 1.000001;
+    let error = ROUNDING * dot(abs(q), abs(normal)) * abs(inverse);
+    *uv = clamp(vec2f(u, v), vec2f(), vec2f(1));
+    return select(0, t, is_inside && t > error && t < t_max);
+}
+
+// The plane z = 0, or a disk; `far` bounds what the height of the origin is computed from.
+fn hit_flat(o: vec3f, d: vec3f, far: f32, is_disk: bool, numbers: vec4f, t_max: f32) -> f32 {
+    let height = select(0, numbers.x, is_disk);
+    let t = (height - o.z) / d.z;
+    let p = o + d * t;
+    let distance = length(p.xy);
+    let is_inside = !is_disk || distance <= numbers.y && distance >= numbers.z && is_swept(p, numbers.w);
+    return select(0, t, is_inside && t > ROUNDING * (far + abs(height)) / abs(d.z) && t < t_max);
+}
+
+// A sphere or cylinder, or a part of it. Of the two roots the larger is found first, and the other
+// from their product ([Pharr 2023 §6.8.3]).
+fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, t_max: f32) -> f32 {
+    let across = vec3f(1, 1, select(0.0, 1.0, is_sphere));
+    let radius = numbers.x;
+    let q = o * across;
+    let w = d * across;
+    let a = dot(w, w);
+    let middle = -dot(q, w) / a;
+    let nearest = length(q + w * middle);
+    let discriminant = (radius + nearest) * (radius - nearest) / a;
+    if (!(discriminant >= 0)) {
+        return 0;
+    }
+    let larger = middle + select(sqrt(discriminant), -sqrt(discriminant), middle < 0);
+    let distance = length(q);
+    let other = select((distance - radius) * (distance + radius) / (a * larger), 0, larger == 0);
+    let error = ROUNDING * (distance + radius) * radius / (a * abs(larger));
+    let roots = vec2f(min(larger, other), max(larger, other));
+    for (var i = 0; i < 2; i++) {
+        let t = roots[i];
+        let z = o.z + t * d.z;
+        let is_whole = is_sphere && numbers.y == -radius && numbers.z == radius;
+        let is_inside = (is_whole || z >= numbers.y && z <= numbers.z) && is_swept(o + d * t, numbers.w);
+        if (t > error && t < t_max && is_inside) {
+            return t;
+        }
+    }
+    return 0;
+}
+
+// Whether the angle of a point around the z axis is at most `limit`.
+fn is_swept(p: vec3f, limit: f32) -> bool {
+    let phi = atan2(p.y, p.x);
+    return limit > 6.28318 || select(phi, phi + 6.2831855, phi < 0) <= limit;
 }
 
 // Bytes as numbers.
@@ -118,57 +223,80 @@ fn bytes(words: vec2u) -> array<f32, 8> {
     );
 }
 
+// The id of the instance that is hit; `NO_HIT` outside of instances.
+fn instance_id(hit: Hit) -> u32 {
+    if (hit.instance == NO_HIT) {
+        return NO_HIT;
+    }
+    return items[5 * hit.instance + 3].w;
+}
+
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
-    var best = Hit(t_max, vec2f(), 0, 0, NO_HIT, false);
+    var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false);
     var stack: array<u32, STACK>;
     stack[0] = world.roots.y;
     stack[1] = world.roots.x;
-    var top = 2;
+    stack[2] = world.unbounded;
+    var top = 3;
     // Within an instance the ray is another one; `outside` is the top of the stack there.
     var ray = slabs(o, d, world.size);
     var shear = sheared(o, d);
+    var inner_o = o;
+    var inner_d = d;
     var instance = NO_HIT;
     var outside = 0;
     while (top > 0) {
         if (instance != NO_HIT && top == outside) {
             ray = slabs(o, d, world.size);
             shear = sheared(o, d);
+            inner_o = o;
+            inner_d = d;
             instance = NO_HIT;
         }
         top--;
         let reference = stack[top];
         if ((reference & LEAF) != 0) {
-            let first = (reference & ~(LEAF | INSTANCES)) >> COUNT_BITS;
-            let count = reference & ((1u << COUNT_BITS) - 1);
-            if ((reference & INSTANCES) == 0) {
-                for (var i = 0u; i < count; i++) {
-                    intersect_triangle(shear, first + i, instance, &best);
+            var first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
+            var count = reference & ((1u << COUNT_BITS) - 1);
+            let are_items = (reference & ITEMS) != 0;
+            while (count > 0) {
+                if (!are_items) {
+                    intersect_triangle(shear, first, instance, &best);
+                } else if (items[5 * first + 4].x != INSTANCE) {
+                    intersect_shape(inner_o, inner_d, first, instance, &best);
+                } else {
+                    break;
                 }
-                if (is_any && best.found) {
-                    return best;
-                }
+                first++;
+                count--;
+            }
+            if (is_any && best.found) {
+                return best;
+            }
+            if (count == 0) {
                 continue;
             }
             // The instance that the ray enters; the others wait.
             if (count > 1) {
-                stack[top] = LEAF | INSTANCES | ((first + 1) << COUNT_BITS) | (count - 1);
+                stack[top] = LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1);
                 top++;
             }
             let row = array(
-                bitcast<vec4f>(instances[4 * first]),
-                bitcast<vec4f>(instances[4 * first + 1]),
-                bitcast<vec4f>(instances[4 * first + 2]),
+                bitcast<vec4f>(items[5 * first]),
+                bitcast<vec4f>(items[5 * first + 1]),
+                bitcast<vec4f>(items[5 * first + 2]),
             );
-            let placed = instances[4 * first + 3];
-            let inner_o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
-            let inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
+            let placed = items[5 * first + 3];
+            inner_o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
+            inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
             ray = slabs(inner_o, inner_d, bitcast<f32>(placed.z));
             shear = sheared(inner_o, inner_d);
-            instance = placed.y;
+            instance = first;
             outside = top;
-            stack[top] = placed.x;
-            top++;
+            stack[top] = placed.y;
+            stack[top + 1] = placed.x;
+            top += 2;
             continue;
         }
         let at = 6 * reference;

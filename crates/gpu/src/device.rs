@@ -52,6 +52,7 @@ pub struct Device {
     device: wgpu::Device,
     queue: wgpu::Queue,
     name: String,
+    is_software: bool,
     /// The first fault that the driver has reported.
     fault: Arc<Mutex<Option<GpuError>>>,
 }
@@ -113,12 +114,18 @@ impl Device {
             });
         }));
         device.set_device_lost_callback(move |_, reason| keep_loss(GpuError::Lost(reason)));
-        Ok(Self { device, queue, name, fault })
+        let is_software = adapter.get_info().device_type == DeviceType::Cpu;
+        Ok(Self { device, queue, name, is_software, fault })
     }
 
     /// The GPU's name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether it is a program that runs on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.is_software
     }
 
     /// The most bytes of a buffer.
@@ -143,6 +150,12 @@ impl Device {
         let descriptor = wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage };
         let buffer = self.device.create_buffer_init(&descriptor);
         self.checked(Buffer(buffer))
+    }
+
+    /// Replaces the contents of a buffer from its start, before what is started later.
+    pub fn write<T: bytemuck::NoUninit>(&self, buffer: &Buffer, contents: &[T]) -> Result<(), GpuError> {
+        self.queue.write_buffer(&buffer.0, 0, bytemuck::cast_slice(contents));
+        self.checked(())
     }
 
     /// Compiles the function `main` of a shader.

@@ -70,13 +70,16 @@ pub enum PassError {
     Cancelled,
     /// Memory ran out; the text says what for. The film is unchanged by the pass.
     OutOfMemory(String),
+    /// The device that renders has failed; the text says how. The film is valid, but may hold a part
+    /// of the pass.
+    Device(String),
 }
 
 impl fmt::Display for PassError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Cancelled => Cancelled.fmt(f),
-            Self::OutOfMemory(problem) => f.write_str(problem),
+            Self::OutOfMemory(problem) | Self::Device(problem) => f.write_str(problem),
         }
     }
 }

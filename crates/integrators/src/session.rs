@@ -269,7 +269,7 @@ impl Session {
             _ => &mut self.state.film,
         };
         let outcome = self.integrator.pass(pass, &self.scene, &self.view, film, clock.control);
-        self.is_whole &= !matches!(outcome, Err(PassError::Cancelled));
+        self.is_whole &= !matches!(outcome, Err(PassError::Cancelled | PassError::Device(_)));
         let stats = outcome?;
         clock.control.take_counted();
         self.stats += stats;
@@ -356,6 +356,11 @@ impl Session {
     /// The state from which another session can resume.
     pub fn into_state(self) -> SessionState {
         self.state
+    }
+
+    /// Goes on with the same algorithm by another engine, which is prepared before its first pass.
+    pub fn set_integrator(&mut self, integrator: Box<dyn Integrator>) {
+        (self.integrator, self.is_prepared) = (integrator, false);
     }
 
     /// The algorithm.

@@ -136,6 +136,7 @@ pub fn drive<T: Send>(
     match outcome {
         Ok(Ok(result)) => result.map_err(image_error),
         Ok(Err(PassError::OutOfMemory(problem))) => Err(PyMemoryError::new_err(problem)),
+        Ok(Err(PassError::Device(problem))) => Err(PyRuntimeError::new_err(problem)),
         Ok(Err(PassError::Cancelled)) => Err(PyRuntimeError::new_err("the render was cancelled")),
         Err(_) => Err(PyRuntimeError::new_err("the renderer failed")),
     }

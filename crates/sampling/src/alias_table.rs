@@ -55,6 +55,12 @@ impl AliasTable {
         self.bins.len()
     }
 
+    /// The bins: the share of a bin below which it stands for its own index, the probability of
+    /// that index, and the index that it stands for otherwise.
+    pub fn bins(&self) -> impl ExactSizeIterator<Item = (f32, f32, u32)> {
+        self.bins.iter().map(|bin| (bin.threshold, bin.pmf, bin.alias))
+    }
+
     /// The probability of an index.
     #[inline]
     pub fn pmf(&self, index: usize) -> f32 {

@@ -208,6 +208,12 @@ impl PiecewiseConstant2d {
         [self.rows.cells, self.marginal.len()]
     }
 
+    /// Cells, densities, and the cumulative distribution with one edge more, of the marginal of the
+    /// rows and then of all rows, which come one after another.
+    pub fn tables(&self) -> [(usize, &[f32], &[f32]); 2] {
+        [&self.marginal.table, &self.rows].map(|table| (table.cells, &*table.densities, &*table.cdf))
+    }
+
     /// The integral of the given values over the rectangle.
     pub fn integral(&self) -> f32 {
         self.marginal.integral()

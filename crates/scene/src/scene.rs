@@ -14,7 +14,7 @@ use crate::names::Names;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::traits::SceneTraits;
 use crate::view::View;
-use description::LightSamplerDesc;
+use description::{LightSamplerDesc, Span};
 use geometry::{Filter, GeometryId, Hit, HitColumns, RayColumns, RayStats, SurfacePoint, World};
 use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
@@ -35,6 +35,8 @@ pub struct GeometryEntry {
     pub first_light: Option<u32>,
     /// The media on its two sides, if its author said so.
     pub media: Option<MediumInterface>,
+    /// Where its shape is described.
+    pub span: Span,
 }
 
 /// Lights of one instance of the world.
@@ -43,6 +45,8 @@ pub struct InstanceEntry {
     /// The first light of the instanced group, as an offset from the first light of the group that
     /// holds the instance.
     pub first_light: u32,
+    /// Where it is described.
+    pub span: Span,
 }
 
 /// Whether surfaces of material `interface` occlude shadow rays. All other rays pass through them.

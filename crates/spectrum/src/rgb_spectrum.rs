@@ -39,6 +39,11 @@ impl RgbAlbedoSpectrum {
         RgbAlbedoSpectrum { polynomial: self.polynomial.splat() }
     }
 
+    /// The reflectance as a polynomial.
+    pub fn polynomial(&self) -> &RgbSigmoidPolynomial {
+        &self.polynomial
+    }
+
     /// The largest value.
     pub fn max_value(&self) -> f32 {
         self.polynomial.max_value()
@@ -77,6 +82,16 @@ impl RgbUnboundedSpectrum {
         RgbUnboundedSpectrum { scale: R::splat(self.scale), polynomial: self.polynomial.splat() }
     }
 
+    /// The factor on a reflectance.
+    pub fn scale(&self) -> f32 {
+        self.scale
+    }
+
+    /// The reflectance as a polynomial.
+    pub fn polynomial(&self) -> &RgbSigmoidPolynomial {
+        &self.polynomial
+    }
+
     /// The largest value.
     pub fn max_value(&self) -> f32 {
         self.scale * self.polynomial.max_value()
@@ -106,6 +121,11 @@ impl RgbIlluminantSpectrum {
     /// An upper bound of the values: the largest factor times the illuminant's maximum.
     pub fn max_value(&self) -> f32 {
         self.factor.max_value() * self.illuminant.max_value()
+    }
+
+    /// The quantity that the illuminant is multiplied by.
+    pub fn factor(&self) -> &RgbUnboundedSpectrum {
+        &self.factor
     }
 
     /// The illuminant that the RGB values are multiplied by.

@@ -9,6 +9,8 @@ use alhazen::{Overrides, Shard};
 use clap::Args;
 
 use super::{EXIT_CODES, render_long_help};
+#[cfg(feature = "gpu")]
+use crate::device::DeviceChoice;
 use crate::values::{
     ServeAt, address, crop, film_file, key_value, noise, pixel, resolution, serve, shard, stops, time, token,
     view, white,
@@ -48,6 +50,12 @@ pub struct Render {
     /// written to --output only.
     #[arg(long, value_name = "K/N", value_parser = shard, requires = "checkpoint", conflicts_with = "noise")]
     pub shard: Option<Shard>,
+    /// What renders: cpu; gpu, which has the integrators ray-casting, ambient-occlusion, path and
+    /// vol-path, with the sampler `independent`, and leaves scenes that it does not draw to the CPU;
+    /// or auto, the GPU unless it is one in software.
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
+    pub device: DeviceChoice,
     /// Other changes to the scene.
     #[command(flatten)]
     pub changes: Changes,

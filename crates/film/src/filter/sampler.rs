@@ -31,6 +31,11 @@ impl FilterSampler {
         Self { columns, values, distribution }
     }
 
+    /// The distribution of offsets.
+    pub fn distribution(&self) -> &PiecewiseConstant2d {
+        &self.distribution
+    }
+
     /// An offset with the density of the table's magnitude, from `u` in [0, 1)².
     #[inline(always)]
     pub fn sample<R: Real>(&self, u: Vec2<R>) -> FilterSample<R> {

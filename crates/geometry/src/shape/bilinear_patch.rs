@@ -10,6 +10,7 @@
 //! corners, or an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is
 //! sampled by solid angle and cosine there (`flat_shape.rs`).
 
+use super::plain::PlainShape;
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::facet::FacetFrame;
 use crate::flat_shape::{FlatShape, SeenRectangle};
@@ -240,6 +241,12 @@ impl BilinearPatch {
             uv: [Vec2::ZERO, Vec2::X, Vec2::Y],
             flips: self.flips,
         })
+    }
+
+    /// As plain data, if it is a parallelogram without attributes.
+    pub(super) fn plain(&self) -> Option<PlainShape> {
+        let Patch { corner, sides, flips, .. } = self.patch()?;
+        self.flat.map(|_| PlainShape::Parallelogram { corner, sides, flips })
     }
 
     /// As plain data for sampling, if it is a rectangle without attributes.

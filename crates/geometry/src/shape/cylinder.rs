@@ -3,6 +3,7 @@
 //! p(u, v) = (r cos φ, r sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area
 //! ([Pharr 2023 §6.3]).
 
+use super::plain::{PlainShape, RevolvedKind};
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
@@ -36,6 +37,10 @@ impl Cylinder {
             Self { quadric, radius: radius.abs() as f64, z, phi_max: swept(phi_max), area: 0.0 };
         cylinder.area = cylinder.quadric.area(cylinder.object_area(), |u, _| cylinder.normal(u));
         cylinder
+    }
+
+    pub(super) fn plain(&self) -> PlainShape {
+        self.quadric.plain(RevolvedKind::Cylinder, [self.radius, self.z[0], self.z[1], self.phi_max])
     }
 
     pub(super) fn bounds(&self) -> Option<Bounds3> {

@@ -4,6 +4,7 @@
 //! p(u, v) = (ρ cos φ, ρ sin φ, h), φ = u·φ_max, ρ = r − v·(r − r_i). Sampled by area: a whole disk
 //! concentrically, parts by uniform angle and uniform square of the radius ([Pharr 2023 §6.4]).
 
+use super::plain::{PlainShape, RevolvedKind};
 use super::quadric::{Local, Quadric, between, phi, swept};
 use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
@@ -44,6 +45,10 @@ impl Disk {
         };
         disk.area = disk.quadric.area(disk.object_area(), |_, _| DVec3::Z);
         disk
+    }
+
+    pub(super) fn plain(&self) -> PlainShape {
+        self.quadric.plain(RevolvedKind::Disk, [self.height, self.radius, self.inner_radius, self.phi_max])
     }
 
     pub(super) fn bounds(&self) -> Option<Bounds3> {

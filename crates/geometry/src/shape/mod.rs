@@ -22,6 +22,7 @@ mod level;
 mod mesh;
 mod moving_triangle;
 mod paraboloid;
+mod plain;
 mod plane;
 mod quadric;
 mod sample;
@@ -38,6 +39,7 @@ pub use implicit::{Formula, FormulaError, Implicit};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
+pub use plain::{PlainShape, RevolvedKind};
 pub use plane::Plane;
 pub(crate) use quadric::first_root;
 pub use sample::{ShapeHit, ShapeSample, ShapeSampleContext};
@@ -247,6 +249,24 @@ impl Shape {
             Self::BilinearPatch(shape) => shape.flat_shape(),
             Self::Triangle(shape) => shape.flat_shape(),
             _ => None,
+        }
+    }
+
+    /// As plain data; `None` of shapes that have no such form.
+    pub fn plain(&self) -> Option<PlainShape> {
+        match self {
+            Self::Sphere(shape) => Some(shape.plain()),
+            Self::Cylinder(shape) => Some(shape.plain()),
+            Self::Disk(shape) => Some(shape.plain()),
+            Self::Plane(shape) => Some(shape.plain()),
+            Self::BilinearPatch(shape) => shape.plain(),
+            Self::Cone(_)
+            | Self::Paraboloid(_)
+            | Self::Hyperboloid(_)
+            | Self::Implicit(_)
+            | Self::Solid(_)
+            | Self::Triangle(_)
+            | Self::MovingTriangle(_) => None,
         }
     }
 

@@ -2,6 +2,7 @@
 //!
 //! p(u, v) = (u, v, 0). It has neither bounds nor a finite area, so that it cannot be sampled.
 
+use super::plain::{PlainShape, RevolvedKind};
 use super::quadric::{Local, Quadric};
 use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
@@ -17,6 +18,10 @@ impl Plane {
     /// The object's xy plane.
     pub fn new(render_from_object: &Transform, reverse_orientation: bool) -> Self {
         Self { quadric: Quadric::new(render_from_object, reverse_orientation) }
+    }
+
+    pub(super) fn plain(&self) -> PlainShape {
+        self.quadric.plain(RevolvedKind::Plane, [0.0; 4])
     }
 
     pub(super) fn bounds(&self) -> Option<Bounds3> {

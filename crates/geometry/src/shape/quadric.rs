@@ -4,6 +4,7 @@
 //! refined onto the surface and rounded to floats in render space. The only error left is that last
 //! rounding: it depends neither on the distance of the ray's origin nor on the transform.
 
+use super::plain::{PlainShape, RevolvedKind};
 use super::sample::ShapeSample;
 use crate::placement::{Placement, ROUNDING};
 use crate::surface::SurfacePoint;
@@ -39,6 +40,12 @@ impl Quadric {
     /// Where it is placed; `flips` turns its outside in.
     pub fn placed(placement: Placement, flips: bool) -> Self {
         Self { placement, flips }
+    }
+
+    /// As plain data.
+    pub fn plain(&self, kind: RevolvedKind, numbers: [f64; 4]) -> PlainShape {
+        let (render_from_object, numbers) = (self.placement.forward(), numbers.map(|x| x as f32));
+        PlainShape::Revolved { kind, render_from_object, flips: self.flips, numbers }
     }
 
     /// Reverses its orientation.

@@ -7,6 +7,7 @@
 //! outside: with sin θ_max = r/d, the cosine is uniform in [cos θ_max, 1], so that the density is
 //! 1/(2π(1 − cos θ_max)). All other spheres are sampled by area ([Pharr 2023 §6.2]).
 
+use super::plain::{PlainShape, RevolvedKind};
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::Placement;
@@ -66,6 +67,10 @@ impl Sphere {
         let quadric = Quadric::placed(placement, flips);
         let area = (4.0 * PI * radius * radius) as f32;
         Self { quadric, radius, z: [-radius, radius], theta: [PI, 0.0], phi_max: TAU, ball, area }
+    }
+
+    pub(super) fn plain(&self) -> PlainShape {
+        self.quadric.plain(RevolvedKind::Sphere, [self.radius, self.z[0], self.z[1], self.phi_max])
     }
 
     pub(super) fn bounds(&self) -> Option<Bounds3> {

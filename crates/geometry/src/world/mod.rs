@@ -45,7 +45,7 @@ pub use filter::{AcceptAll, Filter};
 pub use geometry::{Geometry, GeometryId};
 pub use hit::Hit;
 pub use instance::{GroupId, Instance, InstanceId, InstancePath};
-pub use plain::{PlainChild, PlainTree, PlainTriangle};
+pub use plain::{PlainChild, PlainItem, PlainTree, PlainTriangle};
 pub use points::PointColumns;
 pub use refit::RefitError;
 pub use stats::RayStats;

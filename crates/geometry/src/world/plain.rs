@@ -1,9 +1,10 @@
 //! The trees of a world as plain data, for engines that traverse them elsewhere.
 
 use super::World;
-use super::geometry::GeometryId;
+use super::geometry::{Geometry, GeometryId};
 use super::group::Item;
 use super::instance::{GroupId, InstanceId};
+use super::tables::Tables;
 use crate::bvh::Bvh;
 use math::{Bounds3, Vec3};
 use std::ops::Range;
@@ -37,6 +38,24 @@ pub struct PlainTriangle {
     pub corners: [Vec3; 3],
 }
 
+/// A primitive that is tested alone, or an instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlainItem {
+    /// A primitive of a geometry other than a mesh.
+    Shape(GeometryId, u32),
+    /// An instance.
+    Instance(InstanceId),
+}
+
+impl From<&Item> for PlainItem {
+    fn from(item: &Item) -> Self {
+        match *item {
+            Item::Shape(geometry, primitive) => Self::Shape(geometry, primitive),
+            Item::Instance(id) => Self::Instance(id),
+        }
+    }
+}
+
 impl World {
     /// The number of groups.
     pub fn groups(&self) -> usize {
@@ -59,16 +78,22 @@ impl World {
         (plain(&triangles.tree, |blocks| firsts[blocks.start]..firsts[blocks.end]), list)
     }
 
-    /// The tree over the instances in a group, and these in the order of leaves; `None` where other
-    /// things are in the tree.
-    pub fn instance_tree(&self, group: GroupId) -> Option<(PlainTree, Vec<InstanceId>)> {
+    /// The tree over the shapes and instances in a group, these in the order of leaves, and those
+    /// without bounds.
+    pub fn item_tree(&self, group: GroupId) -> (PlainTree, Vec<PlainItem>, Vec<PlainItem>) {
         let group = &self.tables.groups[group.0 as usize];
-        let instance = |item: &Item| match item {
-            Item::Instance(id) => Some(*id),
-            Item::Shape(..) => None,
+        let list = |items: &[Item]| items.iter().map(PlainItem::from).collect();
+        (plain(&group.item_tree, |items| items), list(&group.items), list(&group.unbounded))
+    }
+
+    /// A set of spheres in a group, which is in none of these trees.
+    pub fn sphere_set(&self, group: GroupId) -> Option<GeometryId> {
+        let Tables { geometries, group_of, .. } = &self.tables;
+        let is_set = |id: &GeometryId| {
+            let geometry = &geometries[id.0 as usize];
+            matches!(geometry, Geometry::Spheres(_)) && group_of[id.0 as usize] == group
         };
-        let instances = group.items.iter().map(instance).collect::<Option<_>>()?;
-        Some((plain(&group.item_tree, |items| items), instances))
+        (0..geometries.len() as u32).map(GeometryId).find(is_set)
     }
 
     /// The group that an instance places.

@@ -7,6 +7,11 @@ struct Point3Error {
     error: vec3f,
 }
 
+// A point with its error bound.
+fn Point3Error_new(p: vec3f, error: vec3f) -> Point3Error {
+    return Point3Error(p, error);
+}
+
 // The origin of a ray in direction `w` that cannot intersect the surface with geometric normal `n`
 // at `p` again.
 fn offset_ray_origin(p: Point3Error, n: vec3f, w: vec3f) -> vec3f {

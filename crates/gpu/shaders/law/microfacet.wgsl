@@ -16,6 +16,11 @@ fn TrowbridgeReitz_new(alpha_x: f32, alpha_y: f32) -> TrowbridgeReitz {
     return TrowbridgeReitz(alpha_x_1, alpha_y_1);
 }
 
+// The α of a perceptually uniform roughness in [0, 1]: its square root.
+fn TrowbridgeReitz_roughness_to_alpha(roughness: f32) -> f32 {
+    return sqrt(roughness);
+}
+
 // Whether the surface is to be treated as a perfect mirror: both α below 0.001.
 fn TrowbridgeReitz_effectively_smooth(this_: TrowbridgeReitz) -> bool {
     return real_max(this_.alpha_x, this_.alpha_y) < 1e-3f;
@@ -67,4 +72,17 @@ fn TrowbridgeReitz_sample_wm(this_: TrowbridgeReitz, w: vec3f, u: vec2f) -> vec3
 // The density of [`Self::sample_wm`]: [`Self::d_visible`].
 fn TrowbridgeReitz_pdf(this_: TrowbridgeReitz, w: vec3f, wm: vec3f) -> f32 {
     return TrowbridgeReitz_d_visible(this_, w, wm);
+}
+
+// Roughens nearly smooth surfaces where the mask is true, so that paths with small probability
+// are found: α below 0.3 is doubled, clamped to [0.1, 0.3].
+fn TrowbridgeReitz_regularize(this_: ptr<function, TrowbridgeReitz>, mask: bool) {
+    {
+        let rough = real_min(real_max(2.0f * (*this_).alpha_x, 0.1f), 0.3f);
+        (*this_).alpha_x = select((*this_).alpha_x, rough, mask & ((*this_).alpha_x < 0.3f));
+    }
+    {
+        let rough_1 = real_min(real_max(2.0f * (*this_).alpha_y, 0.1f), 0.3f);
+        (*this_).alpha_y = select((*this_).alpha_y, rough_1, mask & ((*this_).alpha_y < 0.3f));
+    }
 }

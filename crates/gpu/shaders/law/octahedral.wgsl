@@ -14,8 +14,8 @@ fn equal_area_square_to_sphere(p: vec2f) -> vec3f {
     let parts = sin_cos(turn_1 * 0.7853982f);
     let sin_phi_1 = parts.v0;
     let cos_phi_1 = parts.v1;
-    let radius = r * safe_sqrt(2.0f - (r * r));
-    return vec3f(copysign(cos_phi_1, u) * radius, copysign(sin_phi_1, v) * radius, z);
+    let radius_1 = r * safe_sqrt(2.0f - (r * r));
+    return vec3f(copysign(cos_phi_1, u) * radius_1, copysign(sin_phi_1, v) * radius_1, z);
 }
 
 // The point of [0, 1]² of a unit direction: the inverse of [`equal_area_square_to_sphere`].

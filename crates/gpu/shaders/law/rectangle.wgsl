@@ -37,6 +37,11 @@ fn SphericalRectangle_is_valid(this_: SphericalRectangle) -> bool {
     return (this_.z < 0.0f) & (this_.phi.y > this_.phi.x);
 }
 
+// In steradians.
+fn SphericalRectangle_solid_angle(this_: SphericalRectangle) -> f32 {
+    return this_.phi.y - this_.phi.x;
+}
+
 // The density of [`sample`](Self::sample) per solid angle.
 fn SphericalRectangle_pdf(this_: SphericalRectangle) -> f32 {
     return 1.0f / (this_.phi.y - this_.phi.x);
@@ -75,6 +80,24 @@ fn SphericalRectangle_sample(this_: SphericalRectangle, u: vec2f) -> vec2f {
     let h = h0 + (u.y * (h1 - h0));
     let y = real_min(real_max(h * sqrt(distance2 / real_max(1.0f - (h * h), 1.1754944e-38f)), y0), y1);
     return vec2f(real_min(real_max((x - x0) * scales.x, 0.0f), 1.0f), real_min(real_max((y - y0) * scales.y, 0.0f), 1.0f));
+}
+
+// The `u` that [`sample`](Self::sample) sends to a point of the rectangle.
+fn SphericalRectangle_invert(this_: SphericalRectangle, point: vec3f) -> vec2f {
+    let d = point - this_.origin;
+    let x = real_min(real_max(Vec3_dot(d, this_.axes[0]), this_.x.x), this_.x.y);
+    let y = real_min(real_max(Vec3_dot(d, this_.axes[1]), this_.y.x), this_.y.y);
+    let h0 = SphericalRectangle_height(this_, x, this_.y.x);
+    let h1 = SphericalRectangle_height(this_, x, this_.y.y);
+    let h = SphericalRectangle_height(this_, x, y);
+    let u0 = (SphericalRectangle_phi_at(this_, x) - this_.phi.x) / (this_.phi.y - this_.phi.x);
+    let u1 = (h - h0) / (h1 - h0);
+    return vec2f(real_min(real_max(u0, 0.0f), 1.0f), real_min(real_max(u1, 0.0f), 1.0f));
+}
+
+// The height on the sphere of a point of the rectangle.
+fn SphericalRectangle_height(this_: SphericalRectangle, x: f32, y: f32) -> f32 {
+    return y / sqrt(((x * x) + (this_.z * this_.z)) + (y * y));
 }
 
 // φ(x), both arctangents as one.

@@ -58,6 +58,11 @@ fn SphericalTriangle_solid_angle(this_: SphericalTriangle) -> f32 {
     return this_.solid_angle;
 }
 
+// The density of [`sample`](Self::sample) per solid angle.
+fn SphericalTriangle_pdf(this_: SphericalTriangle) -> f32 {
+    return 1.0f / this_.solid_angle;
+}
+
 // A point of the triangle, by its barycentric coordinates at corners 1 and 2.
 fn SphericalTriangle_sample(this_: SphericalTriangle, u: vec2f) -> vec2f {
     let parts = this_.distances;
@@ -78,6 +83,21 @@ fn SphericalTriangle_sample(this_: SphericalTriangle, u: vec2f) -> vec2f {
     let sin_2 = sqrt(real_max(rise * (2.0f - rise), 0.0f));
     let s = Line_place(line, sin_2, 1.0f - rise);
     return vec2f(1.0f - s, s * t);
+}
+
+// The `u` that [`sample`](Self::sample) sends to a point of the triangle.
+fn SphericalTriangle_invert(this_: SphericalTriangle, point: vec2f) -> vec2f {
+    let parts = this_.distances;
+    let l1 = parts.y;
+    let l2 = parts.z;
+    let s = real_max(1.0f - point.x, 0.0f);
+    let t = real_min(real_max(select(0.0f, point.y / s, s > 0.0f), 0.0f), 1.0f);
+    let to_side = this_.to_corner + (this_.sides[1] * t);
+    let denominator = (this_.one_plus_cos * Vec3_length(to_side)) + Vec3_dot(to_side, this_.a + this_.b);
+    let cut_off = 2.0f * arc_atan2(t * (this_.volume * l2), denominator);
+    let line = Line_new(l1, this_.b, (this_.sides[1] * t) - this_.sides[0]);
+    let u = vec2f(cut_off / this_.solid_angle, Line_one_minus_cos(line, s) / Line_one_minus_cos(line, 1.0f));
+    return vec2f(real_min(real_max(u.x, 0.0f), 1.0f), real_min(real_max(u.y, 0.0f), 1.0f));
 }
 
 // A line from a corner, in the plane of the line and the point that it is seen from.

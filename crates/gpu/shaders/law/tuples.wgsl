@@ -6,6 +6,16 @@ struct Tuple_Facet_bool {
     v1: bool,
 }
 
+struct Tuple_ShapeSample_bool {
+    v0: ShapeSample,
+    v1: bool,
+}
+
+struct Tuple_Vec2_f32 {
+    v0: vec2f,
+    v1: f32,
+}
+
 struct Tuple_Vec3_Vec3 {
     v0: vec3f,
     v1: vec3f,

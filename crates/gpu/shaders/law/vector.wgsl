@@ -29,6 +29,11 @@ fn Vec3_normalize_masked(this_: vec3f) -> Tuple_Vec3_bool {
     return Tuple_Vec3_bool(this_ * inverse, valid);
 }
 
+// Where all coordinates are finite.
+fn Vec3_are_finite(this_: vec3f) -> bool {
+    return ((true & (abs(this_.x) <= 3.4028235e38f)) & (abs(this_.y) <= 3.4028235e38f)) & (abs(this_.z) <= 3.4028235e38f);
+}
+
 // The magnitudes of `self` with the signs of `sign`.
 fn Vec3_copysign(this_: vec3f, sign_1: vec3f) -> vec3f {
     return vec3f(copysign(this_.x, sign_1.x), copysign(this_.y, sign_1.y), copysign(this_.z, sign_1.z));

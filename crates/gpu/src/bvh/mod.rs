@@ -2,15 +2,17 @@
 //!
 //! [`binary`] takes the sixteen-wide nodes of the CPU's trees apart into binary ones, [`node`]
 //! collapses these into nodes of eight children, whose boxes are quantised to eight bits a plane.
-//! Quantised boxes contain the exact ones. `shaders/trace.wgsl` traverses them.
+//! Quantised boxes contain the exact ones. A group has a tree of triangles and one of items, which
+//! are instances and single shapes ([`item`]). `shaders/trace.wgsl` traverses them.
 //!
-//! A reference to a child or root is a node's index, or a leaf: a range of triangles or instances.
+//! A reference to a child or root is a node's index, or a leaf: a range of triangles or items.
 
 mod binary;
+mod item;
 mod node;
 
 use binary::Binary;
-use geometry::{GroupId, PlainTree, World};
+use geometry::{GeometryId, GroupId, InstanceId, PlainItem, PlainTree, World};
 use math::Bounds3;
 use node::Writer;
 
@@ -20,16 +22,15 @@ const STACK: usize = 128;
 /// Four words of a buffer.
 pub type Words = [u32; 4];
 
-/// The trees and triangles of a world.
+/// The trees, triangles, shapes and instances of a world.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     /// Six quadruples for each node.
     pub nodes: Vec<Words>,
     /// Three quadruples for each triangle: a corner each, with the geometry, the primitive and 0.
     pub triangles: Vec<Words>,
-    /// Four quadruples for each instance: the rows of the matrix that takes rays inside, and the
-    /// reference of its triangles, its id, the size of its group, and 0.
-    pub instances: Vec<Words>,
+    /// Five quadruples for each instance or shape.
+    pub items: Vec<Words>,
     /// Where rays begin.
     pub top: Top,
 }
@@ -38,71 +39,97 @@ pub struct Bvh {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
 pub struct Top {
-    /// The references of the triangles and of the instances of the top group.
+    /// The references of the triangles and of the items of the top group.
     pub roots: [u32; 2],
+    /// The reference of a leaf of its items without bounds.
+    pub unbounded: u32,
     /// The largest coordinate of any box of the top group.
     pub size: f32,
-    /// Fills up the words.
-    pub unused: u32,
 }
 
 /// Why a world has no buffers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BvhError {
-    /// A group has primitives other than triangles.
-    Shapes,
-    /// Instances are nested.
-    Nested,
+    /// A geometry has a shape that kernels do not intersect.
+    Shape(GeometryId),
+    /// A geometry is a set of spheres.
+    SphereSet(GeometryId),
+    /// An instance is within another.
+    Nested(InstanceId),
     /// An instance moves.
-    Moving,
-    /// A tree is too deep for the stack of rays, or has too many triangles for references.
+    Moving(InstanceId),
+    /// An instanced geometry has no bounds.
+    Unbounded(GeometryId),
+    /// A tree is too deep for the stack of rays, or has too many primitives for references.
     TooLarge,
 }
 
 impl Bvh {
-    /// The buffers of a world of triangles and of instances of groups of triangles, at rest.
+    /// The buffers of a world at rest, of meshes, single shapes and instances of groups of them.
     pub fn new(world: &World) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
-        let groups = (0..world.groups() as u32).map(GroupId);
-        let (mut roots, mut sizes) = (Vec::new(), Vec::new());
-        let mut depth = 0;
-        for group in groups {
-            let (tree, triangles) = world.triangle_tree(group);
-            sizes.push(largest_coordinate(&tree));
-            let mut writer = Writer::new(&mut bvh.nodes, node::TRIANGLES, bvh.triangles.len() / 3);
-            roots.push(writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?);
-            depth = depth.max(writer.stack);
-            for triangle in triangles {
-                let ids = [triangle.geometry.0, triangle.primitive, 0];
-                let corners = triangle.corners.iter().zip(ids);
-                bvh.triangles
-                    .extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
-            }
-            let (_, instances) = world.instance_tree(group).ok_or(BvhError::Shapes)?;
-            if group != GroupId::TOP && !instances.is_empty() {
-                return Err(BvhError::Nested);
-            }
+        let mut groups = vec![Group::default(); world.groups()];
+        // The instances of the top group refer to all others.
+        for group in (0..world.groups() as u32).rev().map(GroupId) {
+            groups[group.0 as usize] = bvh.add_group(world, group, &groups)?;
         }
-        let (tree, instances) = world.instance_tree(GroupId::TOP).ok_or(BvhError::Shapes)?;
-        let mut writer = Writer::new(&mut bvh.nodes, node::INSTANCES, 0);
-        let instance_root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
-        let size = sizes[0].max(largest_coordinate(&tree));
-        bvh.top = Top { roots: [roots[0], instance_root], size, unused: 0 };
-        depth += writer.stack;
-        for id in instances {
-            let motion = world.render_from_instance(id);
-            if motion.is_moving() {
-                return Err(BvhError::Moving);
-            }
-            let inverse = motion.start().matrix().as_dmat4().inverse();
-            bvh.instances
-                .extend([0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits)));
-            let group = world.group_of_instance(id).0 as usize;
-            bvh.instances.push([roots[group], id.0, sizes[group].to_bits(), 0]);
-        }
-        // Other roots and instances wait, too.
-        if depth + 2 > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
+        let inner = groups[1..].iter().map(|group| group.stack).max().unwrap_or(0);
+        let Group { roots, unbounded, size, stack } = groups[0];
+        bvh.top = Top { roots, unbounded, size };
+        if stack + inner > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
     }
+
+    /// Adds a group, given those that its instances may place.
+    fn add_group(&mut self, world: &World, group: GroupId, groups: &[Group]) -> Result<Group, BvhError> {
+        if let Some(set) = world.sphere_set(group) {
+            return Err(BvhError::SphereSet(set));
+        }
+        let (tree, triangles) = world.triangle_tree(group);
+        let mut size = largest_coordinate(&tree);
+        let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3);
+        let root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
+        // The three roots wait together.
+        let mut stack = writer.stack + 3;
+        for triangle in triangles {
+            let ids = [triangle.geometry.0, triangle.primitive, 0];
+            let corners = triangle.corners.iter().zip(ids);
+            self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
+        }
+        let (tree, items, unbounded) = world.item_tree(group);
+        size = size.max(largest_coordinate(&tree));
+        let first = self.items.len() / item::QUADRUPLES;
+        let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
+        let item_root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
+        stack += writer.stack;
+        let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
+        if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {
+            return Err(match item {
+                PlainItem::Shape(geometry, _) => BvhError::Unbounded(geometry),
+                PlainItem::Instance(id) => BvhError::Nested(id),
+            });
+        }
+        for item in items.into_iter().chain(unbounded) {
+            self.items.extend(match item {
+                PlainItem::Shape(geometry, primitive) => item::shape(world, geometry, primitive)?,
+                PlainItem::Instance(id) if group != GroupId::TOP => return Err(BvhError::Nested(id)),
+                PlainItem::Instance(id) => item::instance(world, id, groups)?,
+            });
+        }
+        Ok(Group { roots: [root, item_root], unbounded: open, size, stack })
+    }
+}
+
+/// A group in the buffers.
+#[derive(Clone, Copy, Debug, Default)]
+struct Group {
+    /// The references of its triangles and of its items.
+    roots: [u32; 2],
+    /// That of its items without bounds.
+    unbounded: u32,
+    /// The largest coordinate of its boxes.
+    size: f32,
+    /// The entries that a ray's stack needs within it.
+    stack: usize,
 }
 
 /// The largest coordinate of a tree's boxes.

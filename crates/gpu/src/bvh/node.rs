@@ -18,16 +18,22 @@ use super::binary::{Below, Binary};
 /// Children of a node.
 const WIDTH: usize = 8;
 
-/// The bits of references to leaves of triangles and of instances. The first primitive and
+/// The bits of references to leaves of triangles and of items. The first primitive and
 /// the number of primitives follow.
 pub const TRIANGLES: u32 = 1 << 31;
-pub const INSTANCES: u32 = 3 << 30;
+pub const ITEMS: u32 = 3 << 30;
 
 /// How many bits of a leaf's reference are the number of its primitives.
 const COUNT_BITS: u32 = 5;
 
 /// A leaf of nothing.
 const EMPTY: u32 = TRIANGLES;
+
+/// The reference of a leaf; `None` where it has too many primitives, or those before it are too many.
+pub fn leaf(bits: u32, first: usize, count: usize) -> Option<u32> {
+    let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
+    fits.then_some(bits | (first as u32) << COUNT_BITS | count as u32)
+}
 
 /// What writes trees into a buffer of nodes.
 pub struct Writer<'a> {
@@ -58,9 +64,8 @@ impl<'a> Writer<'a> {
     fn write(&mut self, tree: &Binary, index: usize) -> Option<(u32, usize)> {
         let halves = match &tree.node(index).below {
             Below::Primitives(range) => {
-                let (first, count) = (self.first + range.start, range.len());
-                let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
-                return fits.then_some((self.leaf | (first as u32) << COUNT_BITS | count as u32, 1));
+                let leaf = leaf(self.leaf, self.first + range.start, range.len());
+                return leaf.map(|leaf| (leaf, 1));
             }
             Below::Nodes(halves) => halves,
         };

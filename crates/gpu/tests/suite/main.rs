@@ -5,6 +5,7 @@
 
 mod faults;
 mod laws;
+mod pictures;
 mod trace;
 mod twins;
 mod validation;

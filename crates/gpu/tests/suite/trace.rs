@@ -11,11 +11,11 @@ use testkit::Random;
 /// A kernel that traces rays, of eight numbers each, to hits of eight words. The declarations are
 /// those that `trace.wgsl` needs.
 pub const KERNEL: &str = "
-    struct World { roots: vec2u, size: f32, unused: u32 }
+    struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
     @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
-    @group(0) @binding(3) var<storage, read_write> instances: array<vec4u>;
+    @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
     @group(0) @binding(4) var<storage, read_write> rays: array<array<vec4f, 2>>;
     @group(0) @binding(5) var<storage, read_write> hits: array<array<u32, 8>>;
     @compute @workgroup_size(64)
@@ -25,7 +25,7 @@ pub const KERNEL: &str = "
         let hit = trace(ray[0].xyz, ray[1].xyz, ray[0].w, false);
         let any = trace(ray[0].xyz, ray[1].xyz, ray[0].w, true);
         hits[id.x] = array(bitcast<u32>(hit.t), bitcast<u32>(hit.uv.x), bitcast<u32>(hit.uv.y),
-            hit.geometry, hit.primitive, hit.instance, u32(hit.found), u32(any.found));
+            hit.geometry, hit.primitive, instance_id(hit), u32(hit.found), u32(any.found));
     }";
 
 /// A hit, or none, and whether there is any.
@@ -39,7 +39,7 @@ fn on_gpu(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Tra
         device.buffer("world", &[bvh.top])?,
         device.buffer("nodes", &bvh.nodes)?,
         device.buffer("triangles", &bvh.triangles)?,
-        device.buffer("instances", &bvh.instances)?,
+        device.buffer("items", &bvh.items)?,
         device.buffer("rays", &rays.iter().map(numbers).collect::<Vec<_>>())?,
         device.buffer("hits", &vec![[0u32; 8]; rays.len()])?,
     ];
@@ -208,10 +208,47 @@ fn instances_are_met() {
     assert!(found.hits > 1000 && found.other <= 4 && found.distance < 1e-4, "{found:?}");
 }
 
+/// Spheres, cylinders, disks and patches, some of them parts, and a plane below.
+fn shapes() -> Vec<Shape> {
+    let place = |x: f32, angle: f32| {
+        let scale = Transform::scale(Vec3::new(0.5, 0.4, 0.6));
+        let turn = Transform::rotate(angle, Vec3::new(1.0, 2.0, 3.0));
+        Transform::translate(Vec3::new(x, x * x - 1.0, 0.3 * x)).after(&turn).after(&scale)
+    };
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
+    vec![
+        Sphere::whole(&Transform::translate(Vec3::new(0.2, 0.1, -0.8)), false, 0.5).into(),
+        Sphere::new(&place(-1.5, 40.0), true, 1.0, [-0.5, 0.8], 200.0).into(),
+        Cylinder::new(&place(-0.7, 80.0), false, 0.6, [-0.6, 0.5], 300.0).into(),
+        Disk::new(&place(0.5, 120.0), false, 0.1, 1.0, 0.3, 250.0).into(),
+        BilinearPatch::new(corners, None, None, &place(1.2, 10.0), false).into(),
+        Plane::new(&Transform::translate(Vec3::new(0.0, 0.0, -2.0)), false).into(),
+    ]
+}
+
 #[test]
-fn what_is_no_triangle_is_refused() {
+fn shapes_are_met() {
+    let Some(device) = crate::device() else { return };
     let mut builder = World::builder();
-    let sphere = Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0));
-    builder.add_geometry(GroupId::TOP, sphere);
-    assert_eq!(Bvh::new(&builder.build()).err(), Some(BvhError::Shapes));
+    builder.add_geometry(GroupId::TOP, soup(30));
+    let inner = builder.add_group();
+    for shape in shapes() {
+        if shape.bounds().is_some() {
+            builder.add_geometry(inner, shape.clone());
+        }
+        builder.add_geometry(GroupId::TOP, shape);
+    }
+    let render_from_instance = Transform::translate(Vec3::new(0.0, 0.5, 1.5)).into();
+    builder.add_instance(GroupId::TOP, Instance { group: inner, render_from_instance });
+    // Rays that graze an edge may miss it on one side.
+    let found = compare(&device, &builder.build(), &random_rays(20_000, 6.0));
+    assert!(found.hits > 5000 && found.other <= 20 && found.distance < 1e-3, "{found:?}");
+}
+
+#[test]
+fn what_kernels_do_not_intersect_is_refused() {
+    let mut builder = World::builder();
+    let cone = Shape::from(Cone::new(&Transform::IDENTITY, false, 1.0, 1.0, 360.0));
+    let id = builder.add_geometry(GroupId::TOP, cone);
+    assert_eq!(Bvh::new(&builder.build()).err(), Some(BvhError::Shape(id)));
 }

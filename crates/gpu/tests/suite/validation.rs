@@ -1,6 +1,7 @@
 //! Every shader is valid WGSL. Needs no GPU.
 
-use alhazen_gpu::shaders;
+use alhazen_gpu::{Algorithm, shaders};
+use spectrum::RgbColorSpace;
 use wgpu::naga::front::wgsl;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -29,6 +30,15 @@ fn shaders_have_all_laws() {
 fn traversal_is_valid() {
     let source = format!("{}{}", shaders::TRACE, crate::trace::KERNEL);
     validate(&source).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn kernels_are_valid() {
+    let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
+    for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
+        let source = shaders::pixels(&algorithm);
+        validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+    }
 }
 
 #[test]

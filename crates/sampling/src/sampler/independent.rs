@@ -24,6 +24,11 @@ impl Independent {
         Independent { samples_per_pixel: samples_per_pixel.max(1), key: mix_word(seed), address }
     }
 
+    /// The hash of the seed.
+    pub fn key(&self) -> u32 {
+        self.key
+    }
+
     pub(super) fn samples_per_pixel(&self) -> u32 {
         self.samples_per_pixel
     }

@@ -56,6 +56,11 @@ impl MinimumDifferentials {
         least
     }
 
+    /// The differences of origins and those of directions, for the neighbours in x and y.
+    pub fn differences(&self) -> [[Vector3; 2]; 2] {
+        [self.origin, self.direction]
+    }
+
     /// The differences for pixels `n` times as wide and high, to first order.
     pub fn coarser(&self, n: u32) -> Self {
         let [origin, direction] = [self.origin, self.direction].map(|both| both.map(|v| v * n as f32));

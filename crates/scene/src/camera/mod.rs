@@ -37,12 +37,11 @@ use lanes::{Each, MAX_LANES, Real};
 use math::{
     Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Transform, Vec2, Vec3, Vector3, lerp,
 };
-use minimum_differentials::MinimumDifferentials;
 
 pub use compile::compile;
 pub use film_positions::FilmPositions;
 pub use importance::CameraWiSample;
-pub use minimum_differentials::differential_scale;
+pub use minimum_differentials::{MinimumDifferentials, differential_scale};
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use projection::Projection;
@@ -123,6 +122,11 @@ impl Camera {
     /// The transforms between camera, render and world space.
     pub fn transform(&self) -> &CameraTransform {
         &self.transform
+    }
+
+    /// The smallest differences between rays of neighbouring pixels.
+    pub fn minimum_differentials(&self) -> &MinimumDifferentials {
+        &self.minimum_differentials
     }
 
     /// When the shutter opens and closes.

@@ -40,7 +40,13 @@ impl Orthographic {
         Self { screen: self.screen.coarser(n), ..*self }
     }
 
-    pub(super) fn lens(&self) -> ThinLens {
+    /// The screen on the plane z = 0.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// The lens.
+    pub fn lens(&self) -> ThinLens {
         self.lens
     }
 

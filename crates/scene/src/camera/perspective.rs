@@ -62,7 +62,13 @@ impl Perspective {
         Self { screen: self.screen.coarser(n), ..*self }
     }
 
-    pub(super) fn lens(&self) -> ThinLens {
+    /// The screen on the plane z = 1.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// The lens.
+    pub fn lens(&self) -> ThinLens {
         self.lens
     }
 

@@ -15,8 +15,10 @@ use std::f32::consts::PI;
 /// The mapping from film positions to positions on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
-    top_left: Vec2,
-    per_pixel: Vec2,
+    /// The point of the screen at film position (0, 0).
+    pub top_left: Vec2,
+    /// The size of a pixel on the screen; downwards is negative.
+    pub per_pixel: Vec2,
 }
 
 impl Screen {

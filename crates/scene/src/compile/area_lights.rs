@@ -158,7 +158,7 @@ impl Compiler<'_> {
         if first_light.is_some() {
             self.emitters[group.0 as usize].members.push(Member::Instance(id, placed));
         }
-        self.instances.push(InstanceEntry { first_light: first_light.unwrap_or(0) });
+        self.instances.push(InstanceEntry { first_light: first_light.unwrap_or(0), span });
     }
 
     fn count_lights(&mut self, group: GroupId, count: u32, span: Span) -> Option<u32> {
@@ -190,8 +190,8 @@ impl Compiler<'_> {
         // Emissions of materials, which follow those of area lights, have no group.
         let of_emissions: Vec<_> = desc.area_lights.iter().map(|(_, light)| group(&light.group)).collect();
         self.add_rows(GroupId::TOP, InstancePath::TOP, world, &of_emissions, &mut table);
-        for (light, medium, group) in self.lights(sphere, group) {
-            table.push(light, 1, MediumInterface { inside: medium, outside: medium }, group);
+        for (light, medium, group, span) in self.lights(sphere, group) {
+            table.push(light, 1, MediumInterface { inside: medium, outside: medium }, group, span);
         }
         table
     }
@@ -228,9 +228,10 @@ impl Compiler<'_> {
                         };
                         (0..primitives).map(scale).collect()
                     });
-                    let media = self.entries[geometry.0 as usize].media.unwrap_or_default();
+                    let entry = &self.entries[geometry.0 as usize];
+                    let media = entry.media.unwrap_or_default();
                     let group = light_groups.get(emission.0 as usize).copied().unwrap_or(0);
-                    table.push(Light::Area(light), primitives, media, group);
+                    table.push(Light::Area(light), primitives, media, group, entry.span);
                 }
             }
         }

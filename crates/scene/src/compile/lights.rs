@@ -9,7 +9,9 @@ use crate::light::{
     UniformInfiniteLight,
 };
 use crate::medium::MediumId;
-use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc, Stated};
+use description::{
+    Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, Span, SpectrumDesc, Stated,
+};
 use image::{Projection, require_memory};
 use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
 use spectrum::Rgb;
@@ -33,11 +35,12 @@ impl Compiler<'_> {
         &mut self,
         scene: SceneSphere,
         group: impl Fn(&Option<String>) -> u32,
-    ) -> Vec<(Light, Option<MediumId>, u32)> {
+    ) -> Vec<(Light, Option<MediumId>, u32, Span)> {
         let desc = self.desc;
         let lights = desc.lights.iter();
         let compile = |(_, desc): (_, &Stated<LightDesc>)| {
-            Some((self.light(&desc.value, &desc.origin, scene)?, medium_id(desc.medium), group(&desc.group)))
+            let light = self.light(&desc.value, &desc.origin, scene)?;
+            Some((light, medium_id(desc.medium), group(&desc.group), desc.origin.span))
         };
         lights.filter_map(compile).collect()
     }

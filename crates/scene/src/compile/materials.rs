@@ -89,7 +89,7 @@ impl Compiler<'_> {
         let bump_map = displacement.map(|displacement| BumpMap {
             displacement: self.float_texture(displacement, origin.parameter("displacement")),
         });
-        MaterialEntry { material, normal_map, bump_map }
+        MaterialEntry { material, normal_map, bump_map, span: origin.span }
     }
 
     fn normal_map(

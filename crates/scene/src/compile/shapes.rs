@@ -79,7 +79,7 @@ impl Compiler<'_> {
             let id = self.world.add_geometry(group, geometry);
             let span = shape.origin.span;
             let first_light = emitter.and_then(|emitter| self.add_emitter(group, id, emitter, span));
-            self.entries.push(GeometryEntry { material, alpha, first_light, media });
+            self.entries.push(GeometryEntry { material, alpha, first_light, media, span });
         }
     }
 

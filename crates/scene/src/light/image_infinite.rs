@@ -82,7 +82,9 @@ impl ImageInfiniteLight {
         Self { render_from_light, image, projection, color_space, scale, scene, distribution, compensated }
     }
 
-    fn distribution(&self, allow_incomplete: bool) -> &PiecewiseConstant2d {
+    /// The distribution over positions in the image by which directions are sampled; with
+    /// `allow_incomplete`, the compensated one.
+    pub fn distribution(&self, allow_incomplete: bool) -> &PiecewiseConstant2d {
         if allow_incomplete { &self.compensated } else { &self.distribution }
     }
 

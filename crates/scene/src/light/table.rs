@@ -9,6 +9,7 @@ use super::{
 };
 use crate::medium::{MediumId, MediumInterface};
 use crate::texture::Textures;
+use description::Span;
 use geometry::World;
 use math::{Normal3, Point2, Point3, Ray, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -25,6 +26,8 @@ pub(crate) struct LightTable {
     media: Vec<MediumInterface>,
     /// The group of each row.
     groups: Vec<u32>,
+    /// Where each row is described.
+    spans: Vec<Span>,
     emissions: Vec<AreaEmission>,
     infinite: Vec<LightId>,
 }
@@ -37,7 +40,7 @@ impl LightTable {
 
     /// Adds a row of `count` lights of a group. The media are those on the sides of its surface;
     /// without one, it is in the outer.
-    pub fn push(&mut self, light: Light, count: u32, media: MediumInterface, group: u32) {
+    pub fn push(&mut self, light: Light, count: u32, media: MediumInterface, group: u32, span: Span) {
         if each_light!(&light, light => light.is_infinite()) {
             self.infinite.push(LightId(self.row.len() as u32));
         }
@@ -46,6 +49,7 @@ impl LightTable {
         self.rows.push(light);
         self.media.push(media);
         self.groups.push(group);
+        self.spans.push(span);
     }
 
     /// Whether there is no light.
@@ -171,6 +175,12 @@ impl<'a> LightRef<'a> {
     pub fn group(&self) -> usize {
         let LightTable { row, groups, .. } = self.part.lights.table;
         groups[row[self.id.0 as usize] as usize] as usize
+    }
+
+    /// Where it is described: an area light by its shape.
+    pub fn span(&self) -> Span {
+        let LightTable { row, spans, .. } = self.part.lights.table;
+        spans[row[self.id.0 as usize] as usize]
     }
 
     /// The medium of the light that leaves it along `w`, where its surface has the normal `n`, zero

@@ -60,6 +60,9 @@ const MAX_COST_SPLIT_DEPTH: u32 = 32;
 const PARALLEL_LIGHTS: usize = 4096;
 
 impl BvhLightSampler {
+    /// The bit of a leaf.
+    pub const LEAF: u32 = LEAF;
+
     /// The most lights: the numbers of their tree are counted in 32 bits.
     pub const MAX_LIGHTS: usize = 1 << 27;
 
@@ -80,6 +83,24 @@ impl BvhLightSampler {
         let mut sampler = Self { clusters, kinds, infinite, trails };
         sampler.store_trails(0, 0, 0);
         Some(sampler)
+    }
+
+    /// The nodes: the numbers of their clusters, which `cluster.rs` lists, and [`LEAF`](Self::LEAF)
+    /// with a light or the right child. The left child of a node follows it.
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = (&[f32], u32)> {
+        self.clusters.iter().map(|cluster| &cluster[..]).zip(self.kinds.iter().copied())
+    }
+
+    /// The trail of each light as two words of bits, from the root on: 1 leads to a right child.
+    /// Where the second word is all ones the light is not in the tree, and the first says whether
+    /// it is infinitely far away.
+    pub fn trails(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
+        self.trails.0[0].iter().zip(&self.trails.0[1]).map(|(&low, &high)| [low, high])
+    }
+
+    /// The lights infinitely far away, and the probability of choosing among them.
+    pub fn infinite(&self) -> (&[u32], f32) {
+        (self.infinite.ids(), self.infinite.probability())
     }
 
     /// Stores the trails of all lights below a node, whose own is `trail`.

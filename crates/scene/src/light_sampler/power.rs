@@ -25,6 +25,11 @@ impl PowerLightSampler {
         Self { table: AliasTable::new(&powers) }
     }
 
+    /// The distribution; `None` if there are no lights.
+    pub fn table(&self) -> Option<&AliasTable> {
+        self.table.as_ref()
+    }
+
     /// A light, with the probability of its choice (> 0); `None` if there are no lights.
     #[inline]
     pub fn sample(&self, u: f32) -> Option<(LightId, f32)> {

@@ -43,6 +43,7 @@ pub use thin_dielectric::ThinDielectricMaterial;
 
 use crate::interaction::SurfaceInteraction;
 use crate::texture::{TextureContext, Textures};
+use description::Span;
 use lanes::Real;
 use scattering::{Bxdf, Scatter};
 use spectrum::{SampledWavelengths, Spectrum};
@@ -162,6 +163,8 @@ pub struct MaterialEntry {
     pub normal_map: Option<NormalMap>,
     /// Its bump map, if it has one, and no normal map.
     pub bump_map: Option<BumpMap>,
+    /// Where it is described; nowhere for the default material.
+    pub span: Span,
 }
 
 /// The material at a point, after the choices of mixes.

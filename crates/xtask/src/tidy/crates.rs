@@ -34,7 +34,21 @@ const EDGES: [(&str, &[&str]); 21] = [
             "film",
         ],
     ),
-    ("gpu", &["lanes", "math", "spectrum", "sampling", "geometry", "scattering", "scene", "film"]),
+    (
+        "gpu",
+        &[
+            "lanes",
+            "math",
+            "spectrum",
+            "sampling",
+            "image",
+            "geometry",
+            "scattering",
+            "description",
+            "scene",
+            "film",
+        ],
+    ),
     (
         "alhazen",
         &[
@@ -51,6 +65,7 @@ const EDGES: [(&str, &[&str]); 21] = [
             "scene",
             "film",
             "integrators",
+            "gpu",
         ],
     ),
     ("view", &["alhazen"]),

@@ -164,7 +164,10 @@ impl<'t, 'a> Body<'t, 'a> {
 
     /// A name in WGSL that is not used yet, like the given one.
     pub fn identifier(&mut self, like: &str) -> String {
-        let like = like.trim_start_matches('_');
+        let like = match like.trim_start_matches('_') {
+            "" => "i",
+            like => like,
+        };
         let library = self.translator.library;
         let is_free = |name: &str, used: &BTreeSet<String>| {
             let is_function = |f: &Function| f.owner.is_none() && f.signature.ident == name;

@@ -1,0 +1,99 @@
+//! Pictures by GPUs: an algorithm of a [`Session`] whose passes a device renders.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc, Span};
+use film::Film;
+use geometry::RayStats;
+use gpu::{Algorithm, Renderer, Subject, flatten};
+use integrators::{Cancelled, Control, Integrator, PassError, Session};
+use sampling::Sampler;
+use sampling::sampler::Independent;
+use scene::texture::color_space;
+use scene::{Scene, View};
+
+pub use gpu::{Device, GpuError, Kernels};
+
+/// An algorithm on a device.
+struct OnDevice {
+    renderer: Renderer,
+    sampler: Sampler,
+}
+
+/// The algorithm that a scene describes, on a device, for the scene, view and film of a session.
+/// The error says what kernels do not draw.
+pub(crate) fn integrator(
+    desc: &SceneDesc,
+    session: &Session,
+    kernels: &Arc<Kernels>,
+) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
+    let (scene, view, film) = (&**session.scene(), session.view(), &session.state().film);
+    let algorithm = match desc.integrator.value.clone() {
+        IntegratorDesc::RayCasting => Some(Algorithm::RayCasting),
+        IntegratorDesc::AmbientOcclusion(settings) => {
+            Some(Algorithm::AmbientOcclusion(settings, color_space(desc.film.color_space)))
+        }
+        IntegratorDesc::Path(settings) | IntegratorDesc::VolPath(settings) => Some(Algorithm::Path(settings)),
+        _ => None,
+    };
+    let mut refused = Vec::new();
+    if algorithm.is_none() {
+        let message = format!("the engine for GPUs does not have integrator `{}`", desc.integrator.name());
+        refused.push(Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span));
+    }
+    let SamplerKind::Independent { pixel_samples } = desc.sampler.kind else {
+        let message = "the engine for GPUs has the random numbers of sampler `independent` only";
+        let warning = Diagnostic::warning("not-on-gpu", message, desc.sampler.origin.span);
+        refused.push(warning.with_help("`--set sampler=independent` selects it"));
+        return Err(refused);
+    };
+    let Some(algorithm) = algorithm else { return Err(refused) };
+    let seed = desc.sampler.seed.unwrap_or(desc.options.seed) as u32;
+    let sampler = Sampler::Independent(Independent::new(pixel_samples, seed));
+    let never = Default::default();
+    let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
+    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler };
+    let flat = flatten(subject, &lights)
+        .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
+    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
+        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
+        Err(error) => Err(vec![Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE)]),
+    }
+}
+
+impl Integrator for OnDevice {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    /// All is on the device already.
+    fn prepare(&mut self, _scene: &Scene, _view: &View, _control: &Control) -> Result<(), Cancelled> {
+        Ok(())
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        _scene: &Scene,
+        view: &View,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, PassError> {
+        let is_cancelled = || control.cancel.load(Ordering::Relaxed);
+        match self.renderer.pass(pass, view, &self.sampler, film, is_cancelled) {
+            Ok(Some(rays)) => Ok(RayStats { rays, ..RayStats::default() }),
+            Ok(None) => Err(PassError::Cancelled),
+            Err(gpu::PassError::OutOfMemory(problem)) => Err(PassError::OutOfMemory(problem)),
+            Err(gpu::PassError::Gpu(error)) => Err(PassError::Device(error.to_string())),
+        }
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        let megabytes = self.renderer.bytes() as f64 / f64::from(1 << 20);
+        vec![
+            ("device", self.renderer.device().name().to_owned()),
+            ("device memory", format!("{megabytes:.1} MiB")),
+        ]
+    }
+}

@@ -1,0 +1,34 @@
+//! `--device`: which machine part renders.
+
+use std::sync::Arc;
+
+use alhazen::Job;
+use alhazen::description::{Diagnostic, Span};
+use alhazen::device::{Device, Kernels};
+use clap::ValueEnum;
+
+/// What renders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum DeviceChoice {
+    /// The processor.
+    #[default]
+    Cpu,
+    /// The graphics processor.
+    Gpu,
+    /// The graphics processor if it draws the scene, and is none in software.
+    Auto,
+}
+
+/// Moves a job to the chosen device. Where that cannot be, the job is as before, and the warnings
+/// say why.
+pub fn choose(choice: DeviceChoice, job: &mut Job) -> Result<(), Vec<Diagnostic>> {
+    if choice == DeviceChoice::Cpu {
+        return Ok(());
+    }
+    let cannot = |problem: String| vec![Diagnostic::warning("not-on-gpu", problem, Span::NONE)];
+    let device = Device::open("").map_err(|error| cannot(error.to_string()))?;
+    if choice == DeviceChoice::Auto && device.is_software() {
+        return Err(cannot(format!("{} is a GPU in software, slower than the CPU itself", device.name())));
+    }
+    job.move_to(&Arc::new(Kernels::new(device)))
+}

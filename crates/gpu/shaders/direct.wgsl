@@ -1,0 +1,51 @@
+// Direct light: connections of a surface with points of lights.
+
+// The light of a sample that a surface scatters, without visibility and density.
+fn scattered(s: Surface, bsdf: Bsdf, light: LightSample) -> vec4f {
+    return bsdf_f(bsdf, s.wo, light.wi) * light.l * abs(dot(light.wi, s.ns));
+}
+
+// The light of one light that a surface scatters, weighted against sampling of the BSDF.
+fn direct_light(s: Surface, context: ShapeSampleContext, bsdf: Bsdf, lambda: SampledWavelengths) -> vec4f {
+    let u = get_1d();
+    let u_light = get_2d();
+    let choice = choose_light(context, u);
+    if (!choice.valid) {
+        return vec4f();
+    }
+    let light = sample_light(choice.light, context, u_light, lambda, true);
+    if (!light.valid) {
+        return vec4f();
+    }
+    var l = scattered(s, bsdf, light);
+    if (is_black(l)) {
+        return l;
+    }
+    let pdf = choice.pmf * light.pdf;
+    var weight = 1.0;
+    if (!is_delta(light_record(choice.light))) {
+        weight = power_heuristic(pdf, bsdf_pdf(bsdf, s.wo, light.wi));
+    }
+    let shadow = shadow_ray(s, light);
+    if (occluded(shadow.ray, shadow.t_max)) {
+        return vec4f();
+    }
+    return l * (weight / pdf);
+}
+
+// The light of all lights that a surface scatters, as if nothing were in between.
+fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths) -> vec4f {
+    let flags = bsdf_flags(bsdf);
+    var sum = vec4f();
+    if (!is_non_specular(flags)) {
+        return sum;
+    }
+    let context = light_context(s, flags);
+    for (var i = 0u; i < world.light_count; i++) {
+        let light = sample_light(i, context, get_2d(), lambda, false);
+        if (light.valid) {
+            sum += scattered(s, bsdf, light) / light.pdf;
+        }
+    }
+    return sum;
+}

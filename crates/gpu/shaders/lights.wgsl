@@ -1,0 +1,270 @@
+// Lights: the records of `src/flatten/lights.rs`.
+
+const POINT_LIGHT = 0u;
+const SPOT_LIGHT = 1u;
+const DISTANT_LIGHT = 2u;
+const TRIANGLE_LIGHT = 3u;
+const RECTANGLE_LIGHT = 4u;
+const SPHERE_LIGHT = 5u;
+const UNIFORM_LIGHT = 6u;
+const IMAGE_LIGHT = 7u;
+
+// Incident light, before its visibility is tested.
+struct LightSample {
+    l: vec4f,
+    wi: vec3f,
+    pdf: f32,
+    p: Point3Error,
+    n: vec3f,
+    // Infinitely far away, where there is no point.
+    is_distant: bool,
+    valid: bool,
+}
+
+fn no_light() -> LightSample {
+    return LightSample(vec4f(), vec3f(), 0, Point3Error(vec3f(), vec3f()), vec3f(), false, false);
+}
+
+fn light_record(light: u32) -> u32 {
+    return tables[world.lights + light];
+}
+
+fn is_delta(at: u32) -> bool {
+    return tables[at] <= DISTANT_LIGHT;
+}
+
+// The spectrum of a light times its scale.
+fn emission(at: u32, lambda: SampledWavelengths) -> vec4f {
+    return spectrum(tables[at + 1], lambda) * number(at + 2);
+}
+
+fn flat_light(at: u32) -> FlatShape {
+    let sides = array(vector(at + 7), vector(at + 10));
+    return FlatShape(vector(at + 4), sides, vector(at + 13), tables[at] == TRIANGLE_LIGHT);
+}
+
+// The radiance that a surface with the normal `n` sends along `w`.
+fn light_radiance(at: u32, n: vec3f, w: vec3f, lambda: SampledWavelengths) -> vec4f {
+    if (tables[at + 3] == 0 && dot(n, w) < 0) {
+        return vec4f();
+    }
+    return emission(at, lambda);
+}
+
+// The shadow ray from a surface to a light sample, and its end.
+struct ShadowRay {
+    ray: Ray,
+    t_max: f32,
+}
+
+fn shadow_ray(s: Surface, light: LightSample) -> ShadowRay {
+    if (light.is_distant) {
+        return ShadowRay(spawn(s, light.wi), infinity());
+    }
+    return ShadowRay(Ray_between(s.p, s.n, light.p, light.n, 0), 0.9999);
+}
+
+// A direction to a light. With `allow_incomplete` it may leave out what BSDF sampling finds.
+fn sample_light(
+    light: u32,
+    context: ShapeSampleContext,
+    u: vec2f,
+    lambda: SampledWavelengths,
+    allow_incomplete: bool,
+) -> LightSample {
+    let at = light_record(light);
+    switch (tables[at]) {
+        case POINT_LIGHT, SPOT_LIGHT: { return sample_point_light(at, context, lambda); }
+        case DISTANT_LIGHT: {
+            var sample = no_light();
+            sample.l = emission(at, lambda);
+            sample.wi = vector(at + 4);
+            sample.pdf = 1;
+            sample.is_distant = true;
+            sample.valid = true;
+            return sample;
+        }
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let sample = FlatShape_sample_from(flat_light(at), context, u);
+            return sample_surface(at, context, sample.v0, sample.v1, lambda);
+        }
+        case SPHERE_LIGHT: {
+            let sample = sample_sphere(at, context, u);
+            return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
+        }
+        case IMAGE_LIGHT: { return sample_sky(at, u, lambda); }
+        default: {
+            var sample = no_light();
+            if (!allow_incomplete) {
+                sample.l = emission(at, lambda);
+                sample.wi = sample_uniform_sphere(u);
+                sample.pdf = 1 / (4 * 3.1415927);
+                sample.is_distant = true;
+                sample.valid = true;
+            }
+            return sample;
+        }
+    }
+}
+
+fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
+    var sample = no_light();
+    sample.p = Point3Error(vector(at + 4), vec3f());
+    let to_light = sample.p.p - context.p.p;
+    let distance2 = Vec3_length_squared(to_light);
+    if (distance2 == 0) {
+        return sample;
+    }
+    sample.wi = to_light / sqrt(distance2);
+    var share = 1.0;
+    if (tables[at] == SPOT_LIGHT) {
+        share = smooth_step(dot(-sample.wi, vector(at + 7)), number(at + 11), number(at + 10));
+    }
+    sample.l = emission(at, lambda) * (share / distance2);
+    sample.pdf = 1;
+    sample.valid = !is_black(sample.l);
+    return sample;
+}
+
+// The light of a point that is sampled on a surface.
+fn sample_surface(
+    at: u32,
+    context: ShapeSampleContext,
+    point: ShapeSample,
+    is_valid: bool,
+    lambda: SampledWavelengths,
+) -> LightSample {
+    var sample = no_light();
+    let to_light = point.p.p - context.p.p;
+    if (!is_valid || Vec3_length_squared(to_light) == 0) {
+        return sample;
+    }
+    sample.wi = Vec3_normalize(to_light);
+    sample.l = light_radiance(at, point.n, -sample.wi, lambda);
+    sample.pdf = point.pdf;
+    sample.p = point.p;
+    sample.n = point.n;
+    sample.valid = !is_black(sample.l);
+    return sample;
+}
+
+// The cone in which a sphere is seen: sine, 1 − cosine of its half angle, and its axis. Within the
+// sphere the sine is 0.
+struct Cone {
+    axis: vec3f,
+    sine: f32,
+    one_minus_cos: f32,
+}
+
+fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
+    let toward = vector(at + 4) - context.p.p;
+    let distance = length(toward);
+    let radius = number(at + 7);
+    if (distance - length(context.p.error) <= radius) {
+        return Cone(vec3f(), 0, 2);
+    }
+    let sine = radius / distance;
+    return Cone(toward / distance, sine, sine * sine / (1 + safe_sqrt(1 - sine * sine)));
+}
+
+// A point of a sphere: by the cone from outside, by area from inside.
+fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
+    let center = vector(at + 4);
+    let radius = number(at + 7);
+    let cone = cone_of(at, context);
+    var outward: vec3f;
+    var pdf = 1 / (6.2831855 * cone.one_minus_cos);
+    if (cone.sine > 0) {
+        let below_one = cone.one_minus_cos * u.x;
+        let cosine = 1 - below_one;
+        let sin2 = below_one * (1 + cosine);
+        let cos_alpha = sin2 / cone.sine + cosine * safe_sqrt(1 - sin2 / (cone.sine * cone.sine));
+        let local = spherical_direction(safe_sqrt(1 - cos_alpha * cos_alpha), cos_alpha, u.y * 6.2831855);
+        let x = coordinate_system(cone.axis).v1;
+        outward = -(x * local.x + cross(cone.axis, x) * local.y + cone.axis * local.z);
+    } else {
+        outward = sample_uniform_sphere(u);
+    }
+    let p = center + outward * radius;
+    let n = outward * number(at + 8);
+    if (cone.sine == 0) {
+        pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) / (4 * 3.1415927 * radius * radius);
+    }
+    return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
+}
+
+// The density per solid angle with which a light's surface is sampled where a ray hits it.
+fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f) -> f32 {
+    let at = light_record(light);
+    if (tables[at] != SPHERE_LIGHT) {
+        return FlatShape_pdf_from(flat_light(at), context, uv);
+    }
+    let cone = cone_of(at, context);
+    if (cone.sine > 0) {
+        return 1 / (6.2831855 * cone.one_minus_cos);
+    }
+    let radius = number(at + 7);
+    return ShapeSampleContext_area_per_solid_angle(context, s.p.p, s.n) / (4 * 3.1415927 * radius * radius);
+}
+
+// The radiance of an infinite light along a ray that leaves the scene, and the density with which
+// it is sampled where sampling may be incomplete.
+struct Sky {
+    l: vec4f,
+    pdf: f32,
+}
+
+fn sky(light: u32, d: vec3f, lambda: SampledWavelengths) -> Sky {
+    let at = light_record(light);
+    if (tables[at] == UNIFORM_LIGHT) {
+        return Sky(emission(at, lambda), 0);
+    }
+    let w = Vec3_normalize(times(Rows(vector(at + 8), vector(at + 11), vector(at + 14)), d));
+    var st: vec2f;
+    if (tables[at + 6] == 0) {
+        st = equal_area_sphere_to_square(w);
+    } else {
+        st = vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
+    }
+    let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
+    let pdf = density_of(tables[at + 7], st) / solid_angle;
+    return Sky(sky_image(at, st, lambda), select(pdf, 0, solid_angle == 0));
+}
+
+// Solid angle per area of an image of the sphere, as a part of 4π.
+fn solid_angle_density(at: u32, st: vec2f) -> f32 {
+    return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, tables[at + 6] == 0);
+}
+
+// The radiance of the pixel at a position.
+fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
+    let size = vec2u(tables[at + 4], tables[at + 5]);
+    let pixel = min(vec2u(clamp(st * vec2f(size), vec2f(), vec2f(size))), size - 1);
+    let rgb = tables[at + 26] + 4 * (pixel.y * size.x + pixel.x);
+    let polynomial = RgbSigmoidPolynomial(vector(rgb + 1));
+    var l: vec4f;
+    for (var i = 0; i < 4; i++) {
+        l[i] = number(rgb) * RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]);
+    }
+    return l * emission(at, lambda);
+}
+
+fn sample_sky(at: u32, u: vec2f, lambda: SampledWavelengths) -> LightSample {
+    let drawn = draw_2d(tables[at + 7], u);
+    let st = drawn.xy;
+    var local: vec3f;
+    if (tables[at + 6] == 0) {
+        local = equal_area_square_to_sphere(st);
+    } else {
+        let theta = sin_cos(3.1415927 * st.y);
+        local = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
+    }
+    let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
+    var sample = no_light();
+    sample.wi = Vec3_normalize(times(Rows(vector(at + 17), vector(at + 20), vector(at + 23)), local));
+    sample.l = sky_image(at, st, lambda);
+    sample.pdf = drawn.z / solid_angle;
+    sample.is_distant = true;
+    sample.valid = drawn.z != 0 && solid_angle != 0;
+    return sample;
+}

@@ -1,0 +1,123 @@
+// Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
+
+// Paths of this survival probability or more survive.
+const CERTAIN = 0.999;
+
+// A path between two of its vertices.
+struct Path {
+    ray: Ray,
+    near: Differentials,
+    beta: vec4f,
+    depth: u32,
+    // The vertex that the ray starts at, the density of its direction, and whether a light sample
+    // could have found what it hits.
+    origin: ShapeSampleContext,
+    pdf: f32,
+    is_found_twice: bool,
+    // The product of η² over the refractions.
+    eta_scale: f32,
+    rough_before: bool,
+}
+
+// The weight of light that a path hits, and that light sampling finds with the density `pdf`.
+fn hit_weight(path: Path, light: u32, pdf: f32) -> f32 {
+    return power_heuristic(path.pdf, light_pmf(path.origin, light) * pdf);
+}
+
+// The weighted radiance along a ray that leaves the scene.
+fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
+    var sum = vec4f();
+    for (var i = 0u; i < world.infinite_count; i++) {
+        let light = tables[world.infinite + i];
+        let seen = sky(light, path.ray.d, lambda);
+        var weight = 1.0;
+        if (path.is_found_twice) {
+            weight = hit_weight(path, light, seen.pdf);
+        }
+        sum += seen.l * weight;
+    }
+    return sum;
+}
+
+// The weighted emission of a surface back along the ray.
+fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
+    if (s.light == 0) {
+        return vec4f();
+    }
+    let light = s.light - 1;
+    let l = light_radiance(light_record(light), s.n, s.wo, lambda);
+    if (is_black(l) || !path.is_found_twice) {
+        return l;
+    }
+    return l * hit_weight(path, light, pdf_of_surface(light, path.origin, s, uv));
+}
+
+// Leaves a vertex along a direction of its BSDF.
+fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, sample: BsdfSample) {
+    (*path).beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
+    (*path).origin = context;
+    (*path).pdf = sample.pdf;
+    let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
+    (*path).is_found_twice = !is_specular;
+    (*path).rough_before |= !is_specular;
+    if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
+        (*path).eta_scale *= sample.eta * sample.eta;
+    }
+    (*path).ray = spawn(s, sample.wi);
+}
+
+// Plays Russian roulette; false if the path has ended.
+fn survives(path: ptr<function, Path>) -> bool {
+    let probability = SampledSpectrum_max_component((*path).beta * (*path).eta_scale);
+    if ((*path).depth <= 1 || probability >= CERTAIN) {
+        return true;
+    }
+    if (!(probability > 0 && get_1d() < probability)) {
+        return false;
+    }
+    (*path).beta /= probability;
+    return true;
+}
+
+fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
+    var l = vec4f();
+    var path: Path;
+    path.ray = ray;
+    path.near = near;
+    path.beta = vec4f(1);
+    path.eta_scale = 1;
+    loop {
+        let hit = nearest(path.ray);
+        if (!hit.found) {
+            l += path.beta * escaped(path, *lambda);
+            break;
+        }
+        let s = surface_at(hit, path.ray);
+        l += path.beta * emitted(path, s, hit.uv, *lambda);
+        let textures = texture_context(s, path.near);
+        var bsdf = bsdf_at(s, textures, lambda);
+        if (path.depth == world.max_depth) {
+            break;
+        }
+        path.depth++;
+        if (world.regularize == 1 && path.rough_before) {
+            regularize(&bsdf);
+        }
+        let flags = bsdf_flags(bsdf);
+        let context = light_context(s, flags);
+        if (is_non_specular(flags)) {
+            l += path.beta * direct_light(s, context, bsdf, *lambda);
+        }
+        let uc = get_1d();
+        let sample = bsdf_sample(bsdf, s.wo, uc, get_2d());
+        if (!sample.valid) {
+            break;
+        }
+        path.near = scattered_differentials(s, textures, path.near, sample);
+        scatter(&path, s, context, sample);
+        if (!survives(&path)) {
+            break;
+        }
+    }
+    return l;
+}

@@ -1,0 +1,265 @@
+// The points of surfaces that rays hit.
+
+// A bound of the errors of points that are computed in several steps, relative to their numbers.
+const POINT_ERROR = 6e-7;
+
+struct Surface {
+    p: Point3Error,
+    // The geometric normal, on the side of the shading normal.
+    n: vec3f,
+    uv: vec2f,
+    dpdu: vec3f,
+    dpdv: vec3f,
+    // The shading normal, the shading tangent, and the derivatives of the normal by u and v.
+    ns: vec3f,
+    ss: vec3f,
+    dndu: vec3f,
+    dndv: vec3f,
+    // Back along the ray.
+    wo: vec3f,
+    material: u32,
+    // The light plus one; 0 where it does not emit.
+    light: u32,
+}
+
+fn context_of(s: Surface) -> ShapeSampleContext {
+    return ShapeSampleContext(s.p, s.n, s.ns, 0);
+}
+
+fn spawn(s: Surface, d: vec3f) -> Ray {
+    return Ray_spawn(s.p, s.n, d, 0);
+}
+
+// The rows of a matrix.
+struct Rows {
+    x: vec3f,
+    y: vec3f,
+    z: vec3f,
+}
+
+fn times(m: Rows, v: vec3f) -> vec3f {
+    return vec3f(dot(m.x, v), dot(m.y, v), dot(m.z, v));
+}
+
+fn transposed(m: Rows, v: vec3f) -> vec3f {
+    return m.x * v.x + m.y * v.y + m.z * v.z;
+}
+
+fn inverse(m: Rows) -> Rows {
+    let a = cross(m.y, m.z);
+    let b = cross(m.z, m.x);
+    let c = cross(m.x, m.y);
+    let scale = 1 / dot(m.x, a);
+    return Rows(vec3f(a.x, b.x, c.x) * scale, vec3f(a.y, b.y, c.y) * scale, vec3f(a.z, b.z, c.z) * scale);
+}
+
+fn absolute(m: Rows) -> Rows {
+    return Rows(abs(m.x), abs(m.y), abs(m.z));
+}
+
+// The point of a hit by a ray of unit direction.
+fn surface_at(hit: Hit, ray: Ray) -> Surface {
+    let geometry = world.geometries + 4 * hit.geometry;
+    var s: Surface;
+    var o = ray.o;
+    var d = ray.d;
+    var row: array<vec4f, 3>;
+    if (hit.instance != NO_HIT) {
+        let at = 5 * hit.instance;
+        row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
+        o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
+        d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
+    }
+    if (hit.is_triangle) {
+        s = triangle_point(hit, tables[geometry + 2], tables[geometry + 3] == 1);
+    } else {
+        s = shape_point(hit, o, d);
+    }
+    if (hit.instance != NO_HIT) {
+        place_surface(&s, Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
+    }
+    s.wo = Vec3_normalize(-ray.d);
+    s.material = tables[geometry];
+    s.light = tables[geometry + 1];
+    if (s.light != 0) {
+        s.light += hit.primitive;
+    }
+    return s;
+}
+
+// Takes a point out of an instance, given the matrix and translation that take points inside.
+fn place_surface(s: ptr<function, Surface>, inward: Rows, translation: vec3f) {
+    let outward = inverse(inward);
+    let inside = (*s).p.p;
+    let ns = (*s).ns;
+    let size = times(absolute(outward), (*s).p.error + POINT_ERROR * (abs(inside) + abs(translation)));
+    (*s).p = Point3Error(times(outward, inside - translation), size);
+    (*s).n = Vec3_normalize(transposed(inward, (*s).n));
+    (*s).ns = face_forward(Vec3_normalize(transposed(inward, (*s).ns)), (*s).n);
+    (*s).dpdu = times(outward, (*s).dpdu);
+    (*s).dpdv = times(outward, (*s).dpdv);
+    (*s).ss = times(outward, (*s).ss);
+    (*s).dndu = normal_change(inward, ns, (*s).dndu);
+    (*s).dndv = normal_change(inward, ns, (*s).dndv);
+}
+
+// The derivative of a unit normal outside, given normal and derivative inside.
+fn normal_change(inward: Rows, inner_n: vec3f, inner_dn: vec3f) -> vec3f {
+    let n = transposed(inward, inner_n);
+    let dn = transposed(inward, inner_dn);
+    let squared = dot(n, n);
+    return (dn - n * (dot(n, dn) / squared)) / sqrt(squared);
+}
+
+// A mix of three vectors of the attributes.
+fn mixed(at: u32, b: vec3f) -> vec3f {
+    return vector(at) * b.x + vector(at + 3) * b.y + vector(at + 6) * b.z;
+}
+
+fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
+    let at = 3 * hit.place;
+    let corner = bitcast<vec3f>(triangles[at].xyz);
+    let du = bitcast<vec3f>(triangles[at + 1].xyz) - corner;
+    let dv = bitcast<vec3f>(triangles[at + 2].xyz) - corner;
+    let b = vec3f(1 - hit.uv.x - hit.uv.y, hit.uv);
+    var s: Surface;
+    let error = gamma(5) * (abs(corner) + abs(du * b.y) + abs(dv * b.z));
+    s.p = Point3Error(corner + du * b.y + dv * b.z, error);
+    s.n = Vec3_normalize(cross(du, dv)) * select(1.0, -1.0, flips);
+    var uv = array(vec2f(), vec2f(1, 0), vec2f(1, 1));
+    var next = attributes + 1;
+    var flags = 0u;
+    if (attributes != 0) {
+        flags = tables[attributes];
+        let numbers = select(0u, 9u, (flags & 1) != 0) + select(0u, 6u, (flags & 2) != 0)
+            + select(0u, 9u, (flags & 4) != 0);
+        next += numbers * hit.primitive;
+    }
+    let normals = next;
+    next += select(0u, 9u, (flags & 1) != 0);
+    if ((flags & 2) != 0) {
+        for (var i = 0u; i < 3; i++) {
+            uv[i] = vec2f(number(next + 2 * i), number(next + 2 * i + 1));
+        }
+        next += 6;
+    }
+    s.uv = uv[0] * b.x + uv[1] * b.y + uv[2] * b.z;
+    set_tangents(&s, du, dv, uv[1] - uv[0], uv[2] - uv[0]);
+    s.ns = s.n;
+    s.ss = s.dpdu;
+    if ((flags & 1) != 0) {
+        let ns = Vec3_normalize_masked(mixed(normals, b));
+        s.ns = select(s.n, ns.v0, ns.v1);
+        s.n = face_forward(s.n, s.ns);
+        let inverse = 1 / area(uv[1] - uv[0], uv[2] - uv[0]);
+        let nu = vector(normals + 3) - vector(normals);
+        let nv = vector(normals + 6) - vector(normals);
+        let dndu = (nu * (uv[2].y - uv[0].y) - nv * (uv[1].y - uv[0].y)) * inverse;
+        let dndv = (nv * (uv[1].x - uv[0].x) - nu * (uv[2].x - uv[0].x)) * inverse;
+        let is_regular = abs(inverse) < infinity();
+        s.dndu = select(vec3f(), dndu, is_regular);
+        s.dndv = select(vec3f(), dndv, is_regular);
+    }
+    if ((flags & 4) != 0) {
+        let ss = mixed(next, b);
+        s.ss = select(s.dpdu, ss, dot(ss, ss) > 0);
+    }
+    return s;
+}
+
+fn area(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - b.x * a.y;
+}
+
+// ∂p/∂u and ∂p/∂v by the texture coordinates; any tangents where these have no area.
+fn set_tangents(s: ptr<function, Surface>, du: vec3f, dv: vec3f, st_du: vec2f, st_dv: vec2f) {
+    let inverse = 1 / area(st_du, st_dv);
+    (*s).dpdu = (du * st_dv.y - dv * st_du.y) * inverse;
+    (*s).dpdv = (dv * st_du.x - du * st_dv.x) * inverse;
+    let normal = cross((*s).dpdu, (*s).dpdv);
+    let squared = dot(normal, normal);
+    if (!(squared > 0 && squared < infinity())) {
+        let any_tangents = coordinate_system((*s).n);
+        (*s).dpdu = any_tangents.v0;
+        (*s).dpdv = any_tangents.v1;
+    }
+}
+
+fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
+    let at = 5 * hit.place;
+    let ids = items[at + 4];
+    let side = select(1.0, -1.0, ids.w == 1);
+    var s: Surface;
+    if (ids.x == PARALLELOGRAM) {
+        let corner = bitcast<vec3f>(items[at].xyz);
+        s.dpdu = bitcast<vec3f>(items[at + 1].xyz);
+        s.dpdv = bitcast<vec3f>(items[at + 2].xyz);
+        s.uv = hit.uv;
+        let along = s.dpdu * hit.uv.x;
+        let across = s.dpdv * hit.uv.y;
+        s.p = Point3Error(corner + along + across, gamma(5) * (abs(corner) + abs(along) + abs(across)));
+        s.n = Vec3_normalize(cross(s.dpdu, s.dpdv)) * side;
+    } else {
+        let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
+        let inward = Rows(row[0].xyz, row[1].xyz, row[2].xyz);
+        let center = vec3f(row[0].w, row[1].w, row[2].w);
+        let p = times(inward, o - center) + times(inward, d) * hit.t;
+        s = revolved_point(ids.x, p, bitcast<vec4f>(items[at + 3]));
+        let outward = inverse(inward);
+        let reach = abs(center) + times(absolute(outward), abs(s.p.p));
+        s.p = Point3Error(center + times(outward, s.p.p), POINT_ERROR * reach);
+        s.dndu = normal_change(inward, s.n, s.dndu) * side;
+        s.dndv = normal_change(inward, s.n, s.dndv) * side;
+        s.n = Vec3_normalize(transposed(inward, s.n)) * side;
+        s.dpdu = times(outward, s.dpdu);
+        s.dpdv = times(outward, s.dpdv);
+    }
+    s.ns = s.n;
+    s.ss = s.dpdu;
+    return s;
+}
+
+// The point of a surface around the z axis that is nearest to `p`, in object space.
+fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
+    var s: Surface;
+    s.p.p = p;
+    s.n = vec3f(0, 0, 1);
+    let phi = spherical_phi(p);
+    if (kind == PLANE) {
+        s.p.p.z = 0;
+        s.uv = p.xy;
+        s.dpdu = vec3f(1, 0, 0);
+        s.dpdv = vec3f(0, 1, 0);
+    } else if (kind == DISK) {
+        s.p.p.z = numbers.x;
+        let width = numbers.y - numbers.z;
+        let distance = length(p.xy);
+        s.uv = vec2f(phi / numbers.w, (numbers.y - distance) / width);
+        // A direction for the tangents at the centre.
+        let out = select(vec2f(1e-5 * numbers.y, 0), p.xy, distance > 0);
+        s.dpdu = vec3f(-out.y, out.x, 0) * numbers.w;
+        s.dpdv = vec3f(out / length(out), 0) * -width;
+    } else if (kind == CYLINDER) {
+        let out = p.xy / length(p.xy);
+        s.n = vec3f(out, 0);
+        s.p.p = vec3f(out * numbers.x, p.z);
+        s.uv = vec2f(phi / numbers.w, (p.z - numbers.y) / (numbers.z - numbers.y));
+        s.dpdu = vec3f(-s.p.p.y, s.p.p.x, 0) * numbers.w;
+        s.dpdv = vec3f(0, 0, numbers.z - numbers.y);
+        s.dndu = s.dpdu / numbers.x;
+    } else {
+        s.n = Vec3_normalize(p);
+        s.p.p = s.n * numbers.x;
+        let low = arc_acos(clamp(numbers.y / numbers.x, -1, 1));
+        let height = arc_acos(clamp(numbers.z / numbers.x, -1, 1)) - low;
+        s.uv = vec2f(phi / numbers.w, (arc_acos(clamp(s.n.z, -1, 1)) - low) / height);
+        // A direction for the tangents at the pole.
+        let out = select(vec2f(1e-5 * numbers.x, 0), s.p.p.xy, any(s.p.p.xy != vec2f()));
+        let across = length(out);
+        s.dpdu = vec3f(-out.y, out.x, 0) * numbers.w;
+        s.dpdv = vec3f(s.p.p.z * out / across, -across) * height;
+        s.dndu = s.dpdu / numbers.x;
+        s.dndv = s.dpdv / numbers.x;
+    }
+    return s;
+}

@@ -1,0 +1,66 @@
+//! What is tested alone: an instance, or a shape, as five quadruples of words.
+//!
+//! | kind | quadruples |
+//! |---|---|
+//! | instance | the rows of the matrix that takes rays inside; the references of its triangles and of its items, the size of its group, its id |
+//! | parallelogram | its corner and its sides |
+//! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
+//!
+//! The last quadruple is the kind, the geometry and the primitive, and whether the outside is
+//! turned over.
+
+use geometry::{GeometryId, InstanceId, PlainShape, RevolvedKind, World};
+use math::{DVec3, Vec3};
+
+use super::{BvhError, Group, Words};
+
+/// Quadruples of an item.
+pub const QUADRUPLES: usize = 5;
+
+// The kinds of items, as in `shaders/trace.wgsl`.
+const INSTANCE: u32 = 0;
+const PARALLELOGRAM: u32 = 1;
+const SPHERE: u32 = 2;
+const CYLINDER: u32 = 3;
+const DISK: u32 = 4;
+const PLANE: u32 = 5;
+
+/// An instance of a group.
+pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Words; QUADRUPLES], BvhError> {
+    let motion = world.render_from_instance(id);
+    if motion.is_moving() {
+        return Err(BvhError::Moving(id));
+    }
+    let inverse = motion.start().matrix().as_dmat4().inverse();
+    let [x, y, z] = [0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits));
+    let group = &groups[world.group_of_instance(id).0 as usize];
+    let inside = [group.roots[0], group.roots[1], group.size.to_bits(), id.0];
+    Ok([x, y, z, inside, [INSTANCE, 0, 0, 0]])
+}
+
+/// A shape of a geometry.
+pub fn shape(world: &World, geometry: GeometryId, primitive: u32) -> Result<[Words; QUADRUPLES], BvhError> {
+    let shape = world.geometry(geometry).shape(primitive).and_then(|shape| shape.plain());
+    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips)];
+    match shape.ok_or(BvhError::Shape(geometry))? {
+        PlainShape::Parallelogram { corner, sides: [right, up], flips } => {
+            let words = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];
+            Ok([words(corner), words(right), words(up), [0; 4], ids(PARALLELOGRAM, flips)])
+        }
+        PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
+            let kind = match kind {
+                RevolvedKind::Sphere => SPHERE,
+                RevolvedKind::Cylinder => CYLINDER,
+                RevolvedKind::Disk => DISK,
+                RevolvedKind::Plane => PLANE,
+            };
+            let (inverse, origin) =
+                (render_from_object.inverse(), render_from_object.transform_point3(DVec3::ZERO));
+            let row = |i: usize| {
+                let vector = inverse.row(i).truncate();
+                [vector.x, vector.y, vector.z, origin[i]].map(|x| (x as f32).to_bits())
+            };
+            Ok([row(0), row(1), row(2), numbers.map(f32::to_bits), ids(kind, flips)])
+        }
+    }
+}

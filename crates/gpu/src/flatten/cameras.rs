@@ -1,0 +1,47 @@
+//! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
+//! (top left and pixel) and the lens (radius and focal distance); then the factors on differences
+//! to rays of neighbouring pixels, of rays that have them and of others, and the smallest of these
+//! differences, of origins and of directions.
+
+use description::Span;
+use scene::View;
+use scene::camera::{Projection, Screen, ThinLens, differential_scale};
+
+use super::Flattener;
+
+const PERSPECTIVE: u32 = 0;
+const ORTHOGRAPHIC: u32 = 1;
+
+impl Flattener<'_> {
+    /// The camera of a view; its offset.
+    pub fn camera(&mut self, view: &View) -> u32 {
+        let motion = view.camera.transform().animated();
+        if motion.is_moving() {
+            self.refuse("moving cameras", Span::NONE);
+        }
+        let (kind, screen, lens) = match view.camera.projection() {
+            Projection::Perspective(p) => (PERSPECTIVE, p.screen(), p.lens()),
+            Projection::Orthographic(p) => (ORTHOGRAPHIC, p.screen(), p.lens()),
+            Projection::Spherical(_) => return self.no_camera("camera `spherical`"),
+            Projection::Realistic(_) => return self.no_camera("camera `realistic`"),
+        };
+        let &Screen { top_left, per_pixel } = screen;
+        let ThinLens { radius, focal_distance } = lens;
+        let at = self.slab.add([kind]);
+        let matrix = motion.start().matrix();
+        self.slab.add_numbers([0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()));
+        let screen = [top_left.x, top_left.y, per_pixel.x, per_pixel.y];
+        self.slab.add_numbers(screen.into_iter().chain([radius, focal_distance]));
+        let samples = view.samples_per_pixel;
+        let least = if view.options.disable_pixel_jitter { 1 } else { samples };
+        self.slab.add_numbers([samples, least].map(differential_scale));
+        let differences = view.camera.minimum_differentials().differences();
+        self.slab.add_numbers(differences.as_flattened().iter().flat_map(|v| v.to_array()));
+        at
+    }
+
+    fn no_camera(&mut self, what: &str) -> u32 {
+        self.refuse(what, Span::NONE);
+        0
+    }
+}

@@ -1,0 +1,61 @@
+//! Geometries: four words for each, its material, its first light plus one or 0, the offset of its
+//! vertices' attributes, and 1 where the outside of a mesh is where corners run clockwise.
+//!
+//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
+//! triangle what it has at its three corners, in this order.
+
+use geometry::{Geometry, GeometryId, Triangle, TriangleMesh};
+
+use super::Flattener;
+
+const NORMALS: u32 = 1;
+const COORDINATES: u32 = 2;
+const TANGENTS: u32 = 4;
+
+impl Flattener<'_> {
+    /// The table of geometries; its offset.
+    pub fn geometries(&mut self) -> u32 {
+        let mut rows = Vec::new();
+        for (entry, id) in self.scene.geometries().iter().zip(0..) {
+            let (mut attributes, mut flips) = (0, false);
+            match self.scene.world().geometry(GeometryId(id)) {
+                Geometry::Mesh(mesh) if !mesh.is_empty() => {
+                    attributes = self.attributes(mesh);
+                    flips = mesh.triangle(0).flips;
+                }
+                Geometry::Mesh(_) | Geometry::Spheres(_) | Geometry::Shapes(_) => {}
+                Geometry::Curves(_) => self.refuse("curves", entry.span),
+            }
+            if entry.alpha.is_some() {
+                self.refuse("surfaces cut out by alpha", entry.span);
+            }
+            let light = entry.first_light.map_or(0, |light| light + 1);
+            rows.extend([entry.material.0, light, attributes, flips.into()]);
+        }
+        self.slab.add(rows)
+    }
+
+    /// The attributes of a mesh's vertices; their offset, or 0 where there are none.
+    fn attributes(&mut self, mesh: &TriangleMesh) -> u32 {
+        let first = mesh.triangle(0);
+        // Meshes without coordinates have the same at each triangle.
+        let has_coordinates = (0..mesh.len()).any(|i| mesh.triangle(i).uv != Triangle::DEFAULT_UV);
+        let flags = if first.n.is_some() { NORMALS } else { 0 }
+            | if has_coordinates { COORDINATES } else { 0 }
+            | if first.s.is_some() { TANGENTS } else { 0 };
+        if flags == 0 {
+            return 0;
+        }
+        let at = self.slab.add([flags]);
+        for triangle in (0..mesh.len()).map(|i| mesh.triangle(i)) {
+            let vectors = |vectors: Option<[_; 3]>| {
+                vectors.into_iter().flatten().flat_map(|v: math::Vec3| v.to_array())
+            };
+            let coordinates =
+                triangle.uv.into_iter().filter(|_| has_coordinates).flat_map(|uv| uv.to_array());
+            let numbers = vectors(triangle.n).chain(coordinates).chain(vectors(triangle.s));
+            self.slab.add_numbers(numbers);
+        }
+        at
+    }
+}

@@ -1,0 +1,50 @@
+//! The choice of a light.
+//!
+//! | words | choice |
+//! |---|---|
+//! | 0 | each light alike |
+//! | 1, and for each light 3 words: threshold, probability, alias | in proportion to power |
+//! | 2, offsets of nodes, trails and infinite lights, the number of these and of nodes, the probability of them all | through a tree |
+//!
+//! A node of the tree is 13 words, the numbers of its cluster and its kind.
+
+use description::Span;
+use scene::light_sampler::LightSampler;
+
+use super::Flattener;
+
+const UNIFORM: u32 = 0;
+const POWER: u32 = 1;
+const TREE: u32 = 2;
+
+impl Flattener<'_> {
+    /// The choice of lights; its offset.
+    pub fn light_choice(&mut self, lights: &LightSampler) -> u32 {
+        match lights {
+            LightSampler::Uniform(_) => self.slab.add([UNIFORM]),
+            LightSampler::Power(power) => {
+                let bins = power.table().into_iter().flat_map(|table| table.bins());
+                let words =
+                    bins.flat_map(|(threshold, pmf, alias)| [threshold.to_bits(), pmf.to_bits(), alias]);
+                let words: Vec<u32> = [POWER].into_iter().chain(words).collect();
+                self.slab.add(words)
+            }
+            LightSampler::Bvh(tree) => {
+                let nodes = tree.nodes();
+                let count = nodes.len() as u32;
+                let node = |(numbers, kind): (&[f32], u32)| {
+                    numbers.iter().map(|x| x.to_bits()).chain([kind]).collect::<Vec<u32>>()
+                };
+                let nodes = self.slab.add(nodes.flat_map(node));
+                let trails = self.slab.add(tree.trails().flatten());
+                let (ids, probability) = tree.infinite();
+                let infinite = self.slab.add(ids.iter().copied());
+                self.slab.add([TREE, nodes, trails, infinite, ids.len() as u32, count, probability.to_bits()])
+            }
+            LightSampler::Exhaustive(_) => {
+                self.refuse("light sampler `exhaustive`", Span::NONE);
+                0
+            }
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit, and numbers.
+//!
+//! | kind | numbers |
+//! |---|---|
+//! | 0 point | position |
+//! | 1 spot | position, axis, cosines of the start and of the end of the falloff |
+//! | 2 distant | direction |
+//! | 3 triangle, 4 rectangle | corner, sides, normal |
+//! | 5 sphere | centre, radius, 1 or −1 where the outside is inside |
+//! | 6 uniform infinite | none |
+//! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels |
+//!
+//! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
+//! spectrum.
+
+use description::Span;
+use geometry::{PlainShape, RevolvedKind};
+use image::Projection;
+use math::{DMat4, DVec3};
+use scene::light::{AreaLight, Emission, ImageInfiniteLight, Light, LightRef};
+use spectrum::RgbUnboundedSpectrum;
+
+use super::Flattener;
+
+const POINT: u32 = 0;
+const SPOT: u32 = 1;
+const DISTANT: u32 = 2;
+const TRIANGLE: u32 = 3;
+const RECTANGLE: u32 = 4;
+const SPHERE: u32 = 5;
+const UNIFORM_INFINITE: u32 = 6;
+const IMAGE_INFINITE: u32 = 7;
+
+impl Flattener<'_> {
+    /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
+    pub fn lights(&mut self) -> (u32, u32) {
+        let mut offsets = Vec::new();
+        // All primitives of a geometry have the same spectrum.
+        let mut shared = None;
+        for light in self.scene.lights().iter() {
+            offsets.push(self.light(&light, &mut shared));
+        }
+        let infinite: Vec<u32> = self.scene.infinite_lights().iter().map(|id| id.0).collect();
+        (self.slab.add(offsets), self.slab.add(infinite))
+    }
+
+    fn light(&mut self, light: &LightRef, shared: &mut Option<u32>) -> u32 {
+        let span = light.span();
+        match light.row() {
+            Light::Point(l) => {
+                self.at_rest(l.motion.is_some(), span);
+                self.emitter(POINT, &l.intensity, &l.p.to_array())
+            }
+            Light::Spot(l) => {
+                self.at_rest(l.motion.is_some(), span);
+                let numbers =
+                    [&l.p.to_array()[..], &l.axis.to_array(), &[l.cos_falloff_start, l.cos_falloff_end]];
+                self.emitter(SPOT, &l.intensity, &numbers.concat())
+            }
+            Light::Distant(l) => {
+                self.at_rest(l.motion.is_some(), span);
+                self.emitter(DISTANT, &l.radiance, &l.w.to_array())
+            }
+            Light::UniformInfinite(l) => self.emitter(UNIFORM_INFINITE, &l.radiance, &[]),
+            Light::Area(area) => {
+                if light.primitive() == 0 {
+                    *shared = None;
+                }
+                self.area_light(area, light.primitive(), span, shared)
+            }
+            Light::ImageInfinite(l) => {
+                self.at_rest(!l.is_at_rest(), span);
+                self.image_light(l)
+            }
+            Light::PortalInfinite(_) => self.no_light("infinite lights with portals", span),
+            Light::Goniometric(_) => self.no_light("light `goniometric`", span),
+            Light::Projection(_) => self.no_light("light `projection`", span),
+        }
+    }
+
+    fn no_light(&mut self, what: &str, span: Span) -> u32 {
+        self.refuse(what, span);
+        0
+    }
+
+    fn at_rest(&mut self, moves: bool, span: Span) {
+        if moves {
+            self.refuse("moving lights", span);
+        }
+    }
+
+    /// A light without a surface.
+    fn emitter(&mut self, kind: u32, emission: &Emission, numbers: &[f32]) -> u32 {
+        let spectrum = self.spectrum(&emission.spectrum);
+        let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 0]);
+        self.slab.add_numbers(numbers.iter().copied());
+        at
+    }
+
+    fn image_light(&mut self, light: &ImageInfiniteLight) -> u32 {
+        let (width, height) = (light.image.width(), light.image.height());
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| light.image.rgb(x, y)));
+        let numbers = pixels.flat_map(|rgb| {
+            let spectrum = RgbUnboundedSpectrum::new(light.color_space, rgb);
+            let [a, b, c] = spectrum.polynomial().coefficients;
+            [spectrum.scale(), a, b, c]
+        });
+        let pixels = self.slab.add_numbers(numbers);
+        let distribution = self.distribution(light.distribution(self.allows_incomplete));
+        let illuminant = self.spectrum(&light.color_space.illuminant());
+        let kind = match light.projection {
+            Projection::EqualArea => 0,
+            Projection::LatitudeLongitude => 1,
+        };
+        let render_from_light = light.render_from_light.start().matrix().as_dmat4();
+        let rows = |matrix: DMat4| [0, 1, 2].map(|row| matrix.row(row).truncate().as_vec3().to_array());
+        let scale = light.scale.to_bits();
+        let at = self.slab.add([IMAGE_INFINITE, illuminant, scale, 0, width, height, kind, distribution]);
+        let rotations = [rows(render_from_light.inverse()), rows(render_from_light)];
+        self.slab.add_numbers(rotations.as_flattened().as_flattened().iter().copied());
+        self.slab.add([pixels]);
+        at
+    }
+
+    fn area_light(&mut self, area: &AreaLight, primitive: u32, span: Span, shared: &mut Option<u32>) -> u32 {
+        let emission = &self.scene.emissions()[area.emission.0 as usize];
+        let refused = [
+            (!area.instance.is_top(), "area lights in instances"),
+            (area.alpha.is_some() || area.invisible, "area lights with alpha"),
+            (emission.image.is_some(), "area lights with images"),
+        ];
+        if let Some((_, what)) = refused.into_iter().find(|(is, _)| *is) {
+            return self.no_light(what, span);
+        }
+        let shape = self.scene.world().geometry(area.geometry).shape(primitive);
+        let (kind, numbers) = if let Some(flat) = shape.as_ref().and_then(|shape| shape.flat_shape()) {
+            let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
+            let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
+            (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
+        } else if let Some(numbers) = shape.and_then(|shape| ball(&shape.plain()?)) {
+            (SPHERE, numbers)
+        } else {
+            return self.no_light("area lights of this shape", span);
+        };
+        let spectrum = *shared.get_or_insert_with(|| self.spectrum(&emission.radiance.spectrum));
+        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
+        let at = self.slab.add([kind, spectrum, scale.to_bits(), emission.two_sided.into()]);
+        self.slab.add_numbers(numbers);
+        at
+    }
+}
+
+/// The numbers of a whole sphere; `None` of other shapes.
+fn ball(shape: &PlainShape) -> Option<Vec<f32>> {
+    let &PlainShape::Revolved { kind: RevolvedKind::Sphere, render_from_object, flips, numbers } = shape
+    else {
+        return None;
+    };
+    let [radius, least, largest, phi] = numbers;
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| render_from_object.transform_vector3(axis));
+    let scale = axes[0].length();
+    let is_ball = (0..3).all(|i| {
+        (axes[i].length() - scale).abs() <= 1e-6 * scale
+            && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
+    });
+    let is_whole = least == -radius && largest == radius && phi > 6.28318;
+    let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
+    let side = if flips { -1.0 } else { 1.0 };
+    (is_ball && is_whole).then(|| vec![center.x, center.y, center.z, radius * scale as f32, side])
+}

@@ -1,0 +1,228 @@
+//! A scene and a view of it as buffers for kernels.
+//!
+//! All tables are in one buffer of words. A record refers to another by its offset, that of its
+//! first word; offset 0 is nothing. Each file has the records of one closed set, which the shader of
+//! the same name reads.
+//!
+//! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene is
+//! then drawn by the CPU.
+
+mod cameras;
+mod distributions;
+mod filters;
+mod geometries;
+mod light_choices;
+mod lights;
+mod materials;
+mod slab;
+mod spectra;
+mod textures;
+
+use description::{Diagnostic, Span};
+use film::Film;
+use geometry::{GeometryId, InstanceId};
+use sampling::Sampler;
+use scene::light_sampler::LightSampler;
+use scene::{Scene, View};
+
+use crate::algorithm::Algorithm;
+use crate::bvh::{Bvh, BvhError, Top};
+use slab::Slab;
+
+/// Something that kernels do not draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// What it is, as a plural or with an article.
+    pub what: String,
+    /// Its place in the scene's file.
+    pub span: Span,
+}
+
+impl From<Refusal> for Diagnostic {
+    fn from(Refusal { what, span }: Refusal) -> Self {
+        Self::warning("not-on-gpu", format!("the engine for GPUs does not draw {what}"), span)
+    }
+}
+
+/// A scene for kernels.
+#[derive(Clone, Debug)]
+pub struct Flat {
+    /// What rays are traced through.
+    pub(crate) bvh: Bvh,
+    /// Where the tables are, and the numbers of the algorithm.
+    pub(crate) head: Head,
+    /// The tables.
+    pub(crate) tables: Vec<u32>,
+}
+
+/// The first buffer: `World` of `shaders/scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
+pub(crate) struct Head {
+    /// Where rays begin.
+    pub(crate) top: Top,
+    /// The offsets of camera, filter, geometries, materials, offsets of lights, offsets of infinite
+    /// lights, and choice of lights.
+    pub(crate) camera: u32,
+    pub(crate) filter: u32,
+    pub(crate) geometries: u32,
+    pub(crate) materials: u32,
+    pub(crate) lights: u32,
+    pub(crate) infinite: u32,
+    pub(crate) choice: u32,
+    /// The numbers of lights, and of infinite ones.
+    pub(crate) light_count: u32,
+    pub(crate) infinite_count: u32,
+    /// The hash of the seed by which random numbers are made.
+    pub(crate) key: u32,
+    /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
+    pub(crate) is_centered: u32,
+    pub(crate) has_one_wavelength: u32,
+    /// Of `path`: the most scattering events, and whether surfaces are roughened.
+    pub(crate) max_depth: u32,
+    pub(crate) regularize: u32,
+    /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
+    /// surfaces do not occlude, and whether directions follow the cosine.
+    pub(crate) white: u32,
+    pub(crate) white_scale: f32,
+    pub(crate) max_distance: f32,
+    pub(crate) cos_sample: u32,
+    /// Whether anything depends on the size of a pixel on surfaces.
+    pub(crate) has_footprints: u32,
+    /// Fills up the words.
+    pub(crate) unused: u32,
+}
+
+impl Flat {
+    /// The bytes of its buffers.
+    pub fn bytes(&self) -> usize {
+        let Bvh { nodes, triangles, items, .. } = &self.bvh;
+        let quadruples = nodes.len() + triangles.len() + items.len();
+        size_of::<Head>() + 16 * quadruples + 4 * self.tables.len()
+    }
+}
+
+/// What is drawn, and how.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The view of it.
+    pub view: &'a View,
+    /// The film, of which nothing is changed.
+    pub film: &'a Film,
+    /// The algorithm.
+    pub algorithm: &'a Algorithm,
+    /// The source of random numbers.
+    pub sampler: &'a Sampler,
+}
+
+/// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
+/// draw.
+pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
+    let Subject { scene, view, film, algorithm, sampler } = subject;
+    let mut flattener = Flattener {
+        scene,
+        allows_incomplete: algorithm.weights_lights(),
+        slab: Slab::new(),
+        spectra: Default::default(),
+        refusals: Vec::new(),
+    };
+    flattener.check(view, film);
+    let mut head = Head {
+        is_centered: view.options.disable_pixel_jitter.into(),
+        has_one_wavelength: view.options.disable_wavelength_jitter.into(),
+        has_footprints: scene.needs_footprints(view).into(),
+        ..Head::default()
+    };
+    match sampler {
+        Sampler::Independent(sampler) => head.key = sampler.key(),
+        _ => flattener.refuse("samplers other than `independent`", Span::NONE),
+    }
+    head.camera = flattener.camera(view);
+    head.filter = flattener.filter(film.filter());
+    head.geometries = flattener.geometries();
+    head.materials = flattener.materials();
+    (head.lights, head.infinite) = flattener.lights();
+    head.light_count = scene.lights().len() as u32;
+    head.infinite_count = scene.infinite_lights().len() as u32;
+    head.choice = flattener.light_choice(lights);
+    match algorithm {
+        Algorithm::RayCasting => {}
+        Algorithm::AmbientOcclusion(desc, space) => {
+            let white = space.illuminant();
+            head.white = flattener.spectrum(&white);
+            head.white_scale = 1.0 / white.to_photometric();
+            head.max_distance = desc.max_distance;
+            head.cos_sample = desc.cos_sample.into();
+        }
+        Algorithm::Path(desc) => {
+            head.max_depth = desc.max_depth;
+            head.regularize = desc.regularize.into();
+        }
+    }
+    let bvh = flattener.bvh();
+    head.top = bvh.top;
+    let Flattener { slab, refusals, .. } = flattener;
+    if refusals.is_empty() { Ok(Flat { bvh, head, tables: slab.words }) } else { Err(refusals) }
+}
+
+/// Tables under construction.
+struct Flattener<'a> {
+    scene: &'a Scene,
+    /// Whether lights may leave directions to sampling of the BSDF.
+    allows_incomplete: bool,
+    slab: Slab,
+    spectra: spectra::Shared,
+    refusals: Vec<Refusal>,
+}
+
+impl Flattener<'_> {
+    /// Refuses something; each kind of thing once.
+    fn refuse(&mut self, what: impl Into<String>, span: Span) {
+        let what = what.into();
+        if self.refusals.iter().all(|known| known.what != what) {
+            self.refusals.push(Refusal { what, span });
+        }
+    }
+
+    /// Refuses what concerns the whole picture.
+    fn check(&mut self, view: &View, film: &Film) {
+        let whole = [
+            (view.options.force_diffuse, "`forcediffuse`"),
+            (view.medium.is_some() || !self.scene.media().is_empty(), "participating media"),
+            (view.wavelengths.is_some(), "spectral films"),
+            (film.layers() != film::LayerSet::NONE, "layers beside the colour"),
+        ];
+        for (is, what) in whole {
+            if is {
+                self.refuse(what, Span::NONE);
+            }
+        }
+    }
+
+    fn bvh(&mut self) -> Bvh {
+        let error = match Bvh::new(self.scene.world()) {
+            Ok(bvh) => return bvh,
+            Err(error) => error,
+        };
+        let (what, span) = match error {
+            BvhError::Shape(id) => ("shapes of this kind", self.span_of_geometry(id)),
+            BvhError::SphereSet(id) => ("sets of spheres", self.span_of_geometry(id)),
+            BvhError::Nested(id) => ("instances within instances", self.span_of_instance(id)),
+            BvhError::Moving(id) => ("motion", self.span_of_instance(id)),
+            BvhError::Unbounded(id) => ("instances of infinite planes", self.span_of_geometry(id)),
+            BvhError::TooLarge => ("as many primitives", Span::NONE),
+        };
+        self.refuse(what, span);
+        Bvh::default()
+    }
+
+    fn span_of_geometry(&self, id: GeometryId) -> Span {
+        self.scene.geometries()[id.0 as usize].span
+    }
+
+    fn span_of_instance(&self, id: InstanceId) -> Span {
+        self.scene.instances()[id.0 as usize].span
+    }
+}

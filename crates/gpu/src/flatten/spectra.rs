@@ -1,0 +1,72 @@
+//! Spectra.
+//!
+//! | words | spectrum |
+//! |---|---|
+//! | 0, value | constant |
+//! | 1, count, wavelengths, values | linear between wavelengths |
+//! | 2, values | at each nanometre from 360 on |
+//! | 3, scale, 3 coefficients | of RGB |
+//! | 4, scale, 3 coefficients, offset of a spectrum | the same times another one |
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use spectrum::{DenselySampled, RgbSigmoidPolynomial, Spectrum};
+
+use super::Flattener;
+
+const CONSTANT: u32 = 0;
+const LINEAR: u32 = 1;
+const DENSE: u32 = 2;
+const RGB: u32 = 3;
+const RGB_LIGHT: u32 = 4;
+
+/// The offsets of spectra that others share, by their addresses.
+pub type Shared = HashMap<usize, u32>;
+
+impl Flattener<'_> {
+    /// A spectrum; its offset.
+    pub fn spectrum(&mut self, spectrum: &Spectrum) -> u32 {
+        match spectrum {
+            Spectrum::Constant(value) => self.slab.add([CONSTANT, value.to_bits()]),
+            Spectrum::PiecewiseLinear(linear) => self.linear(linear.pairs()),
+            Spectrum::DenselySampled(dense) => self.dense(dense),
+            // Smooth, so that it is nearly linear within a nanometre.
+            Spectrum::Blackbody(body) => {
+                let wavelengths = (360..=830).map(|nanometre| nanometre as f32);
+                self.linear(wavelengths.map(|lambda| (lambda, body.at(lambda))))
+            }
+            Spectrum::RgbAlbedo(rgb) => self.slab.add(rgb_words(RGB, 1.0, rgb.polynomial())),
+            Spectrum::RgbUnbounded(rgb) => self.slab.add(rgb_words(RGB, rgb.scale(), rgb.polynomial())),
+            Spectrum::RgbIlluminant(rgb) => {
+                let (illuminant, factor) = (self.dense(rgb.illuminant()), rgb.factor());
+                let words = rgb_words(RGB_LIGHT, factor.scale(), factor.polynomial());
+                self.slab.add(words.into_iter().chain([illuminant]))
+            }
+        }
+    }
+
+    /// A spectrum that is linear between pairs of wavelength and value.
+    fn linear(&mut self, pairs: impl Iterator<Item = (f32, f32)>) -> u32 {
+        let (wavelengths, values): (Vec<f32>, Vec<f32>) = pairs.unzip();
+        let at = self.slab.add([LINEAR, wavelengths.len() as u32]);
+        self.slab.add_numbers(wavelengths.into_iter().chain(values));
+        at
+    }
+
+    fn dense(&mut self, dense: &Arc<DenselySampled>) -> u32 {
+        let address = Arc::as_ptr(dense) as usize;
+        if let Some(&at) = self.spectra.get(&address) {
+            return at;
+        }
+        let at = self.slab.add([DENSE]);
+        self.slab.add_numbers(dense.values().iter().copied());
+        self.spectra.insert(address, at);
+        at
+    }
+}
+
+fn rgb_words(kind: u32, scale: f32, polynomial: &RgbSigmoidPolynomial) -> [u32; 5] {
+    let [a, b, c] = polynomial.coefficients.map(f32::to_bits);
+    [kind, scale.to_bits(), a, b, c]
+}
