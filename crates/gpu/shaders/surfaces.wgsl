@@ -190,15 +190,26 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
     let ids = items[at + 4];
     let side = select(1.0, -1.0, ids.w == 1);
     var s: Surface;
-    if (ids.x == PARALLELOGRAM) {
+    if (ids.x == PATCH) {
         let corner = bitcast<vec3f>(items[at].xyz);
-        s.dpdu = bitcast<vec3f>(items[at + 1].xyz);
-        s.dpdv = bitcast<vec3f>(items[at + 2].xyz);
+        let right = bitcast<vec3f>(items[at + 1].xyz);
+        let up = bitcast<vec3f>(items[at + 2].xyz);
+        let twist = bitcast<vec3f>(items[at + 3].xyz);
         s.uv = hit.uv;
-        let along = s.dpdu * hit.uv.x;
-        let across = s.dpdv * hit.uv.y;
-        s.p = Point3Error(corner + along + across, gamma(5) * (abs(corner) + abs(along) + abs(across)));
-        s.n = Vec3_normalize(cross(s.dpdu, s.dpdv)) * side;
+        let along = right * hit.uv.x;
+        let across = up * hit.uv.y;
+        let twisted = twist * (hit.uv.x * hit.uv.y);
+        let size = abs(corner) + abs(along) + abs(across) + abs(twisted);
+        s.p = Point3Error(corner + along + across + twisted, gamma(5) * size);
+        s.dpdu = right + twist * hit.uv.y;
+        s.dpdv = up + twist * hit.uv.x;
+        let normal = cross(s.dpdu, s.dpdv);
+        let n = Vec3_normalize(normal);
+        s.n = n * side;
+        let du = cross(s.dpdu, twist);
+        let dv = cross(twist, s.dpdv);
+        s.dndu = (du - n * dot(n, du)) * (side / length(normal));
+        s.dndv = (dv - n * dot(n, dv)) * (side / length(normal));
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         let inward = Rows(row[0].xyz, row[1].xyz, row[2].xyz);

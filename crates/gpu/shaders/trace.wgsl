@@ -13,7 +13,7 @@ const COUNT_BITS = 5u;
 
 struct Hit {
     t: f32,
-    // Barycentric coordinates of corners 1 and 2, or the parameters of a parallelogram.
+    // Barycentric coordinates of corners 1 and 2, or the parameters of a patch.
     uv: vec2f,
     geometry: u32,
     primitive: u32,
@@ -114,7 +114,7 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
 
 // The kinds of items.
 const INSTANCE = 0u;
-const PARALLELOGRAM = 1u;
+const PATCH = 1u;
 const SPHERE = 2u;
 const CYLINDER = 3u;
 const DISK = 4u;
@@ -126,8 +126,8 @@ fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<func
     let ids = items[at + 4];
     var uv = vec2f();
     var t = -1.0;
-    if (ids.x == PARALLELOGRAM) {
-        t = hit_parallelogram(o, d, at, (*best).t, &uv);
+    if (ids.x == PATCH) {
+        t = hit_patch(o, d, at, (*best).t, &uv);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         // Relative to the object's origin, so that little is lost near it.
@@ -149,8 +149,13 @@ fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<func
 // Errors of distances, relative to the numbers that they come from.
 const ROUNDING = 4e-7;
 
-// Cramer's rule for o + t·d = corner + u·right + v·up ([Möller 1997]); t is 0 or less without a hit.
-fn hit_parallelogram(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+// A patch, of which hits are where t is above 0.
+fn hit_patch(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+    let twist = bitcast<vec3f>(items[at + 3].xyz);
+    if (any(twist != vec3f())) {
+        return hit_curved(o, d, at, twist, t_max, uv);
+    }
+    // Cramer's rule for o + t·d = corner + u·right + v·up ([Möller 1997]).
     let right = bitcast<vec3f>(items[at + 1].xyz);
     let up = bitcast<vec3f>(items[at + 2].xyz);
     let q = o - bitcast<vec3f>(items[at].xyz);
@@ -165,6 +170,42 @@ fn hit_parallelogram(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, 
     let error = ROUNDING * dot(abs(q), abs(normal)) * abs(inverse);
     *uv = clamp(vec2f(u, v), vec2f(), vec2f(1));
     return select(0, t, is_inside && t > error && t < t_max);
+}
+
+// A bilinear patch: the lines of constant u that the ray meets, and the nearest points of ray and
+// line ([Reshetov 2019]).
+fn hit_curved(o: vec3f, d: vec3f, at: u32, twist: vec3f, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+    let right = bitcast<vec3f>(items[at + 1].xyz);
+    let up = bitcast<vec3f>(items[at + 2].xyz);
+    let p00 = bitcast<vec3f>(items[at].xyz) - o;
+    let p10 = p00 + right;
+    let a = -dot(cross(right, twist), d);
+    let c = dot(cross(p00, d), up);
+    let b = dot(cross(p10, d), up + twist) - (a + c);
+    let discriminant = b * b - 4 * a * c;
+    if (!(discriminant >= 0)) {
+        return 0;
+    }
+    let larger = -0.5 * (b + select(sqrt(discriminant), -sqrt(discriminant), b < 0));
+    let roots = vec2f(select(c / larger, 0, larger == 0), select(larger / a, 2, a == 0));
+    let error = ROUNDING * (length(p00) + length(right) + length(up)) / length(d);
+    var nearest = t_max;
+    var found = 0.0;
+    for (var i = 0; i < 2; i++) {
+        let u = roots[i];
+        let start = p00 + right * u;
+        let side = up + twist * u;
+        let across = cross(d, side);
+        let scale = dot(across, across);
+        let t = dot(start, cross(side, across)) / scale;
+        let v = dot(start, cross(d, across)) / scale;
+        if (min(u, v) >= -1e-6 && max(u, v) <= 1.000001 && t > error && t < nearest) {
+            nearest = t;
+            found = t;
+            *uv = clamp(vec2f(u, v), vec2f(), vec2f(1));
+        }
+    }
+    return found;
 }
 
 // The plane z = 0, or a disk; `far` bounds what the height of the origin is computed from.

@@ -243,10 +243,11 @@ impl BilinearPatch {
         })
     }
 
-    /// As plain data, if it is a parallelogram without attributes.
+    /// As plain data, if it has no attributes.
     pub(super) fn plain(&self) -> Option<PlainShape> {
-        let Patch { corner, sides, flips, .. } = self.patch()?;
-        self.flat.map(|_| PlainShape::Parallelogram { corner, sides, flips })
+        let Patch { corner, sides, twist, flips, .. } = self.patch()?;
+        let twist = if self.flat.is_some() { Vec3::ZERO } else { twist };
+        Some(PlainShape::Patch { corner, sides, twist, flips })
     }
 
     /// As plain data for sampling, if it is a rectangle without attributes.

@@ -5,12 +5,15 @@ use math::{DMat4, Point3, Vector3};
 /// A shape at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlainShape {
-    /// p(u, v) = corner + u·side₀ + v·side₁ for u and v in [0, 1], which are its texture coordinates.
-    Parallelogram {
+    /// p(u, v) = corner + u·side₀ + v·side₁ + uv·twist for u and v in [0, 1], which are its texture
+    /// coordinates.
+    Patch {
         /// p(0, 0).
         corner: Point3,
         /// To p(1, 0) and to p(0, 1).
         sides: [Vector3; 2],
+        /// Zero where it is a parallelogram.
+        twist: Vector3,
         /// Whether the outside is not on the side of side₀ × side₁.
         flips: bool,
     },

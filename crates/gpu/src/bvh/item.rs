@@ -3,7 +3,7 @@
 //! | kind | quadruples |
 //! |---|---|
 //! | instance | the rows of the matrix that takes rays inside; the references of its triangles and of its items, the size of its group, its id |
-//! | parallelogram | its corner and its sides |
+//! | patch | its corner, its sides and its twist |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and whether the outside is
@@ -19,7 +19,7 @@ pub const QUADRUPLES: usize = 5;
 
 // The kinds of items, as in `shaders/trace.wgsl`.
 const INSTANCE: u32 = 0;
-const PARALLELOGRAM: u32 = 1;
+const PATCH: u32 = 1;
 const SPHERE: u32 = 2;
 const CYLINDER: u32 = 3;
 const DISK: u32 = 4;
@@ -43,9 +43,9 @@ pub fn shape(world: &World, geometry: GeometryId, primitive: u32) -> Result<[Wor
     let shape = world.geometry(geometry).shape(primitive).and_then(|shape| shape.plain());
     let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips)];
     match shape.ok_or(BvhError::Shape(geometry))? {
-        PlainShape::Parallelogram { corner, sides: [right, up], flips } => {
+        PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let words = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];
-            Ok([words(corner), words(right), words(up), [0; 4], ids(PARALLELOGRAM, flips)])
+            Ok([words(corner), words(right), words(up), words(twist), ids(PATCH, flips)])
         }
         PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
             let kind = match kind {

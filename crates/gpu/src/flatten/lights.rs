@@ -13,6 +13,8 @@
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
 //! spectrum.
 
+use std::f32::consts::TAU;
+
 use description::Span;
 use geometry::{PlainShape, RevolvedKind};
 use image::Projection;
@@ -163,7 +165,7 @@ fn ball(shape: &PlainShape) -> Option<Vec<f32>> {
         (axes[i].length() - scale).abs() <= 1e-6 * scale
             && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
     });
-    let is_whole = least == -radius && largest == radius && phi > 6.28318;
+    let is_whole = least == -radius && largest == radius && phi >= TAU;
     let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
     let side = if flips { -1.0 } else { 1.0 };
     (is_ball && is_whole).then(|| vec![center.x, center.y, center.z, radius * scale as f32, side])
