@@ -108,8 +108,8 @@ impl Job {
         Ok(CompiledJob { job, warnings })
     }
 
-    /// Goes on with the engine for GPUs. The error says what that does not draw, and leaves the job as
-    /// it was.
+    /// Goes on with the engine for GPUs. The error says what that does not draw, and leaves the job
+    /// as it was.
     #[cfg(feature = "gpu")]
     pub fn move_to(&mut self, kernels: &Arc<crate::device::Kernels>) -> Result<(), Vec<Diagnostic>> {
         let integrator = crate::device::integrator(&self.settings, &self.session, kernels)?;

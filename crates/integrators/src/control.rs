@@ -70,8 +70,8 @@ pub enum PassError {
     Cancelled,
     /// Memory ran out; the text says what for. The film is unchanged by the pass.
     OutOfMemory(String),
-    /// The device that renders has failed; the text says how. The film is valid, but may hold a part
-    /// of the pass.
+    /// The device that renders has failed; the text says how. The film is valid, but may hold a
+    /// part of the pass.
     Device(String),
 }
 

