@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
+use description::schema::Settings;
 use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;

@@ -2,6 +2,7 @@
 //! for the errors that WGSL permits of division, square root and fused multiply-add.
 
 use crate::twins::{INPUTS, Law, OUTPUTS};
+use geometry::{FlatShape, ShapeSample, ShapeSampleContext};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, Vector3};
 use sampling::sampler::{Address, Independent};
 use sampling::warp::*;
@@ -37,6 +38,16 @@ fn dielectric(x: &Row) -> Dielectric {
 
 fn conductor(x: &Row) -> Conductor {
     Conductor { distribution: distribution(x), eta: spectrum(x, 3.0), k: spectrum(x, 5.0) }
+}
+
+/// A triangle or a rectangle, and a point that sees it.
+fn flat_shape(x: &Row) -> (FlatShape, ShapeSampleContext) {
+    let (wo, wi) = (wo(x), wi(x));
+    let sides = [wi * 0.5, wi.cross(wo) * 0.7];
+    let n = sides[0].cross(sides[1]).normalize();
+    let p = Point3Error::exact(Vec3::ZERO);
+    let from = ShapeSampleContext { p, n: Vec3::ZERO, ns: Vec3::Z, time: 0.0 };
+    (FlatShape { corner: wo, sides, n, is_triangle: x[8] < 0.5 }, from)
 }
 
 /// All numbers of a sample, if there is one.
@@ -105,7 +116,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 36] = [
+pub const LAWS: [Law; 37] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -171,6 +182,22 @@ pub const LAWS: [Law; 36] = [
         },
         "let w = vec4f(x[8], x[9], x[10], x[11]); let p = sample_bilinear(u, w);
         y = array(p.x, p.y, bilinear_pdf(p, w), 0, 0, 0, 0, 0);"),
+    law!("FlatShape" 2e-3 1e-3,
+        x => {
+            let (shape, from) = flat_shape(x);
+            let (sample, valid) = shape.sample_from(&from, u(x));
+            let ShapeSample { uv, pdf, .. } = sample;
+            if valid { vec![uv.x, uv.y, pdf, shape.pdf_from(&from, uv)] } else { Vec::new() }
+        },
+        "let sides = array(wi * 0.5, cross(wi, wo) * 0.7);
+        let n = normalize(cross(sides[0], sides[1]));
+        let shape = FlatShape(wo, sides, n, x[8] < 0.5);
+        let from_ = ShapeSampleContext(Point3Error(vec3f(), vec3f()), vec3f(), vec3f(0, 0, 1), 0);
+        let sample = FlatShape_sample_from(shape, from_, u);
+        if (sample.v1) {
+            let pdf = FlatShape_pdf_from(shape, from_, sample.v0.uv);
+            y = array(sample.v0.uv.x, sample.v0.uv.y, sample.v0.pdf, pdf, 0, 0, 0, 0);
+        }"),
     law!("uniform triangle" 1e-6 0.0, x => sample_uniform_triangle(u(x)).to_vec(),
         "let b = sample_uniform_triangle(u); y[0] = b.x; y[1] = b.y; y[2] = b.z;"),
     law!("SphericalTriangle" 1e-4 1e-3,
