@@ -234,7 +234,7 @@ const MEDLEY: &str = r#"
 LookAt 0 2 6  0 0.8 0  0 1 0
 Camera "orthographic" "float screenwindow" [ -3 3 -2.2 2.2 ] "float lensradius" 0.02 "float focaldistance" 6
 Film "rgb"
-PixelFilter "mitchell"
+PixelFilter "triangle"
 WorldBegin
 LightSource "point" "point3 from" [ 0 3 2 ] "rgb I" [ 6 5 4 ]
 LightSource "spot" "point3 from" [ 2 4 2 ] "point3 to" [ 0 0 0 ] "blackbody I" 4000 "float scale" 20
