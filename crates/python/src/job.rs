@@ -184,8 +184,8 @@ impl Job {
     /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
     /// one whose picture has the same bits as that of render().
     ///
-    /// alternate: whether its passes alternate between two films, from which the noise of the picture
-    /// is estimated. threads, progress, preview: as those of render().
+    /// alternate: whether its passes alternate between two films, from which the noise of the
+    /// picture is estimated. threads, progress, preview: as those of render().
     #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
     fn render_shard(
         &self,

@@ -111,8 +111,9 @@ impl Scene {
     }
 }
 
-/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), a USD file, a mesh (.ply, .obj, .stl) in a
-/// neutral studio, or an archive (.zip) of a scene with its files, which may be given as bytes.
+/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), a USD file, a mesh (.ply, .obj, .stl)
+/// in a neutral studio, or an archive (.zip) of a scene with its files, which may be given as
+/// bytes.
 ///
 /// Raises SceneError, whose text lists every error of the scene with its file, line and column.
 #[pyfunction]

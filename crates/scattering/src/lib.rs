@@ -14,18 +14,19 @@ mod bssrdf;
 mod bxdf;
 mod flags;
 mod fresnel;
+mod interior;
 mod microfacet;
 mod phase;
 
 pub use bsdf::Bsdf;
 pub use bssrdf::{Bssrdf, BssrdfTable, Probe};
 pub use bxdf::{
-    Body, BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Interior,
-    Layered, Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr,
-    OpenPbrParameters, OpenPbrTable, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart, ThinDielectric,
-    inner_reflectance,
+    Body, BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
+    Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr, OpenPbrParameters,
+    OpenPbrTable, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart, ThinDielectric, inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};
+pub use interior::Interior;
 pub use microfacet::TrowbridgeReitz;
 pub use phase::HenyeyGreenstein;

@@ -59,8 +59,17 @@ fn host(root: &Path) -> Result<String, String> {
 /// Builds the program for a target, and returns its path.
 fn build(root: &Path, triple: &str, is_static: bool) -> Result<PathBuf, String> {
     let mut command = cargo(root);
-    let features = if is_static { "usd" } else { "usd,view" };
-    command.args(["build", "--release", "--package", "alhazen-cli", "--features", features, "--target", triple]);
+    let features = if is_static { "usd" } else { "gpu,usd,view" };
+    command.args([
+        "build",
+        "--release",
+        "--package",
+        "alhazen-cli",
+        "--features",
+        features,
+        "--target",
+        triple,
+    ]);
     if is_static && triple.contains("linux-gnu") {
         // This replaces the flags of `.cargo/config.toml`.
         let processor = if triple.starts_with("x86_64") { "-C target-cpu=x86-64-v3 " } else { "" };

@@ -14,8 +14,8 @@ struct Step {
 }
 
 /// What is checked beyond the program of a plain `cargo build`, and what of it is tested.
-const CHECKED: &str = "alhazen-cli/usd,alhazen-cli/view";
-const TESTED: &str = "alhazen-cli/usd";
+const CHECKED: &str = "alhazen-cli/gpu,alhazen-cli/usd,alhazen-cli/view";
+const TESTED: &str = "alhazen-cli/gpu,alhazen-cli/usd";
 
 /// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
 /// and documentation share one check of the workspace, which has the window; tests do without.

@@ -135,8 +135,8 @@ pub struct Merge {
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 #[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
 pub struct Compare {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
+    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// The algorithms, see the list below, separated by commas. Each may have settings of its own:
     /// path,path:maxdepth=8.
@@ -179,8 +179,8 @@ pub struct Compare {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct TracePixel {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, or an archive
-    /// (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, or an
+    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Column of the pixel, counted from 0 at the left.
     #[arg(value_parser = clap::value_parser!(i32).range(0..))]
@@ -266,8 +266,8 @@ pub enum Scene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
+    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
@@ -278,8 +278,8 @@ pub struct Check {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct ConvertScene {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
+    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// The scene to write, with the extension .pbrt.
     pub output: PathBuf,

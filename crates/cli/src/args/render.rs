@@ -20,8 +20,8 @@ use crate::values::{
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct Render {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
+    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
     /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .webp, .tif. Can be given several times. [default: the

@@ -1,22 +1,8 @@
 //! Bodies: what paths that are followed under surfaces ask of a BxDF.
 
 use super::{BsdfSample, Bxdf, OpenPbr, Subsurface, SubsurfaceMethod, SubsurfacePart};
-use crate::{Bssrdf, BxdfFlags, HenyeyGreenstein, Scatter, fr_dielectric};
+use crate::{Bssrdf, BxdfFlags, Interior, Scatter, fr_dielectric};
 use math::Vector3;
-use spectrum::SampledSpectrum;
-
-/// The medium under a surface, for random walks.
-#[derive(Clone, Copy, Debug)]
-pub struct Interior {
-    /// The coefficient of scattering per unit of length.
-    pub sigma_s: SampledSpectrum,
-    /// The coefficient of extinction.
-    pub sigma_t: SampledSpectrum,
-    /// How it scatters.
-    pub phase: HenyeyGreenstein,
-    /// The index of refraction by which the surface reflects from inside, below over above.
-    pub eta: f32,
-}
 
 /// A BxDF of a surface under which light is scattered, to leave elsewhere.
 #[derive(Clone, Copy, Debug)]

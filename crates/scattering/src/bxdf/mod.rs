@@ -17,7 +17,7 @@ mod scatter;
 mod subsurface;
 mod thin_dielectric;
 
-pub use body::{Body, Interior};
+pub use body::Body;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

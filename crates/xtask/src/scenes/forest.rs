@@ -1,9 +1,9 @@
 //! A forest around a pond under an overcast sky.
 //!
-//! Eight plants are grown (`tree.rs`) and instanced all over a hilly ground; the pond has a bed, and
-//! ripples as geometry. Light comes from the sky alone, whose luminance is that of a sky wholly covered by clouds,
-//! L(γ) ∝ 1 + 2 sin γ for the elevation γ. Mist fills a dome over all, water absorbs red
-//! first. Source of the sky: [Moon 1942].
+//! Eight plants are grown (`tree.rs`) and instanced all over a hilly ground; the pond has a bed,
+//! and ripples as geometry. Light comes from the sky alone, whose luminance is that of a sky wholly
+//! covered by clouds, L(γ) ∝ 1 + 2 sin γ for the elevation γ. Mist fills a dome over all, water
+//! absorbs red first. Source of the sky: [Moon 1942].
 //!
 //! The trees stand in an order that does not depend on their number, so that smaller forests, of
 //! 10⁶, 10⁷ and 10⁸ triangles, are parts of the whole.
@@ -169,7 +169,8 @@ fn water() -> Mesh {
     mesh
 }
 
-/// A sky covered by clouds as a picture over the sphere in the format PFM; below the horizon it is dark.
+/// A sky covered by clouds as a picture over the sphere in the format PFM; below the horizon it is
+/// dark.
 fn sky(size: u32) -> Vec<u8> {
     let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
     for y in (0..size).rev() {

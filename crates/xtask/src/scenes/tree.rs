@@ -1,9 +1,9 @@
 //! Trees: broad-leaved ones by space colonisation, spruces by whorls of branches.
 //!
-//! Space colonisation fills a crown with points that attract growth. Each point pulls the node of the
-//! tree that is nearest to it; a node grows by a step towards those that pull it, and a point that
-//! a node has come near to is gone. Thickness is that of pipes: the cross-sections of branches,
-//! to a power, sum to that of their parent. Source: [Runions 2007].
+//! Space colonisation fills a crown with points that attract growth. Each point pulls the node of
+//! the tree that is nearest to it; a node grows by a step towards those that pull it, and a point
+//! that a node has come near to is gone. Thickness is that of pipes: the cross-sections of
+//! branches, to a power, sum to that of their parent. Source: [Runions 2007].
 
 use std::f32::consts::{PI, TAU};
 

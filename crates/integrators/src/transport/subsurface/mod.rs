@@ -1,10 +1,10 @@
 //! Paths that go on under the surface of a body, and leave it elsewhere.
 //!
 //! A path from the camera that enters a [`Body`], a material `subsurface` or an `openpbr` with
-//! scattering under its surface, goes on from another point of the same material, which a probe of the diffusion profile ([`probe`]) or a
-//! random walk ([`walk`]) finds. There light is sampled, and the path leaves, as at a surface that
-//! reflects by the exit lobe; all that happens between counts as one scattering event. A path from
-//! a light goes the same way back ([`emerge`]).
+//! scattering under its surface, goes on from another point of the same material, which a probe of
+//! the diffusion profile ([`probe`]) or a random walk ([`walk`]) finds. There light is sampled, and
+//! the path leaves, as at a surface that reflects by the exit lobe; all that happens between counts
+//! as one scattering event. A path from a light goes the same way back ([`emerge`]).
 //!
 //! The throughput is multiplied by [`Exit::value`] over its density. One wavelength, the hero,
 //! chooses distances; the others are weighted by spectral MIS as flights are

@@ -2,10 +2,10 @@
 //!
 //! The share w of the diffuse base that scatters under its surface is, where light leaves where it
 //! entered, w ρ L(ωo) L(ωi)/(π L̄). Of this L(ωo) w is what goes under on the way from the camera,
-//! a walk in the medium takes the place of the colour ρ, and L(ωi)/(π L̄) is the lobe by which light
-//! has entered. So the layers over it attenuate light at both ends. As their tables have all that
-//! the boundary reflects, the medium itself has no boundary: light starts there in all directions
-//! by their cosine, and leaves where it comes to the surface.
+//! a walk in the medium takes the place of the colour ρ, and L(ωi)/(π L̄) is the lobe by which
+//! light has entered. So the layers over it attenuate light at both ends. As their tables have all
+//! that the boundary reflects, the medium itself has no boundary: light starts there in all
+//! directions by their cosine, and leaves where it comes to the surface.
 //!
 //! The medium is given by its albedo ρ under uniform light and by its mean free path. Its albedo of
 //! single scattering is (1 − s²)/(1 − g s²), with s fitted to half spaces without a boundary.
