@@ -141,8 +141,8 @@ pub(crate) fn open(bytes: Vec<u8>) -> io::Result<Zip> {
     ZipArchive::new(Cursor::new(bytes.into())).map_err(invalid)
 }
 
-/// The content of an entry, as long as it says it is. That length is at most 64 MiB, or what DEFLATE
-/// can make of the packed bytes.
+/// The content of an entry, as long as it says it is. That length is at most 64 MiB, or what
+/// DEFLATE can make of the packed bytes.
 pub(crate) fn entry(zip: &Zip, index: usize) -> io::Result<Vec<u8>> {
     const GREATEST_RATIO: u64 = 1032;
     const ALWAYS_ALLOWED: u64 = 64 << 20;

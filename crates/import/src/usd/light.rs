@@ -113,7 +113,8 @@ pub(super) fn read(
         }
         "SphereLight" if is_point(prim)? => {
             let radius = input(prim, "radius")?.unwrap_or(0.5);
-            // Of a sphere of luminance L the intensity is L π r²; normalized, L is divided by 4 π r².
+            // Of a sphere of luminance L the intensity is L π r²; normalized, L is divided by
+            // 4 π r².
             let intensity = match emission.is_normalized {
                 true => emission.scale / 4.0,
                 false => emission.scale * PI * radius * radius,

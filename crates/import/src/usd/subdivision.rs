@@ -1,4 +1,4 @@
-//! Subdivision surfaces of polygons [Catmull and Clark 1978], with creases [DeRose et al. 1998].
+//! Subdivision surfaces of polygons [Catmull 1978], with creases [DeRose 1998].
 //!
 //! A step makes a point for each point, edge and face, and of a face with n corners n
 //! quadrilaterals. With the mean F of the points of the faces around a point P, the mean R of the
@@ -310,7 +310,8 @@ mod tests {
         for v in corner {
             assert!((v + (1.0 / 3.0 + 4.0 / 3.0) / 3.0).abs() < 1e-12, "{corner:?}");
         }
-        // The point of an edge: (−1 −1 0) and (−½ −½ 0), the faces' middles being (−1 0 0), (0 −1 0).
+        // The point of an edge: the mean of (−1 −1 0) and (−½ −½ 0), where faces have their middles
+        // at (−1 0 0) and (0 −1 0).
         let lengths: Vec<_> =
             surface.points[0][8..20].iter().map(|&point| DVec3::from(point).length()).collect();
         assert!(lengths.iter().all(|length| (length - 0.75 * 2.0_f64.sqrt()).abs() < 1e-12), "{lengths:?}");

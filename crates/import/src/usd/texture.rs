@@ -31,8 +31,8 @@ pub(super) struct Texture {
     pub channel: Option<usize>,
     /// The primvar of its coordinates.
     pub set: String,
-    /// From those coordinates to those of the image, of which [0, 1]² is the image, twice as wide or
-    /// high where it is mirrored. v is up in both.
+    /// From those coordinates to those of the image, of which [0, 1]² is the image, twice as wide
+    /// or high where it is mirrored. v is up in both.
     pub transform: DAffine2,
     /// Whether the image is followed by its mirror image, to the right and above.
     pub mirrored: [bool; 2],
