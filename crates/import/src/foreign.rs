@@ -11,18 +11,19 @@ pub(crate) fn refused(name: &str, bytes: &[u8], span: Span) -> Option<Diagnostic
             "packages of alhazen read USD; a build from source does with `--features usd`",
         ),
         USD => (
-            format!("`{name}` is {what}, but does not end in .usd, .usda, .usdc or .usdz"),
-            "its name says how a USD scene is read",
-        ),
-        _ => (
             format!("`{name}` is {what}, not one of pbrt-v4"),
-            "scenes are pbrt-v4, glTF, USD, PLY, OBJ or STL files",
+            "names of USD scenes end in .usd, .usda, .usdc or .usdz; no other scene can include them",
         ),
+        _ => (format!("`{name}` is {what}, not one of pbrt-v4"), SCENES),
     };
     Some(Diagnostic::error("foreign-format", message, span).with_help(help))
 }
 
 const USD: &str = "a USD scene";
+const SCENES: &str = match cfg!(feature = "usd") {
+    true => "scenes are pbrt-v4, glTF, USD, PLY, OBJ or STL files",
+    false => "scenes are pbrt-v4, glTF, PLY, OBJ or STL files",
+};
 
 /// The kind of a file, with its article, if it is of a known format other than those that are read.
 /// `name` is its path.

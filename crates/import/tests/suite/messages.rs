@@ -178,7 +178,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Include "room.glb""#,
-        "1:9 error[foreign-format] `room.glb` is a glTF scene, not one of pbrt-v4 (scenes are pbrt-v4, glTF, PLY, OBJ or STL files)",
+        "1:9 error[foreign-format] `room.glb` is a glTF scene, not one of pbrt-v4 (scenes are pbrt-v4, glTF, ",
     ),
 ];
 
