@@ -20,12 +20,8 @@ use alhazen_view::World;
 fn desc(name: &str, samples: u32) -> SceneDesc {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let mut desc = import(scene, &Files).desc;
-    let overrides = Overrides {
-        integrator: Some("path".into()),
-        samples_per_pixel: Some(samples),
-        resolution: Some([96, 72]),
-        ..Overrides::default()
-    };
+    let overrides =
+        Overrides { samples_per_pixel: Some(samples), resolution: Some([96, 72]), ..Overrides::default() };
     overrides.apply(&mut desc).unwrap();
     desc
 }
