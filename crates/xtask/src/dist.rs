@@ -151,8 +151,9 @@ fn lay_out(folder: &Path, package: &Path, architecture: &str) -> std::io::Result
         "Package: alhazen\nVersion: {VERSION}\nArchitecture: {architecture}\nSection: graphics\n\
          Priority: optional\nInstalled-Size: {size}\nDepends: libc6, libgcc-s1\n\
          Recommends: libvulkan1, mesa-vulkan-drivers, libxkbcommon-x11-0, libxcursor1, libxi6\n\
-         Maintainer: The authors of alhazen <alhazen@localhost>\nDescription: physically based renderer\n Renders pbrt-v4 scenes and meshes \
-         by every algorithm of light transport.\n"
+         Maintainer: The authors of alhazen <alhazen@localhost>\n\
+         Description: physically based renderer\n Renders pbrt-v4 scenes and meshes by every \
+         algorithm of light transport.\n"
     );
     fs::write(package.join("DEBIAN/control"), control)
 }
