@@ -8,6 +8,8 @@ const RECTANGLE_LIGHT = 4u;
 const SPHERE_LIGHT = 5u;
 const UNIFORM_LIGHT = 6u;
 const IMAGE_LIGHT = 7u;
+const DISK_LIGHT = 8u;
+const CYLINDER_LIGHT = 9u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -90,6 +92,10 @@ fn sample_light(
         }
         case SPHERE_LIGHT: {
             let sample = sample_sphere(at, context, u);
+            return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
+        }
+        case DISK_LIGHT, CYLINDER_LIGHT: {
+            let sample = sample_revolved(at, context, u);
             return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
         }
         case IMAGE_LIGHT: { return sample_sky(at, u, lambda); }
@@ -193,9 +199,34 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
     return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
 }
 
+// A point of a disk or a cylinder, by area.
+fn sample_revolved(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
+    let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
+    let translation = vec3f(number(at + 7), number(at + 11), number(at + 15));
+    let first = number(at + 16);
+    var p: vec3f;
+    var n = vec3f(0, 0, 1);
+    if (tables[at] == DISK_LIGHT) {
+        p = vec3f(sample_uniform_disk_concentric(u) * number(at + 17), first);
+    } else {
+        let phi = sin_cos(u.y * number(at + 19));
+        let low = number(at + 17);
+        n = vec3f(phi.v1, phi.v0, 0);
+        p = n * first + vec3f(0, 0, low + (number(at + 18) - low) * u.x);
+    }
+    let placed = times(m, p) + translation;
+    let size = times(absolute(m), abs(p)) + abs(translation);
+    let normal = Vec3_normalize(times(m, n)) * number(at + 20);
+    let pdf = ShapeSampleContext_area_per_solid_angle(context, placed, normal) / number(at + 21);
+    return ShapeSample(Point3Error(placed, POINT_ERROR * size), normal, vec2f(), pdf);
+}
+
 // The density per solid angle with which a light's surface is sampled where a ray hits it.
 fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f) -> f32 {
     let at = light_record(light);
+    if (tables[at] == DISK_LIGHT || tables[at] == CYLINDER_LIGHT) {
+        return ShapeSampleContext_area_per_solid_angle(context, s.p.p, s.n) / number(at + 21);
+    }
     if (tables[at] != SPHERE_LIGHT) {
         return FlatShape_pdf_from(flat_light(at), context, uv);
     }

@@ -8,6 +8,7 @@
 //! | 3 triangle, 4 rectangle | corner, sides, normal |
 //! | 5 sphere | centre, radius, 1 or −1 where the outside is inside |
 //! | 6 uniform infinite | none |
+//! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
@@ -32,6 +33,8 @@ const RECTANGLE: u32 = 4;
 const SPHERE: u32 = 5;
 const UNIFORM_INFINITE: u32 = 6;
 const IMAGE_INFINITE: u32 = 7;
+const DISK: u32 = 8;
+const CYLINDER: u32 = 9;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -139,8 +142,8 @@ impl Flattener<'_> {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
             (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
-        } else if let Some(numbers) = shape.and_then(|shape| ball(&shape.plain()?)) {
-            (SPHERE, numbers)
+        } else if let Some(revolved) = shape.and_then(|shape| revolved(&shape.plain()?, shape.area())) {
+            revolved
         } else {
             return self.no_light("area lights of this shape", span);
         };
@@ -152,21 +155,32 @@ impl Flattener<'_> {
     }
 }
 
-/// The numbers of a whole sphere; `None` of other shapes.
-fn ball(shape: &PlainShape) -> Option<Vec<f32>> {
-    let &PlainShape::Revolved { kind: RevolvedKind::Sphere, render_from_object, flips, numbers } = shape
-    else {
-        return None;
-    };
-    let [radius, least, largest, phi] = numbers;
+/// The kind and the numbers of a whole sphere, disk or cylinder of an area, placed without
+/// distortion; `None` of other shapes.
+fn revolved(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
+    let &PlainShape::Revolved { kind, render_from_object, flips, numbers } = shape else { return None };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| render_from_object.transform_vector3(axis));
     let scale = axes[0].length();
-    let is_ball = (0..3).all(|i| {
+    let is_similar = (0..3).all(|i| {
         (axes[i].length() - scale).abs() <= 1e-6 * scale
             && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
     });
-    let is_whole = least == -radius && largest == radius && phi >= TAU;
-    let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
+    let [first, second, third, phi] = numbers;
+    if !is_similar || phi < TAU {
+        return None;
+    }
     let side = if flips { -1.0 } else { 1.0 };
-    (is_ball && is_whole).then(|| vec![center.x, center.y, center.z, radius * scale as f32, side])
+    let placed = || {
+        let rows = [0, 1, 2].map(|row| render_from_object.row(row).as_vec4().to_array());
+        [rows.as_flattened(), &numbers, &[side, area]].concat()
+    };
+    match kind {
+        RevolvedKind::Sphere if second == -first && third == first => {
+            let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
+            Some((SPHERE, vec![center.x, center.y, center.z, first * scale as f32, side]))
+        }
+        RevolvedKind::Disk if third == 0.0 => Some((DISK, placed())),
+        RevolvedKind::Cylinder => Some((CYLINDER, placed())),
+        RevolvedKind::Sphere | RevolvedKind::Disk | RevolvedKind::Plane => None,
+    }
 }

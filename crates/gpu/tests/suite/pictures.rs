@@ -126,7 +126,7 @@ fn sampler() -> Sampler {
 }
 
 /// Scenes of the repository that kernels draw.
-const DRAWN: [&str; 16] = [
+const DRAWN: [&str; 18] = [
     "caustic-ball",
     "cornell-box",
     "depth-of-field",
@@ -138,7 +138,9 @@ const DRAWN: [&str; 16] = [
     "path-tracing",
     "polygon",
     "prism",
+    "radiosity-room",
     "reflection",
+    "refraction",
     "shadow-hard",
     "shadow-soft",
     "sphere-and-plane",
@@ -185,7 +187,7 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
             "LightSource",
         ),
         (
-            "AreaLightSource \"diffuse\"\nShape \"cylinder\"",
+            "AreaLightSource \"diffuse\"\nShape \"cylinder\" \"float phimax\" 90",
             "area lights of this shape",
             "Shape \"cylinder\"",
         ),
