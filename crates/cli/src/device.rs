@@ -19,16 +19,18 @@ pub enum DeviceChoice {
     Auto,
 }
 
-/// Moves a job to the chosen device. Where that cannot be, the job is as before, and the warnings
-/// say why.
-pub fn choose(choice: DeviceChoice, job: &mut Job) -> Result<(), Vec<Diagnostic>> {
+/// Moves a job to the chosen device; the device and its memory, unless that is the CPU. Where it
+/// cannot be, the job is as before, and the warnings say why.
+pub fn choose(choice: DeviceChoice, job: &mut Job) -> Result<Option<String>, Vec<Diagnostic>> {
     if choice == DeviceChoice::Cpu {
-        return Ok(());
+        return Ok(None);
     }
     let cannot = |problem: String| vec![Diagnostic::warning("not-on-gpu", problem, Span::NONE)];
     let device = Device::open("").map_err(|error| cannot(error.to_string()))?;
     if choice == DeviceChoice::Auto && device.is_software() {
         return Err(cannot(format!("{} is a GPU in software, slower than the CPU itself", device.name())));
     }
-    job.move_to(&Arc::new(Kernels::new(device)))
+    job.move_to(&Arc::new(Kernels::new(device)))?;
+    let notes = job.session.integrator().summary();
+    Ok(Some(notes.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")))
 }

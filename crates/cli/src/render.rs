@@ -10,6 +10,8 @@ use alhazen::{Fingerprint, Job, RenderOrder, Shard};
 
 use crate::args::Render;
 use crate::checkpoint::Checkpoint;
+#[cfg(feature = "gpu")]
+use crate::console::say;
 use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
 use crate::interrupt::Interrupt;
@@ -52,9 +54,13 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a device is noted"))]
     let mut notes = Vec::new();
     #[cfg(feature = "gpu")]
-    if let Err(warnings) = crate::device::choose(arguments.device, &mut job) {
-        compiled.add(warnings);
-        notes.push(("device", "CPU".to_owned()));
+    match crate::device::choose(arguments.device, &mut job) {
+        Ok(Some(device)) if !arguments.quiet && !arguments.json => say(device)?,
+        Ok(_) => {}
+        Err(warnings) => {
+            compiled.add(warnings);
+            notes.push(("device", "CPU".to_owned()));
+        }
     }
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
     let all = all_passes(&job, arguments);

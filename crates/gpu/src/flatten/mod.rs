@@ -20,7 +20,7 @@ mod textures;
 
 use description::{Diagnostic, Span};
 use film::Film;
-use geometry::{GeometryId, InstanceId};
+use geometry::{GeometryId, InstanceId, Shape};
 use sampling::Sampler;
 use scene::light_sampler::LightSampler;
 use scene::{Scene, View};
@@ -207,7 +207,7 @@ impl Flattener<'_> {
             Err(error) => error,
         };
         let (what, span) = match error {
-            BvhError::Shape(id) => ("shapes of this kind", self.span_of_geometry(id)),
+            BvhError::Shape(id) => (self.name_of_shape(id), self.span_of_geometry(id)),
             BvhError::SphereSet(id) => ("sets of spheres", self.span_of_geometry(id)),
             BvhError::Nested(id) => ("instances within instances", self.span_of_instance(id)),
             BvhError::Moving(id) => ("motion", self.span_of_instance(id)),
@@ -216,6 +216,26 @@ impl Flattener<'_> {
         };
         self.refuse(what, span);
         Bvh::default()
+    }
+
+    /// The name of a geometry that kernels do not intersect.
+    fn name_of_shape(&self, id: GeometryId) -> &'static str {
+        let shape = self.scene.world().geometry(id).shape(0);
+        match shape.as_deref() {
+            None => "curves",
+            Some(Shape::Sphere(_)) => "shape `sphere`",
+            Some(Shape::Cylinder(_)) => "shape `cylinder`",
+            Some(Shape::Cone(_)) => "shape `cone`",
+            Some(Shape::Paraboloid(_)) => "shape `paraboloid`",
+            Some(Shape::Hyperboloid(_)) => "shape `hyperboloid`",
+            Some(Shape::Disk(_)) => "shape `disk`",
+            Some(Shape::Plane(_)) => "shape `plane`",
+            Some(Shape::Implicit(_)) => "shape `implicit`",
+            Some(Shape::Solid(_)) => "shape `csg`",
+            Some(Shape::BilinearPatch(_)) => "bilinear patches with normals or texture coordinates",
+            Some(Shape::Triangle(_)) => "shape `trianglemesh`",
+            Some(Shape::MovingTriangle(_)) => "meshes that move",
+        }
     }
 
     fn span_of_geometry(&self, id: GeometryId) -> Span {

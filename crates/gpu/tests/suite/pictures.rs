@@ -179,7 +179,7 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
     let begin = "Camera \"perspective\"\nFilm \"rgb\"\nWorldBegin\n";
     let cases = [
         ("Material \"hair\"\nShape \"sphere\"", "material `hair`", "Material \"hair\""),
-        ("Shape \"cone\"", "shapes of this kind", "Shape \"cone\""),
+        ("Shape \"cone\"", "shape `cone`", "Shape \"cone\""),
         ("Shape \"curve\" \"point3 P\" [ 0 0 0 0 1 0 0 1 1 1 1 1 ]", "curves", "Shape \"curve\""),
         (
             "LightSource \"infinite\" \"point3 portal\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
