@@ -103,7 +103,7 @@ impl Job {
             planned,
             is_arranged,
             #[cfg(feature = "gpu")]
-            settings,
+            settings: desc.without_geometry(),
         };
         Ok(CompiledJob { job, warnings })
     }

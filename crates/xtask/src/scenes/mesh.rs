@@ -75,7 +75,7 @@ impl Mesh {
         if has_normals {
             write!(file, "property float nx\nproperty float ny\nproperty float nz\n")?;
         }
-        write!(file, "element face {}\n", self.triangles.len())?;
+        writeln!(file, "element face {}", self.triangles.len())?;
         write!(file, "property list uchar uint vertex_indices\nend_header\n")?;
         for (i, p) in self.positions.iter().enumerate() {
             let n = has_normals.then(|| self.normals[i].to_array());

@@ -9,8 +9,10 @@ mod tree;
 use std::io;
 use std::path::Path;
 
-/// The scenes by name, each with what makes it in a folder.
-const SCENES: [(&str, fn(&Path) -> io::Result<()>); 1] = [("forest", forest::make)];
+/// Writes the files of a scene into a folder.
+type Make = fn(&Path) -> io::Result<()>;
+
+const SCENES: [(&str, Make); 1] = [("forest", forest::make)];
 
 /// Makes the scenes of these names, or all, in `target/scenes`.
 pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {

@@ -255,3 +255,45 @@ pub fn grass(blades: u32, seed: u64) -> Mesh {
     }
     mesh
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BUSH: Broadleaf =
+        Broadleaf { trunk: 0.3, crown: [0.6, 0.5], points: 300, leaf: [0.05, 0.03], leaves: 2 };
+
+    /// Lowest and highest points.
+    fn extent(mesh: &Mesh) -> [Vec3; 2] {
+        let first = mesh.positions[0];
+        mesh.positions.iter().fold([first; 2], |[low, high], p| [low.min(*p), high.max(*p)])
+    }
+
+    #[test]
+    fn a_tree_fills_its_crown() {
+        let tree = BUSH.grow(5);
+        let [low, high] = extent(&tree.leaves);
+        assert!(low.z > 0.0 && high.z > 1.1 && high.z < 1.6, "{low} {high}");
+        assert!(low.x < -0.4 && low.x > -1.0 && high.x > 0.4 && high.x < 1.0, "{low} {high}");
+        assert!(extent(&tree.wood)[0].z < 0.0);
+        assert!(tree.wood.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+    }
+
+    #[test]
+    fn a_seed_always_grows_the_same_tree() {
+        let [a, b, other] = [5, 5, 6].map(|seed| BUSH.grow(seed).leaves.positions);
+        assert_eq!(a, b);
+        assert_ne!(a, other);
+        assert_eq!(spruce(2.0, 1).leaves.positions, spruce(2.0, 1).leaves.positions);
+    }
+
+    #[test]
+    fn boughs_of_a_spruce_get_shorter_towards_its_top() {
+        let leaves = spruce(5.0, 3).leaves;
+        let reach = |low: f32, high: f32| {
+            let between = leaves.positions.iter().filter(|p| (low..high).contains(&p.z));
+            between.map(|p| p.x.hypot(p.y)).fold(0.0, f32::max)
+        };
+        assert!(reach(0.5, 1.5) > 0.8 && reach(3.5, 4.0) < 0.75 && reach(4.7, 5.2) < 0.4);
+    }
+}
