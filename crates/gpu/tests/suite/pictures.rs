@@ -230,6 +230,20 @@ fn lights_surfaces_and_cameras_of_all_kinds_have_the_picture_of_the_cpu() {
     }
 }
 
+/// A picture too large for one strip, and a part of the film alone.
+#[test]
+fn strips_make_up_the_picture() {
+    let Some(kernels) = kernels() else { return };
+    let text =
+        "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nFilm \"rgb\"\nWorldBegin\nShape \"sphere\"\n";
+    let mut case = Case::of_text(text);
+    case.desc.film.resolution = [5000, 80];
+    case.desc.film.pixel_bounds = Some([0, 4097, 3, 75]);
+    case.view = View::compile(&case.desc, case.scene.world_from_render()).expect("a view").view;
+    let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
+    assert_eq!(case.compare("strips", &kernels, &occlusion), None);
+}
+
 /// Lights of all kinds that are drawn, meshes with normals and texture coordinates, instances,
 /// rough and dispersive glass, and a thin lens.
 const MEDLEY: &str = r#"
