@@ -186,6 +186,7 @@ impl Job {
     ///
     /// alternate: whether its passes alternate between two films, from which the noise of the
     /// picture is estimated. threads, progress, preview: as those of render().
+    #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
     fn render_shard(
         &self,

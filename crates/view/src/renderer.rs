@@ -64,7 +64,7 @@ impl From<PassError> for StepError {
     fn from(error: PassError) -> Self {
         match error {
             PassError::Cancelled => Self::Cancelled,
-            PassError::OutOfMemory(problem) => Self::Problem(problem),
+            PassError::OutOfMemory(problem) | PassError::Device(problem) => Self::Problem(problem),
         }
     }
 }
