@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use alhazen::description::{
-    AmbientOcclusionDesc, IntegratorDesc, MaterialDesc, MaterialKind, PathDesc, SceneDesc,
+    AmbientOcclusionDesc, IntegratorDesc, MaterialDesc, MaterialKind, OpenPbrDesc, PathDesc, SceneDesc,
 };
 use alhazen::geometry::InstructionSet;
 use alhazen::import::{AssetSource, Files, import};
@@ -119,11 +119,27 @@ fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
         (small(path, &assets), name.to_string())
     });
     let scenes = scenes().into_iter().map(|(path, name)| (small(&path, &Files), name));
-    scenes.filter(|(desc, _)| wavefront_draws(desc)).chain(texts)
+    scenes.map(at_once).filter(|(desc, _)| wavefront_draws(desc)).chain(texts)
+}
+
+/// Principled surfaces let light leave where it entered.
+fn at_once((mut desc, name): (SceneDesc, String)) -> (SceneDesc, String) {
+    let radius = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == "subsurface_radius");
+    let materials: Vec<_> = desc.materials.iter().map(|(handle, _)| handle).collect();
+    for handle in materials {
+        if let MaterialKind::OpenPbr(surface) = &mut desc.materials[handle].value.kind {
+            surface.numbers[radius.expect("a number")] = 0.0.into();
+        }
+    }
+    (desc, name)
 }
 
 fn wavefront_draws(desc: &SceneDesc) -> bool {
-    let is_subsurface = |material: &MaterialDesc| matches!(material.kind, MaterialKind::Subsurface { .. });
+    let is_subsurface = |material: &MaterialDesc| match &material.kind {
+        MaterialKind::Subsurface { .. } => true,
+        MaterialKind::OpenPbr(surface) => surface.scatters_under(),
+        _ => false,
+    };
     desc.media.is_empty() && !desc.materials.iter().any(|(_, material)| is_subsurface(material))
 }
 

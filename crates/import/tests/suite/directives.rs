@@ -370,8 +370,9 @@ fn principled_materials_have_the_parameters_of_the_specification() {
     assert_eq!(glowing.emission_luminance, 40.0);
     assert_eq!(glowing.emission_color, SpectrumDesc::rgb(1.0, 0.5, 0.0));
     assert!(openpbr("\"bool geometry_thin_walled\" true").0.thin_walled && !plain.thin_walled);
-    let (_, messages) = openpbr("\"float subsurface_radius\" 2");
-    assert_eq!(messages, ["`subsurface_radius` has no effect: light leaves where it entered"]);
+    let (below, messages) =
+        openpbr("\"float subsurface_weight\" 1 \"rgb subsurface_radius_scale\" [0.1 0.2 0.3]");
+    assert_eq!((below.subsurface_radius_scale, messages.len()), (SpectrumDesc::rgb(0.1, 0.2, 0.3).into(), 0));
 }
 
 #[test]

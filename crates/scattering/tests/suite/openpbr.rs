@@ -165,7 +165,7 @@ fn tilted_coats_lose_little() {
     for base_metalness in [0.0, 1.0] {
         for coat_roughness in [0.0, 0.3, 0.6] {
             let bxdf = surface(OpenPbrParameters { base_metalness, coat_roughness, ..coated });
-            for (cosine, least) in [(0.15, 0.75), (0.4, 0.93), (0.7, 0.97), (1.0, 0.97)] {
+            for (cosine, least) in [(0.15, 0.85), (0.4, 0.9), (0.7, 0.95), (1.0, 0.97)] {
                 for phi in [0.0, 1.0, 2.5, 4.0] {
                     let albedo = albedo_in(&bxdf, cosine, phi, TransportMode::Radiance)[0];
                     let message = format!("{base_metalness} {coat_roughness} {cosine} {phi}: {albedo}");
@@ -191,6 +191,7 @@ fn tilted_coats_mirror_about_their_normal() {
         if sample.valid && sample.flags.is_specular() {
             let expected = fr_dielectric(wo.dot(normal), 1.6);
             assert!((sample.wi - (normal * (2.0 * wo.dot(normal)) - wo)).length() < 1e-5);
+            // It is mirrored far above the base, so that all of it is reflected.
             assert!((sample.f[0] * sample.wi.z - expected).abs() < 1e-3 * expected);
             mirrored += 1;
         }

@@ -3,15 +3,15 @@
 //! A coat that is tilted reflects light about its own normal, as normal maps do: its value has the
 //! cosine of the light's direction to the coat instead of that to the base. What it takes of a
 //! direction is what it takes at the angle to its normal, and the base gets the rest; the means of
-//! what is left are those of a coat that is not tilted. Where a direction is behind the coat, but
-//! above the base, it meets the base alone.
+//! what is left are those of a coat that is not tilted. Light that it would mirror below the base
+//! meets the base alone; near to that a part does.
 
 use super::mirror::Mirror;
 use super::shares::Shares;
 use super::stack::Taken;
 use super::{OpenPbr, flip, is_off_horizon, mirrored};
 use crate::{BsdfSample, TransportMode, fr_dielectric};
-use math::{Frame, Vec2, Vec3, Vector3};
+use math::{Frame, Vec2, Vec3, Vector3, sqr};
 
 /// The frame of a coat with a normal other than z.
 fn frame(normal: Vector3) -> Frame {
@@ -37,14 +37,20 @@ impl OpenPbr<'_> {
         Some((mirror, directions))
     }
 
+    /// The share of light from a tilted coat that is mirrored above the base, by its cosine there.
+    fn mirrored_above(&self, z: f32) -> f32 {
+        let width = 0.5 * (1.0 - sqr(self.coat_normal.z)).sqrt();
+        (z / width.max(1e-3)).clamp(0.0, 1.0)
+    }
+
     /// The value for two directions above, of light that has passed the fuzz.
     pub(super) fn coat(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> f32 {
         let Some((mirror, [coat_wo, coat_wi])) = self.mirror(wo, wi) else { return 0.0 };
         let f = fr_dielectric(mirror.cosine, self.stack.coat_ior) * mirror.f;
         match mode {
             _ if !self.is_tilted() => f,
-            TransportMode::Radiance => f * coat_wi.z / wi.z,
-            TransportMode::Importance => f * coat_wo.z / wo.z,
+            TransportMode::Radiance => f * coat_wi.z / wi.z * self.mirrored_above(wi.z),
+            TransportMode::Importance => f * coat_wo.z / wo.z * self.mirrored_above(wo.z),
         }
     }
 
@@ -53,8 +59,9 @@ impl OpenPbr<'_> {
     pub(super) fn specular_coat(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> f32 {
         let reflected = fr_dielectric(self.on_coat(wo).z, self.stack.coat_ior);
         match mode {
-            TransportMode::Importance if self.is_tilted() => reflected * wi.z / wo.z,
-            _ => reflected,
+            _ if !self.is_tilted() => reflected,
+            TransportMode::Radiance => reflected * self.mirrored_above(wi.z),
+            TransportMode::Importance => reflected * wi.z / wo.z * self.mirrored_above(wo.z),
         }
     }
 
@@ -83,11 +90,13 @@ impl OpenPbr<'_> {
         if !self.is_tilted() {
             return shares;
         }
-        let on_coat = self.on_coat(flip(w.z < 0.0, w));
+        let w = flip(w.z < 0.0, w);
+        let on_coat = self.on_coat(w);
         let mut reflected = 0.0;
         if on_coat.z > 0.0 && is_off_horizon(on_coat) {
             let taken = self.table.taken(&self.numbers, self.waves[0], on_coat);
             reflected = taken.coat / (taken.left + taken.coat).max(f32::MIN_POSITIVE);
+            reflected *= self.mirrored_above(2.0 * on_coat.z * self.coat_normal.z - w.z);
         }
         let coat = shares.below_fuzz() * reflected;
         let left = shares.below_fuzz() - coat;
