@@ -127,7 +127,7 @@ fn at_once((mut desc, name): (SceneDesc, String)) -> (SceneDesc, String) {
     let radius = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == "subsurface_radius");
     let materials: Vec<_> = desc.materials.iter().map(|(handle, _)| handle).collect();
     for handle in materials {
-        if let MaterialKind::OpenPbr(surface) = &mut desc.materials[handle].value.kind {
+        if let MaterialKind::OpenPbr(surface) = &mut desc.materials[handle].kind {
             surface.numbers[radius.expect("a number")] = 0.0.into();
         }
     }

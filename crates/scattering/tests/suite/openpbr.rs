@@ -158,19 +158,20 @@ fn what_absorbs_nothing_loses_nothing() {
     }
 }
 
-/// But for directions that the coat mirrors below the base, and for means of what is left.
+/// The means of what is left are not those of tilted coats, which gain or lose a little for that.
 #[test]
-fn tilted_coats_lose_little() {
+fn tilted_coats_gain_and_lose_little() {
     let coated = OpenPbrParameters { coat_weight: 1.0, ..tilted(lossless()) };
     for base_metalness in [0.0, 1.0] {
         for coat_roughness in [0.0, 0.3, 0.6] {
             let bxdf = surface(OpenPbrParameters { base_metalness, coat_roughness, ..coated });
-            for (cosine, least) in [(0.15, 0.85), (0.4, 0.9), (0.7, 0.95), (1.0, 0.97)] {
+            for (cosine, least, most) in
+                [(0.15, 0.93, 1.17), (0.4, 0.97, 1.1), (0.7, 0.97, 1.05), (1.0, 0.98, 1.05)]
+            {
                 for phi in [0.0, 1.0, 2.5, 4.0] {
                     let albedo = albedo_in(&bxdf, cosine, phi, TransportMode::Radiance)[0];
                     let message = format!("{base_metalness} {coat_roughness} {cosine} {phi}: {albedo}");
-                    println!("{message}");
-                    assert!(albedo > least && albedo < 1.03, "{message}");
+                    assert!(albedo > least && albedo < most, "{message}");
                 }
             }
         }

