@@ -4,13 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use description::schema::Settings;
-use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc, Span};
+use description::{Diagnostic, IntegratorDesc, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
 use gpu::{Algorithm, Renderer, Subject, flatten};
 use integrators::{Cancelled, Control, Integrator, PassError, Session};
 use sampling::Sampler;
-use sampling::sampler::Independent;
 use scene::texture::color_space;
 use scene::{Scene, View};
 
@@ -43,18 +42,12 @@ pub(crate) fn integrator(
         let message = format!("the engine for GPUs does not have integrator `{}`", desc.integrator.name());
         refused.push(Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span));
     }
-    let SamplerKind::Independent { pixel_samples } = desc.sampler.kind else {
-        let message = "the engine for GPUs has the random numbers of sampler `independent` only";
-        let warning = Diagnostic::warning("not-on-gpu", message, desc.sampler.origin.span);
-        refused.push(warning.with_help("`--set sampler=independent` selects it"));
-        return Err(refused);
-    };
     let Some(algorithm) = algorithm else { return Err(refused) };
-    let seed = desc.sampler.seed.unwrap_or(desc.options.seed) as u32;
-    let sampler = Sampler::Independent(Independent::new(pixel_samples, seed));
+    let sampler = integrators::sampler(desc);
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
-    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler };
+    let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);
+    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler, largest_buffer };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
     match Renderer::new(kernels.clone(), &flat, &algorithm, film) {

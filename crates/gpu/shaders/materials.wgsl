@@ -5,6 +5,13 @@ const DIFFUSE_TRANSMISSION = 1u;
 const CONDUCTOR = 2u;
 const DIELECTRIC = 3u;
 const THIN_DIELECTRIC = 4u;
+const MIX = 5u;
+const COATED_DIFFUSE = 6u;
+const COATED_CONDUCTOR = 7u;
+
+// Where the offsets of a material's textures begin, and how many of them a coat has.
+const MATERIAL_TEXTURES = 12u;
+const COAT_TEXTURES = 5u;
 
 // A BxDF in the frame of a point: `a` and `b` are reflectance and transmittance, or η and k.
 struct Bsdf {
@@ -14,50 +21,146 @@ struct Bsdf {
     b: vec4f,
     eta: f32,
     facets: TrowbridgeReitz,
+    coat: Coat,
 }
 
-// The BSDF of a point. Dispersive materials terminate the secondary wavelengths.
-fn bsdf_at(s: Surface, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
-    let at = world.materials + 7 * s.material;
-    var bsdf = Bsdf(tables[at], Frame_from_z_and_x(s.ns, s.ss), vec4f(), vec4f(), 1, TrowbridgeReitz(0, 0));
+// What lies above a base: the numbers of a `Layered` but for the base.
+struct Coat {
+    surface: Dielectric,
+    thickness: f32,
+    albedo: vec4f,
+    phase: HenyeyGreenstein,
+    inner: f32,
+    max_depth: u32,
+    samples: u32,
+    seed: u32,
+}
+
+// The record of a material.
+fn material_record(material: u32) -> u32 {
+    return tables[world.materials + material];
+}
+
+// The BSDF of a point, whose shading geometry gets the material's normals. Dispersive materials
+// terminate the secondary wavelengths.
+//
+// All textures are evaluated at one place of the program, because they are long: what mixes choose
+// by, what raises the surface, and the numbers of the material.
+fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
+    var at = material_record((*s).material);
+    // The heights here, along u and along v.
+    var heights: array<f32, 3>;
+    var height = 0u;
+    var values: array<vec4f, 9>;
+    var value = 0u;
+    loop {
+        let is_mix = tables[at] == MIX;
+        let is_raised = tables[at + 2] != 0 && height < 3;
+        if (!is_mix && !is_raised && value == tables[at + 3]) {
+            break;
+        }
+        var place = context;
+        var next = tables[at + MATERIAL_TEXTURES + value];
+        if (!is_mix && is_raised) {
+            place = raised_context(*s, context, height);
+            next = tables[at + 2];
+        }
+        let found = texture(next, place, *lambda);
+        if (is_mix) {
+            at = material_record(chosen_material(at, *s, found.x));
+        } else if (is_raised) {
+            heights[height] = found.x;
+            height++;
+        } else {
+            values[value] = found;
+            value++;
+        }
+    }
+    if (tables[at + 1] != 0) {
+        map_normal(s, tables[at + 1]);
+    } else if (height == 3) {
+        raise(s, context, heights);
+    }
+    var bsdf: Bsdf;
+    bsdf.kind = tables[at];
+    bsdf.frame = Frame_from_z_and_x((*s).ns, (*s).ss);
+    bsdf.eta = 1;
+    let is_coated = bsdf.kind == COATED_DIFFUSE || bsdf.kind == COATED_CONDUCTOR;
+    if (is_coated || bsdf.kind == DIELECTRIC || bsdf.kind == THIN_DIELECTRIC) {
+        let eta = spectrum_at(tables[at + 5], (*lambda).lambda.x);
+        // A spectrum is zero outside of its table, where the index is unknown.
+        bsdf.eta = select(eta, 1, eta == 0);
+        if (tables[at + 6] == 1) {
+            SampledWavelengths_terminate_secondary(lambda);
+        }
+    }
+    // The textures of a base come after those of its coat.
+    let first = select(0u, COAT_TEXTURES, is_coated);
     switch (bsdf.kind) {
-        case DIFFUSE: {
-            bsdf.a = clamp(texture(tables[at + 1], context, *lambda), vec4f(), vec4f(1));
-        }
+        case DIFFUSE, COATED_DIFFUSE: { bsdf.a = clamp(values[first], vec4f(), vec4f(1)); }
         case DIFFUSE_TRANSMISSION: {
-            let scale = number(at + 3);
-            bsdf.a = clamp(texture(tables[at + 1], context, *lambda) * scale, vec4f(), vec4f(1));
-            bsdf.b = clamp(texture(tables[at + 2], context, *lambda) * scale, vec4f(), vec4f(1));
+            let scale = number(at + 4);
+            bsdf.a = clamp(values[0] * scale, vec4f(), vec4f(1));
+            bsdf.b = clamp(values[1] * scale, vec4f(), vec4f(1));
         }
-        case CONDUCTOR: {
-            bsdf.b = texture(tables[at + 2], context, *lambda);
-            if (tables[at + 1] != 0) {
-                bsdf.a = texture(tables[at + 1], context, *lambda);
-            } else {
+        case CONDUCTOR, COATED_CONDUCTOR: {
+            bsdf.facets = facets_of(values[first].x, values[first + 1].x, tables[at + 4]);
+            bsdf.b = values[first + 2];
+            bsdf.a = values[first + 3];
+            if (tables[at + 7] == 1) {
                 let r = clamp(bsdf.b, vec4f(), vec4f(0.9999));
                 bsdf.a = vec4f(1);
                 bsdf.b = 2 * sqrt(r) / sqrt(1 - r);
             }
-            bsdf.facets = roughness(at + 4, context, *lambda);
+            // Seen from within the coat, whose index is that of the BSDF.
+            bsdf.a /= bsdf.eta;
+            bsdf.b /= bsdf.eta;
         }
-        default: {
-            let eta = spectrum_at(tables[at + 1], (*lambda).lambda.x);
-            // A spectrum is zero outside of its table, where the index is unknown.
-            bsdf.eta = select(eta, 1, eta == 0);
-            if (tables[at + 2] != 0) {
-                SampledWavelengths_terminate_secondary(lambda);
-            }
-            if (bsdf.kind == DIELECTRIC) {
-                bsdf.facets = roughness(at + 4, context, *lambda);
-            }
-        }
+        case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]); }
+        default: {}
+    }
+    if (is_coated) {
+        let facets = facets_of(values[0].x, values[1].x, tables[at + 8]);
+        bsdf.coat = Coat(
+            Dielectric(bsdf.eta, facets), max(values[2].x, 0), clamp(values[4], vec4f(), vec4f(1)),
+            HenyeyGreenstein(clamp(values[3].x, -0.999, 0.999)),
+            number(at + 9), tables[at + 10], tables[at + 11], walk_seed((*lambda).lambda.x),
+        );
     }
     return bsdf;
 }
 
-fn roughness(at: u32, context: TextureContext, lambda: SampledWavelengths) -> TrowbridgeReitz {
-    let given = vec2f(texture(tables[at], context, lambda).x, texture(tables[at + 1], context, lambda).x);
-    let alpha = select(given, sqrt(given), tables[at + 2] != 0);
+// What the walks of a vertex depend on: `Bsdf::seed` of `scattering/src/bsdf.rs`.
+fn walk_seed(lambda: f32) -> u32 {
+    let state = mix_word(0x6a09e667u ^ bitcast<u32>(lambda)) + 0x3c6ef372u;
+    var sequence = HashSequence(mix_word(state ^ place.dimension) + 0x3c6ef372u);
+    return HashSequence_word(&sequence);
+}
+
+fn coated_diffuse(bsdf: Bsdf) -> Layered_Diffuse {
+    let c = bsdf.coat;
+    return Layered_Diffuse(
+        Diffuse(bsdf.a), c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
+    );
+}
+
+fn coated_conductor(bsdf: Bsdf) -> Layered_Conductor {
+    let c = bsdf.coat;
+    let base = Conductor(bsdf.facets, bsdf.a, bsdf.b);
+    return Layered_Conductor(
+        base, c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
+    );
+}
+
+// The material that a mix has at a point, given the probability of the second one.
+fn chosen_material(at: u32, s: Surface, amount: f32) -> u32 {
+    let u = hashed(s.p.p, s.wo, tables[at + 4] ^ mix_word(tables[at + 5]));
+    return tables[at + 4 + u32(amount >= 1 || amount > 0 && u < amount)];
+}
+
+fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {
+    let given = vec2f(u, v);
+    let alpha = select(given, sqrt(max(given, vec2f())), remap == 1);
     return TrowbridgeReitz_new(alpha.x, alpha.y);
 }
 
@@ -79,6 +182,8 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
             return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
                 | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
         }
+        case COATED_DIFFUSE: { return Layered_Diffuse_flags(coated_diffuse(bsdf)); }
+        case COATED_CONDUCTOR: { return Layered_Conductor_flags(coated_conductor(bsdf)); }
         default: {
             return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
         }
@@ -91,11 +196,12 @@ fn is_non_specular(flags: u32) -> bool {
 
 // Roughens it.
 fn regularize(bsdf: ptr<function, Bsdf>) {
-    if ((*bsdf).kind == CONDUCTOR || (*bsdf).kind == DIELECTRIC) {
-        var facets = (*bsdf).facets;
-        TrowbridgeReitz_regularize(&facets, true);
-        (*bsdf).facets = facets;
-    }
+    var facets = (*bsdf).facets;
+    TrowbridgeReitz_regularize(&facets, true);
+    (*bsdf).facets = facets;
+    facets = (*bsdf).coat.surface.distribution;
+    TrowbridgeReitz_regularize(&facets, true);
+    (*bsdf).coat.surface.distribution = facets;
 }
 
 // Neither zero, subnormal, infinite nor NaN.
@@ -120,6 +226,10 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
         case DIELECTRIC: {
             return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, TransportMode_Radiance);
         }
+        case COATED_DIFFUSE: { return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, TransportMode_Radiance); }
+        case COATED_CONDUCTOR: {
+            return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, TransportMode_Radiance);
+        }
         default: { return vec4f(); }
     }
 }
@@ -142,6 +252,12 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         }
         case DIELECTRIC: {
             return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
+        }
+        case COATED_DIFFUSE: {
+            return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
+        }
+        case COATED_CONDUCTOR: {
+            return Layered_Conductor_pdf(coated_conductor(bsdf), wo, wi, mode, Directions_All);
         }
         default: { return 0; }
     }
@@ -167,6 +283,12 @@ fn bsdf_sample(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f) -> BsdfSample {
         }
         case DIELECTRIC: {
             sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, Directions_All);
+        }
+        case COATED_DIFFUSE: {
+            sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, Directions_All);
+        }
+        case COATED_CONDUCTOR: {
+            sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, Directions_All);
         }
         default: {
             sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, Directions_All);

@@ -53,10 +53,10 @@ fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec
 }
 
 // Leaves a vertex along a direction of its BSDF.
-fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, sample: BsdfSample) {
+fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, sample: BsdfSample, pdf: f32) {
     (*path).beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
     (*path).origin = context;
-    (*path).pdf = sample.pdf;
+    (*path).pdf = pdf;
     let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
     (*path).is_found_twice = !is_specular;
     (*path).rough_before |= !is_specular;
@@ -92,10 +92,10 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             l += path.beta * escaped(path, *lambda);
             break;
         }
-        let s = surface_at(hit, path.ray);
+        var s = surface_at(hit, path.ray);
         l += path.beta * emitted(path, s, hit.uv, *lambda);
         let textures = texture_context(s, path.near);
-        var bsdf = bsdf_at(s, textures, lambda);
+        var bsdf = bsdf_at(&s, textures, lambda);
         if (path.depth == world.max_depth) {
             break;
         }
@@ -114,7 +114,12 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             break;
         }
         path.near = scattered_differentials(s, textures, path.near, sample);
-        scatter(&path, s, context, sample);
+        // The density of a sample that is a walk is known as that of its direction alone.
+        var pdf = sample.pdf;
+        if (sample.pdf_is_proportional) {
+            pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
+        }
+        scatter(&path, s, context, sample, pdf);
         if (!survives(&path)) {
             break;
         }

@@ -16,7 +16,7 @@ struct World {
     choice: u32,
     light_count: u32,
     infinite_count: u32,
-    key: u32,
+    random_numbers: u32,
     is_centered: u32,
     has_one_wavelength: u32,
     max_depth: u32,
@@ -52,6 +52,7 @@ struct Sample {
 @group(0) @binding(4) var<storage, read_write> tables: array<u32>;
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
+@group(0) @binding(7) var<storage, read_write> texels: array<u32>;
 
 // Where the sample is in its random numbers.
 var<private> place: Address;
@@ -67,16 +68,36 @@ fn vector(at: u32) -> vec3f {
     return vec3f(number(at), number(at + 1), number(at + 2));
 }
 
+const INDEPENDENT = 0u;
+
+// The coordinates at the current place, of which samplers make the second one if it is wanted.
+fn coordinates() -> vec2f {
+    let at = world.random_numbers;
+    let key = tables[at + 1];
+    if (tables[at] == INDEPENDENT) {
+        return Independent_at_2d(Independent(1, key, place), place);
+    }
+    return ZSobol_at_2d(ZSobol(tables[at + 2], tables[at + 3], tables[at + 4], key, place), place);
+}
+
 fn get_1d() -> f32 {
-    let u = Independent_at_1d(Independent(1, world.key, place), place);
+    let u = coordinates().x;
     place.dimension += 1;
     return u;
 }
 
 fn get_2d() -> vec2f {
-    let u = Independent_at_2d(Independent(1, world.key, place), place);
+    let u = coordinates();
     place.dimension += 2;
     return u;
+}
+
+// A random number that depends on two vectors and a word alone.
+fn hashed(a: vec3f, b: vec3f, word: u32) -> f32 {
+    let u = bitcast<vec3u>(a);
+    let mixed = mix_quadruple(array(u.x, u.y, u.z, word));
+    let v = bitcast<vec3u>(b) ^ vec3u(mixed[0], mixed[1], mixed[2]);
+    return unit_interval(mix_quadruple(array(v.x, v.y, v.z, mixed[3]))[0]);
 }
 
 // The nearest hit of a ray.

@@ -66,3 +66,87 @@ fn spectrum(at: u32, lambda: SampledWavelengths) -> vec4f {
     }
     return values;
 }
+
+// The types of spectra that RGB values become.
+const ALBEDO = 0u;
+const ILLUMINANT = 2u;
+
+// The spectrum of an RGB value of a colour space, which has no component below 0.
+fn rgb_spectrum(space: u32, kind: u32, rgb: vec3f, lambda: SampledWavelengths) -> vec4f {
+    var scale = 1.0;
+    var color = min(rgb, vec3f(1));
+    if (kind != ALBEDO) {
+        scale = 2 * max(rgb.x, max(rgb.y, rgb.z));
+        color = select(vec3f(), rgb / scale, scale > 0);
+    }
+    let polynomial = RgbSigmoidPolynomial(uplifted(space, color));
+    var values: vec4f;
+    for (var i = 0; i < 4; i++) {
+        values[i] = RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]) * scale;
+        if (kind == ILLUMINANT) {
+            values[i] *= dense_spectrum(tables[space + 4], lambda.lambda[i]);
+        }
+    }
+    return values;
+}
+
+const UPLIFT_VALUES = 48u;
+const UPLIFT_RATIOS = 42u;
+
+// A cell of nodes, and a position in it.
+struct UpliftCell {
+    below: u32,
+    t: f32,
+}
+
+fn ratio_cell(ratios: u32, ratio: f32) -> UpliftCell {
+    let position = (sqrt(0.36 + 1.6 * ratio) - 0.6) / 0.8 * f32(UPLIFT_RATIOS - 1);
+    let below = u32(clamp(position, 0, f32(UPLIFT_RATIOS - 2)));
+    let low = number(ratios + below);
+    return UpliftCell(below, (ratio - low) / (number(ratios + below + 1) - low));
+}
+
+fn value_coordinate(z: f32) -> f32 {
+    return (z - 0.5) / sqrt(z * (1.05 - z));
+}
+
+// The coefficients of the reflectance of an RGB value: `RgbToSpectrumTable::polynomial` of
+// `spectrum/src/uplift.rs`, whose tables the record of a colour space has.
+fn uplifted(space: u32, rgb: vec3f) -> vec3f {
+    if (rgb.x == rgb.y && rgb.y == rgb.z) {
+        // Finite where the reflectance is 0 or 1.
+        return vec3f(0, 0, (rgb.x - 0.5) / sqrt(max(rgb.x * (1 - rgb.x), 1e-30)));
+    }
+    let nodes = tables[space];
+    let values = tables[space + 1];
+    let coordinates = tables[space + 2];
+    // The largest component comes first, and of equal ones the last.
+    let green_leads = rgb.y >= rgb.x;
+    let blue_leads = rgb.z >= max(rgb.x, rgb.y);
+    let largest = select(select(0u, 1u, green_leads), 2u, blue_leads);
+    let turned = select(select(rgb, rgb.yzx, green_leads), rgb.zxy, blue_leads);
+    let x = ratio_cell(tables[space + 3], turned.y / turned.x);
+    let y = ratio_cell(tables[space + 3], turned.z / turned.x);
+    let darkest = number(values);
+    let value = max(turned.x, darkest);
+    var below = 0u;
+    for (var step = 32u; step > 0; step /= 2) {
+        below = select(below, below + step, number(values + below + step) <= value);
+    }
+    below = min(below, UPLIFT_VALUES - 2);
+    let low = number(coordinates + below);
+    let t = vec3f(x.t, y.t, (value_coordinate(value) - low) / (number(coordinates + below + 1) - low));
+    let first = ((largest * UPLIFT_VALUES + below) * UPLIFT_RATIOS + y.below) * UPLIFT_RATIOS + x.below;
+    var sum = vec3f();
+    for (var corner = 0u; corner < 8; corner++) {
+        let offset = vec3u(corner & 1, corner >> 1 & 1, corner >> 2);
+        let weights = select(1 - t, t, offset == vec3u(1));
+        let node = first + offset.x + UPLIFT_RATIOS * (offset.y + UPLIFT_RATIOS * offset.z);
+        sum += weights.x * weights.y * weights.z * vector(nodes + 4 * node);
+    }
+    // All wavelengths get darker together.
+    if (turned.x < darkest) {
+        sum.z *= sqrt(darkest / turned.x);
+    }
+    return sum;
+}

@@ -10,9 +10,10 @@ struct Surface {
     uv: vec2f,
     dpdu: vec3f,
     dpdv: vec3f,
-    // The shading normal, the shading tangent, and the derivatives of the normal by u and v.
+    // The shading normal, the shading tangents, and the derivatives of the normal by u and v.
     ns: vec3f,
     ss: vec3f,
+    ts: vec3f,
     dndu: vec3f,
     dndv: vec3f,
     // Back along the ray.
@@ -59,7 +60,7 @@ fn absolute(m: Rows) -> Rows {
 
 // The point of a hit by a ray of unit direction.
 fn surface_at(hit: Hit, ray: Ray) -> Surface {
-    let geometry = world.geometries + 4 * hit.geometry;
+    let geometry = world.geometries + 5 * hit.geometry;
     var s: Surface;
     var o = ray.o;
     var d = ray.d;
@@ -99,6 +100,7 @@ fn place_surface(s: ptr<function, Surface>, inward: Rows, translation: vec3f) {
     (*s).dpdu = times(outward, (*s).dpdu);
     (*s).dpdv = times(outward, (*s).dpdv);
     (*s).ss = times(outward, (*s).ss);
+    (*s).ts = times(outward, (*s).ts);
     (*s).dndu = normal_change(inward, ns, (*s).dndu);
     (*s).dndv = normal_change(inward, ns, (*s).dndv);
 }
@@ -147,6 +149,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     set_tangents(&s, du, dv, uv[1] - uv[0], uv[2] - uv[0]);
     s.ns = s.n;
     s.ss = s.dpdu;
+    s.ts = s.dpdv;
     if ((flags & 1) != 0) {
         let ns = Vec3_normalize_masked(mixed(normals, b));
         s.ns = select(s.n, ns.v0, ns.v1);
@@ -163,6 +166,15 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     if ((flags & 4) != 0) {
         let ss = mixed(next, b);
         s.ss = select(s.dpdu, ss, dot(ss, ss) > 0);
+    }
+    if ((flags & 5) != 0) {
+        s.ts = cross(s.ns, s.ss);
+        s.ss = cross(s.ts, s.ns);
+        if (dot(s.ts, s.ts) == 0) {
+            let any_tangents = coordinate_system(s.ns);
+            s.ss = any_tangents.v0;
+            s.ts = any_tangents.v1;
+        }
     }
     return s;
 }
@@ -188,7 +200,7 @@ fn set_tangents(s: ptr<function, Surface>, du: vec3f, dv: vec3f, st_du: vec2f, s
 fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
     let at = 5 * hit.place;
     let ids = items[at + 4];
-    let side = select(1.0, -1.0, ids.w == 1);
+    let side = select(1.0, -1.0, (ids.w & 1) != 0);
     var s: Surface;
     if (ids.x == PATCH) {
         let corner = bitcast<vec3f>(items[at].xyz);
@@ -227,6 +239,7 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
     }
     s.ns = s.n;
     s.ss = s.dpdu;
+    s.ts = s.dpdv;
     return s;
 }
 
@@ -273,4 +286,16 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
         s.dndv = s.dpdv / numbers.x;
     }
     return s;
+}
+
+// Whether a hit on a surface that is cut out counts: with the probability that its alpha is, by a
+// hash of the ray and the distance.
+fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
+    let s = surface_at(hit, Ray(o, d, 0));
+    let context = TextureContext(s.p.p, s.n, s.uv, Footprint());
+    let alpha = texture(tables[world.geometries + 5 * hit.geometry + 4], context, SampledWavelengths()).x;
+    if (alpha <= 0 || alpha >= 1) {
+        return alpha >= 1;
+    }
+    return hashed(o, d, bitcast<u32>(hit.t)) < alpha;
 }

@@ -11,6 +11,16 @@ const CODE_FACING = 4u;
 const CODE_STEP = 5u;
 const CODE_SCALE = 6u;
 const CODE_MIX = 7u;
+const CODE_BILERP = 8u;
+const CODE_IMAGE = 9u;
+const CODE_DOTS = 10u;
+const CODE_FBM = 11u;
+const CODE_WRINKLED = 12u;
+const CODE_WINDY = 13u;
+
+const LINEAR_MAPPING = 0u;
+const SPHERICAL_MAPPING = 1u;
+const CYLINDRICAL_MAPPING = 2u;
 
 // What textures depend on.
 struct TextureContext {
@@ -35,41 +45,131 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
         let a = slots[operands & 255];
         let b = slots[operands >> 8 & 255];
         let c = slots[operands >> 16 & 255];
-        let argument = operation + 3;
+        let argument = tables[operation + 3];
         var value: vec4f;
         switch (tables[operation]) {
-            case CODE_NUMBER: { value = vec4f(number(argument)); }
-            case CODE_SPECTRUM: { value = spectrum(tables[argument], lambda); }
-            case CODE_SQUARES: { value = vec4f(squares(on_texture(tables[argument], context))); }
-            case CODE_CUBES: { value = vec4f(cubes(in_texture(tables[argument], context))); }
-            case CODE_FACING: { value = vec4f(abs(dot(context.n, vector(tables[argument])))); }
-            case CODE_STEP: { value = vec4f(select(0.0, 1.0, a.x >= number(argument))); }
+            case CODE_NUMBER: { value = vec4f(bitcast<f32>(argument)); }
+            case CODE_SPECTRUM: { value = spectrum(argument, lambda); }
+            case CODE_CUBES: { value = vec4f(cubes(in_texture(argument, context))); }
+            case CODE_FACING: { value = vec4f(abs(dot(context.n, vector(argument)))); }
+            case CODE_STEP: { value = vec4f(select(0.0, 1.0, a.x >= bitcast<f32>(argument))); }
             case CODE_SCALE: { value = a * b.x; }
             case CODE_MIX: {
                 let mixed = a * (1 - c.x) + b * c.x;
                 value = select(select(mixed, b, c.x == 1), a, c.x == 0);
             }
-            default: {
-                let w = weights(on_texture(tables[argument], context).st);
-                value = a * w.x + b * w.y + c * w.z + slots[operands >> 24] * w.w;
+            case CODE_SQUARES, CODE_BILERP, CODE_IMAGE, CODE_DOTS: {
+                let is_image = tables[operation] == CODE_IMAGE;
+                let place = on_texture(select(argument, tables[argument + 1], is_image), context);
+                if (is_image) {
+                    value = image_texture(argument, place, lambda);
+                } else if (tables[operation] == CODE_SQUARES) {
+                    value = vec4f(squares(place));
+                } else if (tables[operation] == CODE_DOTS) {
+                    value = vec4f(coverage(place.st));
+                } else {
+                    let w = weights(place.st);
+                    value = a * w.x + b * w.y + c * w.z + slots[operands >> 24] * w.w;
+                }
             }
+            default: { value = pattern(tables[operation], argument, context, lambda); }
         }
         slots[tables[operation + 1]] = value;
     }
     return slots[0];
 }
 
+// A lookup in an image: a number or a spectrum.
+fn image_texture(at: u32, place: TexCoord2d, lambda: SampledWavelengths) -> vec4f {
+    // Rows of images go down.
+    let st = vec2f(place.st.x, 1 - place.st.y);
+    let found = filtered_color(at, st, place.dstdx, place.dstdy) * number(at + 4);
+    let is_inverted = tables[at + 5] == 1;
+    let color = select(found, 1 - found, is_inverted);
+    if (tables[at + 6] == 0) {
+        return vec4f(select(color.x, max(color.x, 0), is_inverted));
+    }
+    return rgb_spectrum(tables[at + 6], tables[at + 7], max(color, vec3f()), lambda);
+}
+
+// What is made of noise.
+fn pattern(code: u32, at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
+    if (code == CODE_WINDY) {
+        return vec4f(windy(in_texture(at, context)));
+    }
+    let place = in_texture(tables[at], context);
+    let octaves = tables[at + 1];
+    let roughness = number(at + 2);
+    switch (code) {
+        case CODE_FBM: { return vec4f(fbm(place, octaves, roughness)); }
+        case CODE_WRINKLED: { return vec4f(turbulence(place, octaves, roughness)); }
+        default: {
+            let marble = Marble(Fractal(0, octaves, roughness), number(at + 3), number(at + 4));
+            return rgb_spectrum(tables[at + 5], ALBEDO, marble_color(Marble_place(marble, place)), lambda);
+        }
+    }
+}
+
+// The colour at a place of the ramp of marble: `color` of `scene/src/texture/marble.rs`. Of its
+// nine colours only the fourth, the fifth and the eighth differ from the others.
+fn marble_color(place: f32) -> vec3f {
+    let first = clamp(floor(place * 6), 0, 5);
+    let t = place * 6 - first;
+    let s = 1 - t;
+    let weights = vec4f(s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t);
+    var color: vec3f;
+    for (var i = 0u; i < 4; i++) {
+        var part = vec3f(0.58, 0.58, 0.6);
+        switch (u32(first) + i) {
+            case 3: { part = vec3f(0.5); }
+            case 4: { part = vec3f(0.6, 0.59, 0.58); }
+            case 7: { part = vec3f(0.2, 0.2, 0.33); }
+            default: {}
+        }
+        color += weights[i] * part;
+    }
+    return color * 1.5;
+}
+
 // The point on the plane of a texture.
 fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
-    let u = vec2f(number(at), number(at + 1));
-    let v = vec2f(number(at + 2), number(at + 3));
-    let delta = vec2f(number(at + 4), number(at + 5));
     let footprint = context.footprint;
-    return TexCoord2d(
-        u * context.uv.x + v * context.uv.y + delta,
-        u * footprint.dudx + v * footprint.dvdx,
-        u * footprint.dudy + v * footprint.dvdy,
-    );
+    if (tables[at] == LINEAR_MAPPING) {
+        let u = vec2f(number(at + 1), number(at + 2));
+        let v = vec2f(number(at + 3), number(at + 4));
+        let delta = vec2f(number(at + 5), number(at + 6));
+        return TexCoord2d(
+            u * context.uv.x + v * context.uv.y + delta,
+            u * footprint.dudx + v * footprint.dvdx,
+            u * footprint.dudy + v * footprint.dvdy,
+        );
+    }
+    let place = in_texture(at + 1, context);
+    let p = place.p;
+    let outward = dot(p.xy, p.xy);
+    let around = vec3f(-p.y, p.x, 0) / (6.2831855 * outward);
+    var st: vec2f;
+    // The gradients of the coordinates.
+    var s: vec3f;
+    var t: vec3f;
+    if (tables[at] == SPHERICAL_MAPPING) {
+        let rho = sqrt(outward);
+        s = vec3f(p.xy * (p.z / rho), -rho) / (3.1415927 * dot(p, p));
+        t = around;
+        let direction = Vec3_normalize_masked(p);
+        let w = select(vec3f(), direction.v0, direction.v1);
+        st = vec2f(arc_acos(clamp(w.z, -1, 1)) / 3.1415927, spherical_phi(w) / 6.2831855);
+    } else if (tables[at] == CYLINDRICAL_MAPPING) {
+        s = around;
+        t = vec3f(0, 0, 1);
+        st = vec2f((3.1415927 + arc_atan2(p.y, p.x)) / 6.2831855, p.z);
+    } else {
+        s = vector(at + 13);
+        t = vector(at + 16);
+        st = vec2f(dot(p, s), dot(p, t)) + vec2f(number(at + 19), number(at + 20));
+    }
+    let dx = vec2f(dot(s, place.dpdx), dot(t, place.dpdx));
+    return TexCoord2d(st, dx, vec2f(dot(s, place.dpdy), dot(t, place.dpdy)));
 }
 
 // The point in the space of a texture.

@@ -1,7 +1,7 @@
 // Rays through the trees of a world.
 //
 // A kernel that traces declares the buffers `world`, `nodes`, `triangles` and `items`; `bvh/` has
-// their formats.
+// their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts.
 
 const STACK = 128;
 const NO_HIT = 0xffffffffu;
@@ -23,6 +23,8 @@ struct Hit {
     // The index of the instance's item; `NO_HIT` outside of instances.
     instance: u32,
     found: bool,
+    // Whether it is to be accepted.
+    is_cut_out: bool,
 }
 
 // A ray prepared for boxes.
@@ -108,7 +110,8 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
     let is_first = instance == (*best).instance && (corner[0].w < (*best).geometry
         || corner[0].w == (*best).geometry && corner[1].w < (*best).primitive);
     if (t < (*best).t || (*best).found && t == (*best).t && is_first) {
-        *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, index, true, instance, true);
+        let is_cut_out = corner[2].w == 1;
+        *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, index, true, instance, true, is_cut_out);
     }
 }
 
@@ -120,14 +123,17 @@ const CYLINDER = 3u;
 const DISK = 4u;
 const PLANE = 5u;
 
-// Takes the hit on a shape if it is the nearest so far.
-fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<function, Hit>) {
+// The bits of the last word of a shape.
+const CUT_OUT = 2u;
+
+// Takes the hit on a shape if it is the nearest so far of those beyond `after`.
+fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, best: ptr<function, Hit>) {
     let at = 5 * index;
     let ids = items[at + 4];
     var uv = vec2f();
     var t = -1.0;
     if (ids.x == PATCH) {
-        t = hit_patch(o, d, at, (*best).t, &uv);
+        t = hit_patch(o, d, at, after, (*best).t, &uv);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         // Relative to the object's origin, so that little is lost near it.
@@ -138,11 +144,11 @@ fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<func
         if (ids.x == DISK || ids.x == PLANE) {
             t = hit_flat(inner_o, inner_d, dot(abs(row[2].xyz), abs(q)), ids.x == DISK, numbers, (*best).t);
         } else {
-            t = hit_round(inner_o, inner_d, ids.x == SPHERE, numbers, (*best).t);
+            t = hit_round(inner_o, inner_d, ids.x == SPHERE, numbers, after, (*best).t);
         }
     }
-    if (t > 0) {
-        *best = Hit(t, uv, ids.y, ids.z, index, false, instance, true);
+    if (t > after) {
+        *best = Hit(t, uv, ids.y, ids.z, index, false, instance, true, (ids.w & CUT_OUT) != 0);
     }
 }
 
@@ -150,10 +156,10 @@ fn intersect_shape(o: vec3f, d: vec3f, index: u32, instance: u32, best: ptr<func
 const ROUNDING = 4e-7;
 
 // A patch, of which hits are where t is above 0.
-fn hit_patch(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+fn hit_patch(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
     let twist = bitcast<vec3f>(items[at + 3].xyz);
     if (any(twist != vec3f())) {
-        return hit_curved(o, d, at, twist, t_max, uv);
+        return hit_curved(o, d, at, twist, after, t_max, uv);
     }
     // Cramer's rule for o + t·d = corner + u·right + v·up ([Möller 1997]).
     let right = bitcast<vec3f>(items[at + 1].xyz);
@@ -174,7 +180,9 @@ fn hit_patch(o: vec3f, d: vec3f, at: u32, t_max: f32, uv: ptr<function, vec2f>) 
 
 // A bilinear patch: the lines of constant u that the ray meets, and the nearest points of ray and
 // line ([Reshetov 2019]).
-fn hit_curved(o: vec3f, d: vec3f, at: u32, twist: vec3f, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+fn hit_curved(
+    o: vec3f, d: vec3f, at: u32, twist: vec3f, after: f32, t_max: f32, uv: ptr<function, vec2f>,
+) -> f32 {
     let right = bitcast<vec3f>(items[at + 1].xyz);
     let up = bitcast<vec3f>(items[at + 2].xyz);
     let p00 = bitcast<vec3f>(items[at].xyz) - o;
@@ -188,7 +196,7 @@ fn hit_curved(o: vec3f, d: vec3f, at: u32, twist: vec3f, t_max: f32, uv: ptr<fun
     }
     let larger = -0.5 * (b + select(sqrt(discriminant), -sqrt(discriminant), b < 0));
     let roots = vec2f(select(c / larger, 0, larger == 0), select(larger / a, 2, a == 0));
-    let error = ROUNDING * (length(p00) + length(right) + length(up)) / length(d);
+    let error = max(after, ROUNDING * (length(p00) + length(right) + length(up)) / length(d));
     var nearest = t_max;
     var found = 0.0;
     for (var i = 0; i < 2; i++) {
@@ -220,7 +228,7 @@ fn hit_flat(o: vec3f, d: vec3f, far: f32, is_disk: bool, numbers: vec4f, t_max: 
 
 // A sphere or cylinder, or a part of it. Of the two roots the larger is found first, and the other
 // from their product ([Pharr 2023 §6.8.3]).
-fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, t_max: f32) -> f32 {
+fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, after: f32, t_max: f32) -> f32 {
     let across = vec3f(1, 1, select(0.0, 1.0, is_sphere));
     let radius = numbers.x;
     let q = o * across;
@@ -235,7 +243,7 @@ fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, t_max: f32) ->
     let larger = middle + select(sqrt(discriminant), -sqrt(discriminant), middle < 0);
     let distance = length(q);
     let other = select((distance - radius) * (distance + radius) / (a * larger), 0, larger == 0);
-    let error = ROUNDING * (distance + radius) * radius / (a * abs(larger));
+    let error = max(after, ROUNDING * (distance + radius) * radius / (a * abs(larger)));
     let roots = vec2f(min(larger, other), max(larger, other));
     for (var i = 0; i < 2; i++) {
         let t = roots[i];
@@ -274,7 +282,7 @@ fn instance_id(hit: Hit) -> u32 {
 
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
-    var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false);
+    var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false, false);
     var stack: array<u32, STACK>;
     stack[0] = world.roots.y;
     stack[1] = world.roots.x;
@@ -301,14 +309,25 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             var first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
             var count = reference & ((1u << COUNT_BITS) - 1);
             let are_items = (reference & ITEMS) != 0;
+            var after = 0.0;
             while (count > 0) {
+                var hit = best;
+                hit.is_cut_out = false;
                 if (!are_items) {
-                    intersect_triangle(shear, first, instance, &best);
+                    intersect_triangle(shear, first, instance, &hit);
                 } else if (items[5 * first + 4].x != INSTANCE) {
-                    intersect_shape(inner_o, inner_d, first, instance, &best);
+                    intersect_shape(inner_o, inner_d, after, first, instance, &hit);
                 } else {
                     break;
                 }
+                if (!hit.is_cut_out || accepts(hit, o, d)) {
+                    best = hit;
+                } else if (are_items) {
+                    // The same shape may be hit beyond.
+                    after = hit.t;
+                    continue;
+                }
+                after = 0;
                 first++;
                 count--;
             }

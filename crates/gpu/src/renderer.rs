@@ -78,7 +78,7 @@ struct PixelSample {
 pub struct Renderer {
     kernels: Arc<Kernels>,
     kernel: Arc<Kernel>,
-    buffers: [Buffer; 7],
+    buffers: [Buffer; 8],
     bytes: usize,
 }
 
@@ -103,6 +103,7 @@ impl Renderer {
             device.buffer("tables of the scene", &flat.tables)?,
             device.buffer("batches", &[batch])?,
             device.buffer("samples of a strip", &vec![none; samples])?,
+            device.buffer("texels of the scene", &flat.texels)?,
         ];
         let bytes = flat.bytes() + samples * size_of::<PixelSample>();
         Ok(Self { kernels, kernel, buffers, bytes })

@@ -14,13 +14,15 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 49] = laws! {
-    "address" "arc" "bilerp" "checkerboard" "circular" "cluster" "conductor" "dielectric" "diffuse"
-    "diffuse_transmission" "direct" "disk" "error" "exponential" "flags" "flat_shape" "float"
-    "footprint" "frame" "fresnel" "function" "hash" "hash_sequence" "independent" "interval"
-    "logarithm" "mapping" "microfacet" "minimum_differentials" "octahedral" "orthographic"
-    "perspective" "phase" "power" "ray" "rectangle" "rgb_spectrum" "sample" "sampled" "scatter"
-    "screen" "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector"
+const LAWS: [&str; 59] = laws! {
+    "address" "arc" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
+    "diffuse" "diffuse_transmission" "direct" "disk" "dots" "error" "exponential" "flags"
+    "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hash" "hash_sequence"
+    "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"
+    "minimum_differentials" "noise" "octahedral" "orthographic" "perspective" "phase" "power"
+    "randomize" "ray" "rectangle" "rgb_spectrum" "sample" "sampled" "scatter" "screen" "sobol"
+    "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector" "walk"
+    "zsobol"
 };
 
 /// Plumbing that all algorithms share.
@@ -28,8 +30,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 12] = plumbing! {
-    "scene" "trace" "distributions" "spectra" "textures" "surfaces" "footprints" "materials" "lights" "light_choices" "cameras" "pixels"
+const PLUMBING: [&str; 14] = plumbing! {
+    "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
+    "lights" "light_choices" "cameras" "pixels"
 };
 
 /// A shader: the laws, and what uses them.

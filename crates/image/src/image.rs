@@ -245,7 +245,7 @@ impl Image {
     }
 
     /// The channels that [`Self::rgb`] reads.
-    pub(crate) fn color_channels(&self) -> [usize; 3] {
+    pub fn color_channels(&self) -> [usize; 3] {
         self.color
     }
 

@@ -34,8 +34,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     if builder.diagnostics.iter().any(Diagnostic::is_error) {
         return Err(builder.diagnostics);
     }
-    let sampler = builder.sampler();
-    let integrator = builder.integrator(sampler);
+    let integrator = builder.integrator(sampler(desc));
     builder.media();
     builder.subsurface();
     builder.connections_to_lens();
@@ -47,42 +46,43 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     Ok(Built { integrator, warnings: diagnostics })
 }
 
+/// The sampler of a scene whose settings are valid.
+pub fn sampler(scene: &SceneDesc) -> Sampler {
+    let desc = &scene.sampler;
+    let seed = desc.seed.unwrap_or(scene.options.seed) as u32;
+    let (samples, resolution) = (desc.kind.samples_per_pixel(), scene.film.resolution);
+    match desc.kind {
+        SamplerKind::Independent { .. } => Sampler::Independent(Independent::new(samples, seed)),
+        SamplerKind::Stratified { strata, jitter } => {
+            Sampler::Stratified(Stratified::new(strata, jitter, seed))
+        }
+        SamplerKind::Halton { randomization, .. } => {
+            let randomization = match randomization {
+                HaltonRandomization::None => Randomize::None,
+                HaltonRandomization::PermuteDigits => Randomize::PermuteDigits,
+                HaltonRandomization::Owen => Randomize::Owen,
+            };
+            Sampler::Halton(Halton::new(samples, randomization, seed))
+        }
+        SamplerKind::PaddedSobol { randomization, .. } => {
+            Sampler::PaddedSobol(PaddedSobol::new(samples, randomize(randomization), seed))
+        }
+        SamplerKind::Sobol { randomization, .. } => {
+            Sampler::Sobol(Sobol::new(samples, resolution, randomize(randomization), seed))
+        }
+        SamplerKind::ZSobol { randomization, .. } => {
+            Sampler::ZSobol(ZSobol::new(samples, resolution, randomize(randomization), seed))
+        }
+        SamplerKind::Pmj02Bn { .. } => Sampler::Pmj02Bn(Pmj02Bn::new(samples, seed)),
+    }
+}
+
 struct Builder<'a> {
     desc: &'a SceneDesc,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl Builder<'_> {
-    fn sampler(&self) -> Sampler {
-        let desc = &self.desc.sampler;
-        let seed = desc.seed.unwrap_or(self.desc.options.seed) as u32;
-        let (samples, resolution) = (desc.kind.samples_per_pixel(), self.desc.film.resolution);
-        match desc.kind {
-            SamplerKind::Independent { .. } => Sampler::Independent(Independent::new(samples, seed)),
-            SamplerKind::Stratified { strata, jitter } => {
-                Sampler::Stratified(Stratified::new(strata, jitter, seed))
-            }
-            SamplerKind::Halton { randomization, .. } => {
-                let randomization = match randomization {
-                    HaltonRandomization::None => Randomize::None,
-                    HaltonRandomization::PermuteDigits => Randomize::PermuteDigits,
-                    HaltonRandomization::Owen => Randomize::Owen,
-                };
-                Sampler::Halton(Halton::new(samples, randomization, seed))
-            }
-            SamplerKind::PaddedSobol { randomization, .. } => {
-                Sampler::PaddedSobol(PaddedSobol::new(samples, randomize(randomization), seed))
-            }
-            SamplerKind::Sobol { randomization, .. } => {
-                Sampler::Sobol(Sobol::new(samples, resolution, randomize(randomization), seed))
-            }
-            SamplerKind::ZSobol { randomization, .. } => {
-                Sampler::ZSobol(ZSobol::new(samples, resolution, randomize(randomization), seed))
-            }
-            SamplerKind::Pmj02Bn { .. } => Sampler::Pmj02Bn(Pmj02Bn::new(samples, seed)),
-        }
-    }
-
     /// Warns if there are media, but the algorithm does not know them.
     fn media(&mut self) {
         let integrator = &self.desc.integrator;

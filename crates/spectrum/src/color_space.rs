@@ -181,7 +181,7 @@ impl RgbColorSpace {
 
     /// The table of smooth reflectances, which is decoded by the first call.
     #[inline]
-    pub(crate) fn uplifting(&self) -> &RgbToSpectrumTable {
+    pub fn uplifting(&self) -> &RgbToSpectrumTable {
         self.table.get_or_init(|| RgbToSpectrumTable::decode(self.table_data))
     }
 }

@@ -139,6 +139,13 @@ impl RgbToSpectrumTable {
         }
     }
 
+    /// What a lookup reads: of each node three coefficients and a zero, nodes in the order of
+    /// [`node_index`]; the values of nodes, and after them infinities up to a power of two; their
+    /// coordinates; the ratios of nodes.
+    pub fn numbers(&self) -> [&[f32]; 4] {
+        [self.nodes.as_flattened(), &self.values, &self.coordinates, &self.ratios]
+    }
+
     /// Decodes the bytes of [`encode`](Self::encode).
     ///
     /// # Panics

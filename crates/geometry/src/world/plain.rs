@@ -1,10 +1,9 @@
 //! The trees of a world as plain data, for engines that traverse them elsewhere.
 
 use super::World;
-use super::geometry::{Geometry, GeometryId};
+use super::geometry::GeometryId;
 use super::group::Item;
 use super::instance::{GroupId, InstanceId};
-use super::tables::Tables;
 use crate::bvh::Bvh;
 use math::{Bounds3, Vec3};
 use std::ops::Range;
@@ -86,14 +85,18 @@ impl World {
         (plain(&group.item_tree, |items| items), list(&group.items), list(&group.unbounded))
     }
 
-    /// A set of spheres in a group, which is in none of these trees.
-    pub fn sphere_set(&self, group: GroupId) -> Option<GeometryId> {
-        let Tables { geometries, group_of, .. } = &self.tables;
-        let is_set = |id: &GeometryId| {
-            let geometry = &geometries[id.0 as usize];
-            matches!(geometry, Geometry::Spheres(_)) && group_of[id.0 as usize] == group
-        };
-        (0..geometries.len() as u32).map(GeometryId).find(is_set)
+    /// The tree over the spheres of a group's sets, and the spheres in the order of leaves.
+    pub fn sphere_tree(&self, group: GroupId) -> (PlainTree, Vec<PlainItem>) {
+        let spheres = &self.tables.groups[group.0 as usize].spheres;
+        let mut list = Vec::new();
+        // Blocks are filled unevenly.
+        let mut firsts = vec![0];
+        for block in &spheres.blocks {
+            let ids = (0..block.len()).map(|lane| block.id(lane));
+            list.extend(ids.map(|(geometry, sphere)| PlainItem::Shape(GeometryId(geometry), sphere)));
+            firsts.push(list.len());
+        }
+        (plain(&spheres.tree, |blocks| firsts[blocks.start]..firsts[blocks.end]), list)
     }
 
     /// The group that an instance places.

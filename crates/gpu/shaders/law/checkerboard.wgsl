@@ -3,17 +3,17 @@
 
 // The share of the second texture on squares of the plane, in [0, 1].
 fn squares(c: TexCoord2d) -> f32 {
-    let product = filtered_wave(c.st.x, radius(c.dstdx.x, c.dstdy.x)) * filtered_wave(c.st.y, radius(c.dstdx.y, c.dstdy.y));
-    return 0.5f - (0.5f * product);
+    let product_1 = filtered_wave(c.st.x, radius(c.dstdx.x, c.dstdy.x)) * filtered_wave(c.st.y, radius(c.dstdx.y, c.dstdy.y));
+    return 0.5f - (0.5f * product_1);
 }
 
 // The share of the second texture in cubes of space, in [0, 1].
 fn cubes(c: TexCoord3d) -> f32 {
-    var product = 1.0f;
+    var product_1 = 1.0f;
     for (var axis = 0u; axis < 3; axis++) {
-        product *= filtered_wave(c.p[axis], radius(c.dpdx[axis], c.dpdy[axis]));
+        product_1 *= filtered_wave(c.p[axis], radius(c.dpdx[axis], c.dpdy[axis]));
     }
-    return 0.5f - (0.5f * product);
+    return 0.5f - (0.5f * product_1);
 }
 
 // The filter's radius along a coordinate with these derivatives by film position.

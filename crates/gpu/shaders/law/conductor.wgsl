@@ -50,6 +50,10 @@ fn Conductor_sample_glossy(this_: Conductor, wo: vec3f, u: vec2f) -> BsdfSample 
     return BsdfSample(rest.f, rest.wi, rest.pdf, rest.flags, rest.eta, rest.pdf_is_proportional, valid);
 }
 
+fn Conductor_flags(this_: Conductor) -> u32 {
+    return BxdfFlags_choose(TrowbridgeReitz_effectively_smooth(this_.distribution), BxdfFlags_SPECULAR_REFLECTION, BxdfFlags_GLOSSY_REFLECTION);
+}
+
 fn Conductor_f(this_: Conductor, wo: vec3f, wi: vec3f, unused_3: u32) -> vec4f {
     let parts = Conductor_facet(this_, wo, wi);
     let wm = parts.v0;

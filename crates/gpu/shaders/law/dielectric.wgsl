@@ -91,9 +91,9 @@ fn Dielectric_sample_specular(this_: Dielectric, wo: vec3f, uc: f32, mode: u32, 
         chosen = 1.0f;
     }
     let scale_1 = chosen;
-    let share = select(scale_1 * (1.0f - fresnel_1), fresnel_1, reflects);
+    let share_1 = select(scale_1 * (1.0f - fresnel_1), fresnel_1, reflects);
     let lobe = BxdfFlags_choose(reflects, BxdfFlags_SPECULAR_REFLECTION, BxdfFlags_SPECULAR_TRANSMISSION);
-    let f = SampledSpectrum_splat(share / abs(wi.z));
+    let f = SampledSpectrum_splat(share_1 / abs(wi.z));
     let pdf = select(1.0f - pr, pr, reflects);
     let eta_1 = select(eta, 1.0f, reflects);
     let rest = BsdfSample_new(f, wi, pdf, lobe);
@@ -124,6 +124,11 @@ fn Dielectric_sample_glossy(this_: Dielectric, wo: vec3f, uc: f32, u: vec2f, mod
     let lobe = BxdfFlags_choose(reflects, BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_GLOSSY_TRANSMISSION);
     let rest = BsdfSample_new(f, wi, pdf, lobe);
     return BsdfSample(rest.f, rest.wi, rest.pdf, rest.flags, eta_1, rest.pdf_is_proportional, valid_1);
+}
+
+fn Dielectric_flags(this_: Dielectric) -> u32 {
+    let width = BxdfFlags_choose(Dielectric_is_specular(this_), BxdfFlags_SPECULAR_TRANSMISSION, BxdfFlags_GLOSSY_TRANSMISSION);
+    return width | BxdfFlags_only_where(this_.eta != 1.0f, BxdfFlags_REFLECTION);
 }
 
 fn Dielectric_f(this_: Dielectric, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {

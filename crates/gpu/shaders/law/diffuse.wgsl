@@ -8,6 +8,10 @@ struct Diffuse {
 
 const diffuse_LOBE: u32 = BxdfFlags_DIFFUSE_REFLECTION;
 
+fn Diffuse_flags(this_: Diffuse) -> u32 {
+    return BxdfFlags_only_where(!SampledSpectrum_is_black(this_.reflectance), diffuse_LOBE);
+}
+
 fn Diffuse_f(this_: Diffuse, wo: vec3f, wi: vec3f, unused_3: u32) -> vec4f {
     let f = this_.reflectance * 0.31830987f;
     return SampledSpectrum_select(same_hemisphere(wo, wi), f, SampledSpectrum_zero());

@@ -29,10 +29,10 @@ fn DiffuseTransmission_sample_f(this_: DiffuseTransmission, wo: vec3f, uc: f32, 
     let pdf = cosine_hemisphere_pdf(wi.z);
     let reflects = uc < pr;
     wi.z = copysign(wi.z, select(-wo.z, wo.z, reflects));
-    let share = SampledSpectrum_select(reflects, this_.reflectance, this_.transmittance);
+    let share_1 = SampledSpectrum_select(reflects, this_.reflectance, this_.transmittance);
     let probability = select(1.0f - pr, pr, reflects);
     let lobe = BxdfFlags_choose(reflects, BxdfFlags_DIFFUSE_REFLECTION, BxdfFlags_DIFFUSE_TRANSMISSION);
-    let f = share * 0.31830987f;
+    let f = share_1 * 0.31830987f;
     let rest = BsdfSample_new(f, wi, pdf * probability, lobe);
     return BsdfSample(rest.f, rest.wi, rest.pdf, rest.flags, rest.eta, rest.pdf_is_proportional, valid);
 }

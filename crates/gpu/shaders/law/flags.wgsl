@@ -30,6 +30,11 @@ fn BxdfFlags_splat(flags: u32) -> u32 {
     return u32(flags);
 }
 
+// `flags` where the mask is true, else no scattering.
+fn BxdfFlags_only_where(mask: bool, flags: u32) -> u32 {
+    return BxdfFlags_choose(mask, flags, BxdfFlags_NONE);
+}
+
 // `a` where the mask is true, else `b`.
 fn BxdfFlags_select(mask: bool, a: u32, b: u32) -> u32 {
     return select(b, a, mask);
@@ -38,6 +43,47 @@ fn BxdfFlags_select(mask: bool, a: u32, b: u32) -> u32 {
 // `a` where the mask is true, else `b`, each the same in all lanes.
 fn BxdfFlags_choose(mask: bool, a: u32, b: u32) -> u32 {
     return BxdfFlags_select(mask, BxdfFlags_splat(a), BxdfFlags_splat(b));
+}
+
+// Whether every kind of `other` is in this set.
+fn BxdfFlags_contains(this_: u32, other: u32) -> bool {
+    let other_1 = u32(other);
+    return (this_ & other_1) == other_1;
+}
+
+// Whether some kind of `other` is in this set.
+fn BxdfFlags_intersects(this_: u32, other: u32) -> bool {
+    return !((this_ & u32(other)) == 0u);
+}
+
+// Whether light is reflected.
+fn BxdfFlags_is_reflective(this_: u32) -> bool {
+    return BxdfFlags_contains(this_, BxdfFlags_REFLECTION);
+}
+
+// Whether light is transmitted.
+fn BxdfFlags_is_transmissive(this_: u32) -> bool {
+    return BxdfFlags_contains(this_, BxdfFlags_TRANSMISSION);
+}
+
+// Whether there is a diffuse lobe.
+fn BxdfFlags_is_diffuse(this_: u32) -> bool {
+    return BxdfFlags_contains(this_, BxdfFlags_DIFFUSE);
+}
+
+// Whether there is a glossy lobe.
+fn BxdfFlags_is_glossy(this_: u32) -> bool {
+    return BxdfFlags_contains(this_, BxdfFlags_GLOSSY);
+}
+
+// Whether there is a specular lobe.
+fn BxdfFlags_is_specular(this_: u32) -> bool {
+    return BxdfFlags_contains(this_, BxdfFlags_SPECULAR);
+}
+
+// Whether there is a lobe for which `f` is not zero: a diffuse or glossy one.
+fn BxdfFlags_is_non_specular(this_: u32) -> bool {
+    return BxdfFlags_intersects(this_, BxdfFlags_DIFFUSE | BxdfFlags_GLOSSY);
 }
 
 const Directions_All = 0u;
@@ -65,3 +111,12 @@ fn Directions_probability_of_reflection(this_: u32, r: f32, t: f32) -> Tuple_f32
 
 const TransportMode_Radiance = 0u;
 const TransportMode_Importance = 1u;
+
+// The mode of paths from the other end.
+fn TransportMode_not(this_: u32) -> u32 {
+    if (this_ == TransportMode_Radiance) {
+        return TransportMode_Importance;
+    } else {
+        return TransportMode_Radiance;
+    }
+}

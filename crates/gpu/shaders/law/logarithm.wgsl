@@ -10,6 +10,15 @@ fn ln(x: f32) -> f32 {
     return limits(x, x, result);
 }
 
+// log₂ x, with an error below 2 ulp; exact for powers of two, −∞ for zeros, NaN below.
+fn logarithm_log2(x: f32) -> f32 {
+    let parts = logarithmic_parts(x);
+    let f = parts.v0;
+    let n = parts.v1;
+    let part = logarithm(f, 0.0f, 0.0f) * 1.442695f;
+    return limits(x, x, n + part);
+}
+
 // ln(1 + f) + n ln 2 + rest for √½ ≤ 1 + f < √2 and a small rest.
 fn logarithm(f: f32, n: f32, rest: f32) -> f32 {
     let z = f * f;

@@ -14,3 +14,8 @@ struct TexCoord3d {
     dpdx: vec3f,
     dpdy: vec3f,
 }
+
+// The same point in a texture space that is scaled by `factor`.
+fn TexCoord3d_scaled(this_: TexCoord3d, factor: f32) -> TexCoord3d {
+    return TexCoord3d(this_.p * factor, this_.dpdx * factor, this_.dpdy * factor);
+}

@@ -74,6 +74,13 @@ fn TrowbridgeReitz_pdf(this_: TrowbridgeReitz, w: vec3f, wm: vec3f) -> f32 {
     return TrowbridgeReitz_d_visible(this_, w, wm);
 }
 
+// The distribution whose α² are larger by `scale` times those of `by`.
+fn TrowbridgeReitz_widened(this_: TrowbridgeReitz, by: TrowbridgeReitz, scale_1: f32) -> TrowbridgeReitz {
+    let alpha_x = sqrt(sqr(this_.alpha_x) + (scale_1 * sqr(by.alpha_x)));
+    let alpha_y = sqrt(sqr(this_.alpha_y) + (scale_1 * sqr(by.alpha_y)));
+    return TrowbridgeReitz_new(alpha_x, alpha_y);
+}
+
 // Roughens nearly smooth surfaces where the mask is true, so that paths with small probability
 // are found: α below 0.3 is doubled, clamped to [0.1, 0.3].
 fn TrowbridgeReitz_regularize(this_: ptr<function, TrowbridgeReitz>, mask: bool) {

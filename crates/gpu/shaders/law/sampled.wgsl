@@ -39,6 +39,19 @@ fn SampledSpectrum_max_component(this_: vec4f) -> f32 {
     return real_max(d, real_max(c, real_max(b, real_max(a, -infinity()))));
 }
 
+// Whether every value is zero.
+fn SampledSpectrum_is_black(this_: vec4f) -> bool {
+    let v = this_.x;
+    let v_1 = this_.y;
+    let v_2 = this_.z;
+    let v_3 = this_.w;
+    let a = v == 0.0f;
+    let b = v_1 == 0.0f;
+    let c = v_2 == 0.0f;
+    let d = v_3 == 0.0f;
+    return ((a & b) & c) & d;
+}
+
 // The wavelengths of a path, in nanometres, and their sampling densities, per nanometre.
 struct SampledWavelengths {
     lambda: vec4f,

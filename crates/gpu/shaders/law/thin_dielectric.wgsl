@@ -14,10 +14,10 @@ fn ThinDielectric_sample_f(this_: ThinDielectric, wo: vec3f, uc: f32, unused_3: 
     let valid = parts.v1;
     let reflects = uc < pr;
     let wi = select(-wo, vec3f(-wo.x, -wo.y, wo.z), reflects);
-    let share = select(1.0f - r, r, reflects);
+    let share_1 = select(1.0f - r, r, reflects);
     let probability = select(1.0f - pr, pr, reflects);
     let lobe = BxdfFlags_choose(reflects, BxdfFlags_SPECULAR_REFLECTION, BxdfFlags_SPECULAR_TRANSMISSION);
-    let f = SampledSpectrum_splat(share / abs(wi.z));
+    let f = SampledSpectrum_splat(share_1 / abs(wi.z));
     let valid_1 = valid & (wo.z != 0.0f);
     let rest = BsdfSample_new(f, wi, probability, lobe);
     return BsdfSample(rest.f, rest.wi, rest.pdf, rest.flags, rest.eta, rest.pdf_is_proportional, valid_1);

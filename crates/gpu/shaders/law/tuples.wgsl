@@ -6,6 +6,11 @@ struct Tuple_Facet_bool {
     v1: bool,
 }
 
+struct Tuple_SampledSpectrum_bool {
+    v0: vec4f,
+    v1: bool,
+}
+
 struct Tuple_ShapeSample_bool {
     v0: ShapeSample,
     v1: bool,
@@ -40,6 +45,11 @@ struct Tuple_Vec3_f32_bool {
 struct Tuple_bool_f32 {
     v0: bool,
     v1: f32,
+}
+
+struct Tuple_f32_Vec2 {
+    v0: f32,
+    v1: vec2f,
 }
 
 struct Tuple_f32_bool {

@@ -36,6 +36,26 @@ impl Binary {
         binary
     }
 
+    /// This tree and another one together, whose primitives come after the first `primitives` ones.
+    pub fn and(mut self, tree: &PlainTree, primitives: usize) -> Self {
+        let first = self.root();
+        if tree.nodes.is_empty() {
+            return self;
+        }
+        let joined = self.nodes.len();
+        let second = self.join(tree, 0);
+        for node in &mut self.nodes[joined..] {
+            if let Below::Primitives(range) = &mut node.below {
+                *range = range.start + primitives..range.end + primitives;
+            }
+        }
+        if let Some(first) = first {
+            let bounds = self.nodes[first].bounds.union(self.nodes[second].bounds);
+            self.push(bounds, Below::Nodes([first, second]));
+        }
+        self
+    }
+
     /// The root, which comes last, if there is anything.
     pub fn root(&self) -> Option<usize> {
         self.nodes.len().checked_sub(1)

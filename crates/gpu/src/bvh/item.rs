@@ -6,8 +6,8 @@
 //! | patch | its corner, its sides and its twist |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
-//! The last quadruple is the kind, the geometry and the primitive, and whether the outside is
-//! turned over.
+//! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
+//! turned over, 2 where it is cut out.
 
 use geometry::{GeometryId, InstanceId, PlainShape, RevolvedKind, World};
 use math::{DVec3, Vec3};
@@ -39,9 +39,15 @@ pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Word
 }
 
 /// A shape of a geometry.
-pub fn shape(world: &World, geometry: GeometryId, primitive: u32) -> Result<[Words; QUADRUPLES], BvhError> {
+pub fn shape(
+    world: &World,
+    geometry: GeometryId,
+    primitive: u32,
+    is_cut_out: bool,
+) -> Result<[Words; QUADRUPLES], BvhError> {
     let shape = world.geometry(geometry).shape(primitive).and_then(|shape| shape.plain());
-    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips)];
+    let cut_out = u32::from(is_cut_out) << 1;
+    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips) | cut_out];
     match shape.ok_or(BvhError::Shape(geometry))? {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let words = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];

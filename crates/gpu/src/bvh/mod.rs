@@ -27,7 +27,8 @@ pub type Words = [u32; 4];
 pub struct Bvh {
     /// Six quadruples for each node.
     pub nodes: Vec<Words>,
-    /// Three quadruples for each triangle: a corner each, with the geometry, the primitive and 0.
+    /// Three quadruples for each triangle: a corner each, with the geometry, the primitive and
+    /// whether it is cut out.
     pub triangles: Vec<Words>,
     /// Five quadruples for each instance or shape.
     pub items: Vec<Words>,
@@ -52,8 +53,6 @@ pub struct Top {
 pub enum BvhError {
     /// A geometry has a shape that kernels do not intersect.
     Shape(GeometryId),
-    /// A geometry is a set of spheres.
-    SphereSet(GeometryId),
     /// An instance is within another.
     Nested(InstanceId),
     /// An instance moves.
@@ -65,13 +64,14 @@ pub enum BvhError {
 }
 
 impl Bvh {
-    /// The buffers of a world at rest, of meshes, single shapes and instances of groups of them.
-    pub fn new(world: &World) -> Result<Self, BvhError> {
+    /// The buffers of a world at rest, of meshes, single shapes, sets of spheres, and instances of
+    /// groups of them. Hits on geometries that are cut out count if `accepts` of the kernel says so.
+    pub fn new(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
         let mut groups = vec![Group::default(); world.groups()];
         // The instances of the top group refer to all others.
         for group in (0..world.groups() as u32).rev().map(GroupId) {
-            groups[group.0 as usize] = bvh.add_group(world, group, &groups)?;
+            groups[group.0 as usize] = bvh.add_group(world, group, &groups, is_cut_out)?;
         }
         let inner = groups[1..].iter().map(|group| group.stack).max().unwrap_or(0);
         let Group { roots, unbounded, size, stack } = groups[0];
@@ -80,10 +80,13 @@ impl Bvh {
     }
 
     /// Adds a group, given those that its instances may place.
-    fn add_group(&mut self, world: &World, group: GroupId, groups: &[Group]) -> Result<Group, BvhError> {
-        if let Some(set) = world.sphere_set(group) {
-            return Err(BvhError::SphereSet(set));
-        }
+    fn add_group(
+        &mut self,
+        world: &World,
+        group: GroupId,
+        groups: &[Group],
+        is_cut_out: &dyn Fn(GeometryId) -> bool,
+    ) -> Result<Group, BvhError> {
         let (tree, triangles) = world.triangle_tree(group);
         let mut size = largest_coordinate(&tree);
         let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3);
@@ -91,15 +94,18 @@ impl Bvh {
         // The three roots wait together.
         let mut stack = writer.stack + 3;
         for triangle in triangles {
-            let ids = [triangle.geometry.0, triangle.primitive, 0];
+            let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
             let corners = triangle.corners.iter().zip(ids);
             self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
         }
-        let (tree, items, unbounded) = world.item_tree(group);
-        size = size.max(largest_coordinate(&tree));
+        let (tree, mut items, unbounded) = world.item_tree(group);
+        let (spheres, more) = world.sphere_tree(group);
+        size = size.max(largest_coordinate(&tree)).max(largest_coordinate(&spheres));
+        let tree = Binary::new(&tree).and(&spheres, items.len());
+        items.extend(more);
         let first = self.items.len() / item::QUADRUPLES;
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
-        let item_root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
+        let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         stack += writer.stack;
         let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
         if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {
@@ -110,7 +116,9 @@ impl Bvh {
         }
         for item in items.into_iter().chain(unbounded) {
             self.items.extend(match item {
-                PlainItem::Shape(geometry, primitive) => item::shape(world, geometry, primitive)?,
+                PlainItem::Shape(geometry, primitive) => {
+                    item::shape(world, geometry, primitive, is_cut_out(geometry))?
+                }
                 PlainItem::Instance(id) if group != GroupId::TOP => return Err(BvhError::Nested(id)),
                 PlainItem::Instance(id) => item::instance(world, id, groups)?,
             });

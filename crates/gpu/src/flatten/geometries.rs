@@ -1,5 +1,6 @@
-//! Geometries: four words for each, its material, its first light plus one or 0, the offset of its
-//! vertices' attributes, and 1 where the outside of a mesh is where corners run clockwise.
+//! Geometries: five words for each, its material, its first light plus one or 0, the offset of its
+//! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, and the
+//! texture of its alpha or 0.
 //!
 //! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
 //! triangle what it has at its three corners, in this order.
@@ -26,11 +27,9 @@ impl Flattener<'_> {
                 Geometry::Mesh(_) | Geometry::Spheres(_) | Geometry::Shapes(_) => {}
                 Geometry::Curves(_) => self.refuse("curves", entry.span),
             }
-            if entry.alpha.is_some() {
-                self.refuse("surfaces cut out by alpha", entry.span);
-            }
+            let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
             let light = entry.first_light.map_or(0, |light| light + 1);
-            rows.extend([entry.material.0, light, attributes, flips.into()]);
+            rows.extend([entry.material.0, light, attributes, flips.into(), alpha]);
         }
         self.slab.add(rows)
     }

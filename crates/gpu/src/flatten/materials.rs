@@ -1,17 +1,21 @@
-//! Materials: the kind and six words for each, of which a kind uses some.
+//! Materials: their offsets in a table, and for each the kind, the image of its normals or 0, the
+//! texture of its height or 0, the number of its textures, and eight words; then its textures.
 //!
-//! | kind | words |
-//! |---|---|
-//! | 0 diffuse | reflectance |
-//! | 1 diffuse transmission | reflectance, transmittance, scale |
-//! | 2 conductor | η, k, roughness; η is 0 where k is the reflectance |
-//! | 3 dielectric | spectrum of η, whether it varies, roughness |
-//! | 4 thin dielectric | spectrum of η, whether it varies |
+//! | kind | words | textures |
+//! |---|---|---|
+//! | 0 diffuse | | reflectance |
+//! | 1 diffuse transmission | scale | reflectance, transmittance |
+//! | 2 conductor | remap, 0, 0, 1 where k is the reflectance | roughness along u and v, k, η |
+//! | 3 dielectric | remap, spectrum of η, whether it varies | roughness along u and v |
+//! | 4 thin dielectric | 0, spectrum of η, whether it varies | |
+//! | 5 mix | the two materials | the probability of the second |
+//! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
-//! Roughness is the last three words: textures along u and v, and 1 where α is the square root.
+//! Where `remap` is 1, α is the square root of the roughness.
 
 use description::Span;
-use scene::material::{ConductorIndex, Material, Roughness};
+use image::WrapMode;
+use scene::material::{Coat, ConductorIndex, ConductorMaterial, Material, MaterialEntry, Roughness};
 use spectrum::Spectrum;
 
 use super::Flattener;
@@ -21,72 +25,124 @@ const DIFFUSE_TRANSMISSION: u32 = 1;
 const CONDUCTOR: u32 = 2;
 const DIELECTRIC: u32 = 3;
 const THIN_DIELECTRIC: u32 = 4;
+const MIX: u32 = 5;
+const COATED_DIFFUSE: u32 = 6;
+const COATED_CONDUCTOR: u32 = 7;
+
+/// The kind, the words and the textures of a material.
+type Record = (u32, [u32; 8], Vec<u32>);
 
 impl Flattener<'_> {
-    /// The table of materials; its offset. Materials that no geometry has are left empty.
+    /// The table of the materials' offsets; its offset. Materials that nothing has are left out.
     pub fn materials(&mut self) -> u32 {
-        let mut is_used = vec![false; self.scene.materials().len()];
-        self.scene.geometries().iter().for_each(|entry| is_used[entry.material.0 as usize] = true);
-        let mut rows = Vec::new();
-        for (entry, is_used) in self.scene.materials().iter().zip(is_used) {
-            if !is_used {
-                rows.extend([0; 7]);
-                continue;
+        let materials = self.scene.materials();
+        let mut is_used = vec![false; materials.len()];
+        let mut used: Vec<u32> = self.scene.geometries().iter().map(|entry| entry.material.0).collect();
+        while let Some(id) = used.pop() {
+            if !std::mem::replace(&mut is_used[id as usize], true)
+                && let Material::Mix(mix) = &materials[id as usize].material
+            {
+                used.extend(mix.materials.map(|material| material.0));
             }
-            if entry.normal_map.is_some() || entry.bump_map.is_some() {
-                self.refuse("normal and bump maps", entry.span);
-            }
-            rows.extend(self.material(&entry.material, entry.span));
         }
-        self.slab.add(rows)
+        let mut offsets = Vec::new();
+        for (entry, is_used) in materials.iter().zip(is_used) {
+            offsets.push(if is_used { self.entry(entry) } else { 0 });
+        }
+        self.slab.add(offsets)
     }
 
-    fn material(&mut self, material: &Material, span: Span) -> [u32; 7] {
+    fn entry(&mut self, entry: &MaterialEntry) -> u32 {
+        let span = entry.span;
+        let (kind, words, textures) = self.material(&entry.material, span);
+        let normals = match &entry.normal_map {
+            Some(map) => self.image(std::slice::from_ref(&map.image), WrapMode::Repeat, span),
+            None => 0,
+        };
+        let height = entry.bump_map.map_or(0, |map| self.number_texture(map.displacement, span));
+        let head = [kind, normals, height, textures.len() as u32];
+        self.slab.add(head.into_iter().chain(words).chain(textures))
+    }
+
+    fn material(&mut self, material: &Material, span: Span) -> Record {
         let name = match material {
             Material::Diffuse(m) => {
-                return [DIFFUSE, self.spectrum_texture(m.reflectance, span), 0, 0, 0, 0, 0];
+                return (DIFFUSE, [0; 8], vec![self.spectrum_texture(m.reflectance, span)]);
             }
             Material::DiffuseTransmission(m) => {
-                let reflectance = self.spectrum_texture(m.reflectance, span);
-                let transmittance = self.spectrum_texture(m.transmittance, span);
-                return [DIFFUSE_TRANSMISSION, reflectance, transmittance, m.scale.to_bits(), 0, 0, 0];
+                let textures = [m.reflectance, m.transmittance].map(|id| self.spectrum_texture(id, span));
+                return (DIFFUSE_TRANSMISSION, words([m.scale.to_bits()]), textures.to_vec());
             }
             Material::Conductor(m) => {
-                let (eta, k) = match m.index {
-                    ConductorIndex::Complex { eta, k } => (self.spectrum_texture(eta, span), k),
-                    ConductorIndex::Reflectance(reflectance) => (0, reflectance),
-                };
-                let (k, [u, v, remap]) = (self.spectrum_texture(k, span), self.roughness(&m.roughness, span));
-                return [CONDUCTOR, eta, k, 0, u, v, remap];
+                let (remap, is_reflectance, textures) = self.conductor(m, span);
+                return (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures);
             }
             Material::Dielectric(m) => {
-                let ([eta, varies], [u, v, remap]) = (self.index(&m.eta), self.roughness(&m.roughness, span));
-                return [DIELECTRIC, eta, varies, 0, u, v, remap];
+                let (remap, textures) = self.roughness(&m.roughness, span);
+                let [eta, varies] = self.index(&m.eta);
+                return (DIELECTRIC, words([remap, eta, varies]), textures);
             }
             Material::ThinDielectric(m) => {
                 let [eta, varies] = self.index(&m.eta);
-                return [THIN_DIELECTRIC, eta, varies, 0, 0, 0, 0];
+                return (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new());
             }
-            Material::CoatedDiffuse(_) => "coateddiffuse",
-            Material::CoatedConductor(_) => "coatedconductor",
+            Material::Mix(m) => {
+                let pair = m.materials.map(|material| material.0);
+                return (MIX, words(pair), vec![self.number_texture(m.amount, span)]);
+            }
+            Material::CoatedDiffuse(m) => {
+                let base = vec![self.spectrum_texture(m.base.reflectance, span)];
+                return self.coated(COATED_DIFFUSE, &m.coat, [0, 0], base, span);
+            }
+            Material::CoatedConductor(m) => {
+                let (remap, is_reflectance, base) = self.conductor(&m.base, span);
+                return self.coated(COATED_CONDUCTOR, &m.coat, [remap, is_reflectance], base, span);
+            }
             Material::Hair(_) => "hair",
             Material::Measured(_) => "measured",
             Material::Subsurface(_) => "subsurface",
             Material::OpenPbr(_) => "openpbr",
-            Material::Mix(_) => "mix",
             Material::Interface => "interface",
         };
         self.refuse(format!("material `{name}`"), span);
-        [0; 7]
+        (DIFFUSE, [0; 8], Vec::new())
     }
 
-    fn roughness(&mut self, roughness: &Roughness, span: Span) -> [u32; 3] {
-        let [u, v] = [roughness.u, roughness.v].map(|id| self.number_texture(id, span));
-        [u, v, roughness.remap.into()]
+    /// A coat over a base, of which two words and the textures are given.
+    fn coated(&mut self, kind: u32, coat: &Coat, base: [u32; 2], textures: Vec<u32>, span: Span) -> Record {
+        let (remap, mut all) = self.roughness(&coat.roughness, span);
+        all.extend([coat.thickness, coat.g].map(|id| self.number_texture(id, span)));
+        all.push(self.spectrum_texture(coat.albedo, span));
+        all.extend(textures);
+        let [eta, varies] = self.index(&coat.eta);
+        let inner = coat.inner.unwrap_or(-1.0).to_bits();
+        (kind, [base[0], eta, varies, base[1], remap, inner, coat.max_depth, coat.samples], all)
+    }
+
+    /// Of a metal whether α is the square root, whether k is its reflectance, and its textures.
+    fn conductor(&mut self, metal: &ConductorMaterial, span: Span) -> (u32, u32, Vec<u32>) {
+        let (remap, mut textures) = self.roughness(&metal.roughness, span);
+        let (is_reflectance, spectra) = match metal.index {
+            ConductorIndex::Complex { eta, k } => (0, vec![k, eta]),
+            ConductorIndex::Reflectance(reflectance) => (1, vec![reflectance]),
+        };
+        textures.extend(spectra.into_iter().map(|id| self.spectrum_texture(id, span)));
+        (remap, is_reflectance, textures)
+    }
+
+    /// Whether α is the square root, and the textures of roughness.
+    fn roughness(&mut self, roughness: &Roughness, span: Span) -> (u32, Vec<u32>) {
+        let textures = [roughness.u, roughness.v].map(|id| self.number_texture(id, span));
+        (roughness.remap.into(), textures.to_vec())
     }
 
     /// An index of refraction, and whether it varies with the wavelength.
     fn index(&mut self, eta: &Spectrum) -> [u32; 2] {
         [self.spectrum(eta), (!matches!(eta, Spectrum::Constant(_))).into()]
     }
+}
+
+/// The words of a material, and zeros.
+fn words<const N: usize>(first: [u32; N]) -> [u32; 8] {
+    std::array::from_fn(|i| first.get(i).copied().unwrap_or(0))
 }

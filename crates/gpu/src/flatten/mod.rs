@@ -11,12 +11,16 @@ mod cameras;
 mod distributions;
 mod filters;
 mod geometries;
+mod images;
 mod light_choices;
 mod lights;
 mod materials;
+mod samplers;
 mod slab;
 mod spectra;
 mod textures;
+
+use std::collections::HashMap;
 
 use description::{Diagnostic, Span};
 use film::Film;
@@ -53,6 +57,8 @@ pub struct Flat {
     pub(crate) head: Head,
     /// The tables.
     pub(crate) tables: Vec<u32>,
+    /// The texels of images.
+    pub(crate) texels: Vec<u32>,
 }
 
 /// The first buffer: `World` of `shaders/scene.wgsl`.
@@ -73,8 +79,8 @@ pub(crate) struct Head {
     /// The numbers of lights, and of infinite ones.
     pub(crate) light_count: u32,
     pub(crate) infinite_count: u32,
-    /// The hash of the seed by which random numbers are made.
-    pub(crate) key: u32,
+    /// The offset of the source of random numbers.
+    pub(crate) random_numbers: u32,
     /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
     pub(crate) is_centered: u32,
     pub(crate) has_one_wavelength: u32,
@@ -98,7 +104,7 @@ impl Flat {
     pub fn bytes(&self) -> usize {
         let Bvh { nodes, triangles, items, .. } = &self.bvh;
         let quadruples = nodes.len() + triangles.len() + items.len();
-        size_of::<Head>() + 16 * quadruples + 4 * self.tables.len()
+        size_of::<Head>() + 16 * quadruples + 4 * (self.tables.len() + self.texels.len())
     }
 }
 
@@ -115,17 +121,23 @@ pub struct Subject<'a> {
     pub algorithm: &'a Algorithm,
     /// The source of random numbers.
     pub sampler: &'a Sampler,
+    /// The most bytes of a buffer.
+    pub largest_buffer: usize,
 }
 
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, sampler } = subject;
+    let Subject { scene, view, film, algorithm, sampler, largest_buffer } = subject;
     let mut flattener = Flattener {
         scene,
         allows_incomplete: algorithm.weights_lights(),
         slab: Slab::new(),
         spectra: Default::default(),
+        textures: Default::default(),
+        pyramids: Default::default(),
+        texels: Default::default(),
+        largest_buffer,
         refusals: Vec::new(),
     };
     flattener.check(view, film);
@@ -135,10 +147,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         has_footprints: scene.needs_footprints(view).into(),
         ..Head::default()
     };
-    match sampler {
-        Sampler::Independent(sampler) => head.key = sampler.key(),
-        _ => flattener.refuse("samplers other than `independent`", Span::NONE),
-    }
+    head.random_numbers = flattener.sampler(sampler);
     head.camera = flattener.camera(view);
     head.filter = flattener.filter(film.filter());
     head.geometries = flattener.geometries();
@@ -163,8 +172,9 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     }
     let bvh = flattener.bvh();
     head.top = bvh.top;
-    let Flattener { slab, refusals, .. } = flattener;
-    if refusals.is_empty() { Ok(Flat { bvh, head, tables: slab.words }) } else { Err(refusals) }
+    let Flattener { slab, texels, refusals, .. } = flattener;
+    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words };
+    if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
 }
 
 /// Tables under construction.
@@ -174,6 +184,11 @@ struct Flattener<'a> {
     allows_incomplete: bool,
     slab: Slab,
     spectra: spectra::Shared,
+    /// The offsets of textures and of pyramids of images, by their ids.
+    textures: HashMap<u32, u32>,
+    pyramids: HashMap<u32, u32>,
+    texels: images::Texels,
+    largest_buffer: usize,
     refusals: Vec<Refusal>,
 }
 
@@ -202,13 +217,13 @@ impl Flattener<'_> {
     }
 
     fn bvh(&mut self) -> Bvh {
-        let error = match Bvh::new(self.scene.world()) {
+        let is_cut_out = |id: GeometryId| self.scene.geometries()[id.0 as usize].alpha.is_some();
+        let error = match Bvh::new(self.scene.world(), &is_cut_out) {
             Ok(bvh) => return bvh,
             Err(error) => error,
         };
         let (what, span) = match error {
             BvhError::Shape(id) => (self.name_of_shape(id), self.span_of_geometry(id)),
-            BvhError::SphereSet(id) => ("sets of spheres", self.span_of_geometry(id)),
             BvhError::Nested(id) => ("instances within instances", self.span_of_instance(id)),
             BvhError::Moving(id) => ("motion", self.span_of_instance(id)),
             BvhError::Unbounded(id) => ("instances of infinite planes", self.span_of_geometry(id)),

@@ -7,11 +7,16 @@
 //! | 2, values | at each nanometre from 360 on |
 //! | 3, scale, 3 coefficients | of RGB |
 //! | 4, scale, 3 coefficients, offset of a spectrum | the same times another one |
+//!
+//! A colour space is five words, the offsets of what [`RgbToSpectrumTable::numbers`] has and of the
+//! illuminant.
+//!
+//! [`RgbToSpectrumTable::numbers`]: spectrum::uplift::RgbToSpectrumTable::numbers
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use spectrum::{DenselySampled, RgbSigmoidPolynomial, Spectrum};
+use spectrum::{DenselySampled, RgbColorSpace, RgbSigmoidPolynomial, Spectrum};
 
 use super::Flattener;
 
@@ -21,7 +26,7 @@ const DENSE: u32 = 2;
 const RGB: u32 = 3;
 const RGB_LIGHT: u32 = 4;
 
-/// The offsets of spectra that others share, by their addresses.
+/// The offsets of spectra and of colour spaces that others share, by their addresses.
 pub type Shared = HashMap<usize, u32>;
 
 impl Flattener<'_> {
@@ -51,6 +56,22 @@ impl Flattener<'_> {
         let (wavelengths, values): (Vec<f32>, Vec<f32>) = pairs.unzip();
         let at = self.slab.add([LINEAR, wavelengths.len() as u32]);
         self.slab.add_numbers(wavelengths.into_iter().chain(values));
+        at
+    }
+
+    /// A colour space, whose RGB values become spectra; its offset.
+    pub fn color_space(&mut self, space: &RgbColorSpace) -> u32 {
+        let address = std::ptr::from_ref(space) as usize;
+        if let Some(&at) = self.spectra.get(&address) {
+            return at;
+        }
+        let numbers = space.uplifting().numbers();
+        let [nodes, values, coordinates, ratios] =
+            numbers.map(|numbers| self.slab.add_numbers(numbers.iter().copied()));
+        // An illuminant is densely sampled.
+        let illuminant = self.spectrum(&space.illuminant());
+        let at = self.slab.add([nodes, values, coordinates, ratios, illuminant]);
+        self.spectra.insert(address, at);
         at
     }
 

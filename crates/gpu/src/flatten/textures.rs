@@ -7,12 +7,30 @@
 //! | 2, count, and for each operation 4 words: code, target, slots of operands, argument | a program |
 //!
 //! Slots of operands are bytes of a word. Codes are those of [`Code`] in the order of the constants
-//! below, their arguments numbers or offsets: of a spectrum, a direction, or a mapping. Mappings to
-//! the plane are the columns of a matrix; those to texture space are three rows of one.
+//! below. Their arguments are numbers or offsets: of a spectrum, a direction, a mapping, or of one of
+//!
+//! | words | operation |
+//! |---|---|
+//! | pyramid, mapping, filter (0 point, 1 bilinear, 2 trilinear, 3 EWA), largest anisotropy, scale, 1 where it is inverted, colour space or 0, type of spectrum | an image |
+//! | mapping, octaves, roughness | fBm, turbulence |
+//! | mapping, octaves, roughness, scale, variation, colour space | marble |
+//!
+//! A mapping to texture space is three rows of a matrix. One to the plane is its kind and numbers:
+//!
+//! | kind | numbers |
+//! |---|---|
+//! | 0 linear | three columns of a matrix |
+//! | 1 spherical, 2 cylindrical | the mapping to texture space |
+//! | 3 planar | the same, two axes, two offsets |
 
 use description::Span;
+use image::TextureFilter;
 use math::Vec2;
-use scene::texture::{Code, FloatTextureId, Mapping2d, Operation, SpectrumTextureId};
+use scene::texture::{
+    Code, FloatTextureId, Fractal, ImageLookup, Mapping2d, Operation, SpectrumTextureId, SpectrumType,
+};
+use math::Transform;
+use spectrum::RgbColorSpace;
 
 use super::Flattener;
 
@@ -30,6 +48,18 @@ const CODE_STEP: u32 = 5;
 const CODE_SCALE: u32 = 6;
 const CODE_MIX: u32 = 7;
 const CODE_BILERP: u32 = 8;
+const CODE_IMAGE: u32 = 9;
+const CODE_DOTS: u32 = 10;
+const CODE_FBM: u32 = 11;
+const CODE_WRINKLED: u32 = 12;
+const CODE_WINDY: u32 = 13;
+const CODE_MARBLE: u32 = 14;
+
+// The kinds of mappings to the plane.
+const LINEAR: u32 = 0;
+const SPHERICAL: u32 = 1;
+const CYLINDRICAL: u32 = 2;
+const PLANAR: u32 = 3;
 
 impl Flattener<'_> {
     /// A texture of numbers, which a thing at `span` has; its offset.
@@ -43,10 +73,13 @@ impl Flattener<'_> {
     }
 
     fn texture(&mut self, id: u32, span: Span) -> u32 {
+        if let Some(&at) = self.textures.get(&id) {
+            return at;
+        }
         let textures = self.scene.textures();
         let program = textures.programs()[id as usize];
         let operations = &textures.operations()[program.first as usize..][..program.length as usize];
-        match operations {
+        let at = match operations {
             [Operation { code: Code::Number(number), .. }] => self.slab.add([NUMBER, number.to_bits()]),
             [Operation { code: Code::Spectrum(index), .. }] => {
                 let spectrum = self.spectrum(&textures.spectra()[*index as usize]);
@@ -56,61 +89,119 @@ impl Flattener<'_> {
                 let mut words = vec![PROGRAM, operations.len() as u32];
                 for operation in operations {
                     let [code, argument] = self.code(operation.code, span);
-                    words.extend([
-                        code,
-                        operation.target.into(),
-                        u32::from_le_bytes(operation.operands),
-                        argument,
-                    ]);
+                    let slots = u32::from_le_bytes(operation.operands);
+                    words.extend([code, operation.target.into(), slots, argument]);
                 }
                 self.slab.add(words)
             }
-        }
+        };
+        self.textures.insert(id, at);
+        at
     }
 
     /// The code of an operation, and its argument.
     fn code(&mut self, code: Code, span: Span) -> [u32; 2] {
         let textures = self.scene.textures();
-        let what = match code {
-            Code::Number(number) => return [CODE_NUMBER, number.to_bits()],
-            Code::Spectrum(index) => {
-                return [CODE_SPECTRUM, self.spectrum(&textures.spectra()[index as usize])];
-            }
-            Code::Squares(index) => return [CODE_SQUARES, self.mapping(index, span)],
-            Code::Cubes(index) => {
-                let matrix = textures.solid_mappings()[index as usize].texture_from_render.matrix();
-                let rows = [0, 1, 2].map(|row| matrix.row(row).to_array());
-                return [CODE_CUBES, self.slab.add_numbers(rows.into_iter().flatten())];
-            }
+        match code {
+            Code::Number(number) => [CODE_NUMBER, number.to_bits()],
+            Code::Spectrum(index) => [CODE_SPECTRUM, self.spectrum(&textures.spectra()[index as usize])],
+            Code::Squares(index) => [CODE_SQUARES, self.mapping(index)],
+            Code::Cubes(index) => [CODE_CUBES, self.solid_mapping(index)],
             Code::Facing(index) => {
                 let direction = textures.directions()[index as usize];
-                return [CODE_FACING, self.slab.add_numbers(direction.to_array())];
+                [CODE_FACING, self.slab.add_numbers(direction.to_array())]
             }
-            Code::Step(edge) => return [CODE_STEP, edge.to_bits()],
-            Code::Scale => return [CODE_SCALE, 0],
-            Code::Mix => return [CODE_MIX, 0],
-            Code::Bilerp(index) => return [CODE_BILERP, self.mapping(index, span)],
-            Code::FloatImage(_) | Code::SpectrumImage(_) => "textures of images",
-            Code::Dots(_) => "texture `dots`",
-            Code::Fbm(_) => "texture `fbm`",
-            Code::Wrinkled(_) => "texture `wrinkled`",
-            Code::Windy(_) => "texture `windy`",
-            Code::Marble(_) => "texture `marble`",
+            Code::Step(edge) => [CODE_STEP, edge.to_bits()],
+            Code::Scale => [CODE_SCALE, 0],
+            Code::Mix => [CODE_MIX, 0],
+            Code::Bilerp(index) => [CODE_BILERP, self.mapping(index)],
+            Code::FloatImage(index) => {
+                let lookup = textures.float_images()[index as usize];
+                [CODE_IMAGE, self.image_texture(&lookup, [0, 0], span)]
+            }
+            Code::SpectrumImage(index) => {
+                let image = &textures.spectrum_images()[index as usize];
+                let kind = match image.spectrum_type {
+                    SpectrumType::Albedo => 0,
+                    SpectrumType::Unbounded => 1,
+                    SpectrumType::Illuminant => 2,
+                };
+                let space = self.color_space(image.space);
+                [CODE_IMAGE, self.image_texture(&image.lookup, [space, kind], span)]
+            }
+            Code::Dots(index) => [CODE_DOTS, self.mapping(index)],
+            Code::Fbm(index) => [CODE_FBM, self.fractal(textures.fractals()[index as usize], &[])],
+            Code::Wrinkled(index) => [CODE_WRINKLED, self.fractal(textures.fractals()[index as usize], &[])],
+            Code::Windy(index) => [CODE_WINDY, self.solid_mapping(index)],
+            Code::Marble(index) => {
+                let marble = &textures.marbles()[index as usize];
+                let space = self.color_space(RgbColorSpace::srgb());
+                let more = [marble.scale.to_bits(), marble.variation.to_bits(), space];
+                [CODE_MARBLE, self.fractal(marble.fractal, &more)]
+            }
+        }
+    }
+
+    /// A lookup in an image, of a colour space and a type of spectrum; its offset.
+    fn image_texture(&mut self, lookup: &ImageLookup, space: [u32; 2], span: Span) -> u32 {
+        let pyramid = &self.scene.textures().pyramids()[lookup.pyramid as usize];
+        let pyramid = match self.pyramids.get(&lookup.pyramid) {
+            Some(&at) => at,
+            None => self.image(pyramid.levels(), pyramid.wrap(), span),
         };
-        self.refuse(what, span);
-        [CODE_NUMBER, 0]
+        self.pyramids.insert(lookup.pyramid, pyramid);
+        let mapping = self.mapping(lookup.mapping);
+        let (filter, anisotropy) = match lookup.filter {
+            TextureFilter::Point => (0, 0.0),
+            TextureFilter::Bilinear => (1, 0.0),
+            TextureFilter::Trilinear => (2, 0.0),
+            TextureFilter::Ewa { max_anisotropy } => (3, max_anisotropy),
+        };
+        let numbers = [anisotropy, lookup.scale].map(f32::to_bits);
+        let [anisotropy, scale] = numbers;
+        let [space, kind] = space;
+        self.slab.add([pyramid, mapping, filter, anisotropy, scale, lookup.invert.into(), space, kind])
+    }
+
+    /// A sum of noise; its offset.
+    fn fractal(&mut self, fractal: Fractal, more: &[u32]) -> u32 {
+        let mapping = self.solid_mapping(fractal.mapping);
+        let words = [mapping, fractal.octaves, fractal.roughness.to_bits()];
+        self.slab.add(words.into_iter().chain(more.iter().copied()))
+    }
+
+    /// A mapping to texture space; its offset.
+    fn solid_mapping(&mut self, index: u32) -> u32 {
+        let mapping = &self.scene.textures().solid_mappings()[index as usize];
+        self.slab.add_numbers(rows(&mapping.texture_from_render))
     }
 
     /// A mapping to the plane; its offset.
-    fn mapping(&mut self, index: u32, span: Span) -> u32 {
-        let columns = match &self.scene.textures().mappings()[index as usize] {
-            &Mapping2d::Uv { scale, delta } => [Vec2::new(scale.x, 0.0), Vec2::new(0.0, scale.y), delta],
-            Mapping2d::Affine { columns } => *columns,
-            Mapping2d::Spherical { .. } | Mapping2d::Cylindrical { .. } | Mapping2d::Planar { .. } => {
-                self.refuse("mappings of textures other than `uv`", span);
-                return 0;
+    fn mapping(&mut self, index: u32) -> u32 {
+        let (kind, numbers): (u32, Vec<f32>) = match &self.scene.textures().mappings()[index as usize] {
+            &Mapping2d::Uv { scale, delta } => {
+                (LINEAR, flat(&[Vec2::new(scale.x, 0.0), Vec2::new(0.0, scale.y), delta]))
+            }
+            Mapping2d::Affine { columns } => (LINEAR, flat(columns)),
+            Mapping2d::Spherical { texture_from_render } => (SPHERICAL, rows(texture_from_render)),
+            Mapping2d::Cylindrical { texture_from_render } => (CYLINDRICAL, rows(texture_from_render)),
+            Mapping2d::Planar { texture_from_render, axes, delta } => {
+                let [s, t] = axes.map(|axis| axis.to_array());
+                (PLANAR, [&rows(texture_from_render)[..], &s, &t, &delta.to_array()].concat())
             }
         };
-        self.slab.add_numbers(columns.iter().flat_map(|v| v.to_array()))
+        let at = self.slab.add([kind]);
+        self.slab.add_numbers(numbers);
+        at
     }
+}
+
+/// The upper three rows of a matrix.
+fn rows(transform: &Transform) -> Vec<f32> {
+    let matrix = transform.matrix();
+    [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect()
+}
+
+fn flat(vectors: &[Vec2]) -> Vec<f32> {
+    vectors.iter().flat_map(|v| v.to_array()).collect()
 }

@@ -4,7 +4,7 @@
 use crate::twins::{INPUTS, Law, OUTPUTS};
 use geometry::{FlatShape, ShapeSample, ShapeSampleContext};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, Vector3};
-use sampling::sampler::{Address, Independent};
+use sampling::sampler::{Address, Independent, Randomize, ZSobol};
 use sampling::warp::*;
 use sampling::{HashSequence, Sampler};
 use scattering::*;
@@ -48,6 +48,28 @@ fn flat_shape(x: &Row) -> (FlatShape, ShapeSampleContext) {
     let p = Point3Error::exact(Vec3::ZERO);
     let from = ShapeSampleContext { p, n: Vec3::ZERO, ns: Vec3::Z, time: 0.0 };
     (FlatShape { corner: wo, sides, n, is_triangle: x[8] < 0.5 }, from)
+}
+
+/// A base under a coat with a medium.
+fn layered<B>(base: B, x: &Row) -> Layered<B> {
+    Layered {
+        base,
+        interface: Dielectric { eta: 1.2 + x[11], distribution: distribution(x) },
+        thickness: 0.5 * x[8],
+        albedo: SampledSpectrum::splat(0.5 * x[9]),
+        phase: HenyeyGreenstein { g: 0.3 },
+        inner: -1.0,
+        max_depth: 6,
+        samples: 2,
+        seed: x[10].to_bits(),
+    }
+}
+
+/// A matte surface under a smooth clear coat.
+fn varnished(x: &Row) -> Layered<Diffuse> {
+    let interface = Dielectric { eta: 1.2 + x[11], distribution: TrowbridgeReitz::new(0.0, 0.0) };
+    let (base, albedo) = (Diffuse { reflectance: spectrum(x, 0.9) }, SampledSpectrum::ZERO);
+    Layered { interface, albedo, inner: 0.6, ..layered(base, x) }
 }
 
 /// All numbers of a sample, if there is one.
@@ -116,7 +138,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 37] = [
+pub const LAWS: [Law; 43] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -245,6 +267,28 @@ pub const LAWS: [Law; 37] = [
         let a = Independent_at_2d(sampler_, address);
         Address_skip(&address, 2);
         y[0] = a.x; y[1] = a.y; y[2] = Independent_at_1d(sampler_, address);"),
+    law!("ZSobol" 0.0 0.0,
+        x => {
+            // Codes of one word and of two, with a binary digit and without.
+            let (samples, side, randomize) = [
+                (1, 1 << 5, Randomize::None),
+                (8, 1 << 14, Randomize::PermuteDigits),
+                (64, 1 << 4, Randomize::FastOwen),
+                (4096, 1 << 20, Randomize::Owen),
+            ][(4.0 * x[10]) as usize % 4];
+            let sampler = Sampler::ZSobol(ZSobol::new(samples, [side, 1], randomize, 7));
+            let pixel = [(x[6] * 1000.0) as u32, (x[7] * 1000.0) as u32];
+            let address = Address { pixel, index: (x[8] * 5000.0) as u32, dimension: (x[9] * 99.0) as u32 };
+            let [u, v] = sampler.at_2d::<f32>(&address);
+            vec![u, v, sampler.at_1d::<f32>(&address)]
+        },
+        "let kind = u32(4.0 * x[10]) % 4;
+        var samples = array(0u, 3u, 6u, 12u);
+        var sides = array(5u, 14u, 4u, 20u);
+        let address = Address(array(u32(x[6] * 1000.0), u32(x[7] * 1000.0)), u32(x[8] * 5000.0), u32(x[9] * 99.0));
+        let sampler_ = ZSobol(samples[kind], sides[kind], kind, mix_word(7), address);
+        let a = ZSobol_at_2d(sampler_, address);
+        y[0] = a.x; y[1] = a.y; y[2] = ZSobol_at_1d(sampler_, address);"),
     law!("Ray" 1e-6 0.0,
         x => {
             let p = Point3Error::new(Vec3::new(x[6], x[7], x[8]), Vec3::new(x[9], x[10], x[11]) * 1e-4);
@@ -330,4 +374,27 @@ pub const LAWS: [Law; 37] = [
         sampled!("Dielectric", "Dielectric(0.5 + 2.0 * x[11], TrowbridgeReitz_new(0.0, 0.0))")),
     law!("ThinDielectric" 1e-5 1e-4, x => sampled(&ThinDielectric { eta: 0.5 + 2.0 * x[11] }, x),
         sampled!("ThinDielectric", "ThinDielectric(0.5 + 2.0 * x[11])")),
+    law!("Layered, closed form" 1e-4 1e-4, x => value(&varnished(x), x),
+        value!("Layered_Diffuse", "Layered_Diffuse(Diffuse(vec4f(x[6], x[7], x[8], x[9]) * 0.9),
+            Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.0, 0.0)), 0.5 * x[8], vec4f(),
+            HenyeyGreenstein(0.3), 0.6, 6, 2, bitcast<u32>(x[10]))")),
+    law!("Layered, closed form, sampled" 1e-4 1e-4, x => sampled(&varnished(x), x),
+        sampled!("Layered_Diffuse", "Layered_Diffuse(Diffuse(vec4f(x[6], x[7], x[8], x[9]) * 0.9),
+            Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.0, 0.0)), 0.5 * x[8], vec4f(),
+            HenyeyGreenstein(0.3), 0.6, 6, 2, bitcast<u32>(x[10]))")),
+    law!("Layered over Diffuse" 1e-3 1e-2,
+        x => value(&layered(Diffuse { reflectance: spectrum(x, 0.9) }, x), x),
+        value!("Layered_Diffuse", "Layered_Diffuse(Diffuse(vec4f(x[6], x[7], x[8], x[9]) * 0.9),
+            Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10])), 0.5 * x[8], vec4f(0.5 * x[9]),
+            HenyeyGreenstein(0.3), -1.0, 6, 2, bitcast<u32>(x[10]))")),
+    law!("Layered over Conductor" 1e-3 1e-2, x => value(&layered(conductor(x), x), x),
+        value!("Layered_Conductor", "Layered_Conductor(Conductor(TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]),
+            vec4f(x[6], x[7], x[8], x[9]) * 3.0, vec4f(x[6], x[7], x[8], x[9]) * 5.0),
+            Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10])), 0.5 * x[8], vec4f(0.5 * x[9]),
+            HenyeyGreenstein(0.3), -1.0, 6, 2, bitcast<u32>(x[10]))")),
+    law!("Layered over Conductor, sampled" 1e-3 1e-2, x => sampled(&layered(conductor(x), x), x),
+        sampled!("Layered_Conductor", "Layered_Conductor(Conductor(TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10]),
+            vec4f(x[6], x[7], x[8], x[9]) * 3.0, vec4f(x[6], x[7], x[8], x[9]) * 5.0),
+            Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.02 + x[9], 0.02 + x[10])), 0.5 * x[8], vec4f(0.5 * x[9]),
+            HenyeyGreenstein(0.3), -1.0, 6, 2, bitcast<u32>(x[10]))")),
 ];

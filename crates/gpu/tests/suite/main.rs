@@ -6,6 +6,7 @@
 mod faults;
 mod laws;
 mod pictures;
+mod textures;
 mod trace;
 mod twins;
 mod validation;

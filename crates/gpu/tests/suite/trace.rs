@@ -11,6 +11,7 @@ use testkit::Random;
 /// A kernel that traces rays, of eight numbers each, to hits of eight words. The declarations are
 /// those that `trace.wgsl` needs.
 pub const KERNEL: &str = "
+    fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
@@ -32,7 +33,7 @@ pub const KERNEL: &str = "
 type Traced = (Option<Hit>, bool);
 
 fn on_gpu(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
-    let bvh = Bvh::new(world).expect("a world of triangles");
+    let bvh = Bvh::new(world, &|_| false).expect("a world of triangles");
     let kernel = device.kernel("trace", &format!("{}{KERNEL}", shaders::TRACE))?;
     let numbers = |(ray, end): &(Ray, f32)| [ray.o.x, ray.o.y, ray.o.z, *end, ray.d.x, ray.d.y, ray.d.z, 0.0];
     let buffers = [
@@ -250,5 +251,5 @@ fn what_kernels_do_not_intersect_is_refused() {
     let mut builder = World::builder();
     let cone = Shape::from(Cone::new(&Transform::IDENTITY, false, 1.0, 1.0, 360.0));
     let id = builder.add_geometry(GroupId::TOP, cone);
-    assert_eq!(Bvh::new(&builder.build()).err(), Some(BvhError::Shape(id)));
+    assert_eq!(Bvh::new(&builder.build(), &|_| false).err(), Some(BvhError::Shape(id)));
 }

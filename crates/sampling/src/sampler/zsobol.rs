@@ -44,6 +44,12 @@ impl ZSobol {
         }
     }
 
+    /// The binary logarithm of the number of samples, the base-4 digits of a pixel's Morton code,
+    /// the randomisation, and the hash of the seed.
+    pub fn parts(&self) -> (u32, u32, Randomize, u32) {
+        (self.log2_samples, self.log2_side, self.randomize, self.key)
+    }
+
     pub(super) fn samples_per_pixel(&self) -> u32 {
         1 << self.log2_samples
     }

@@ -54,6 +54,26 @@ impl Body<'_, '_> {
         let ty = receiver.ty().ok_or_else(|| format!("the receiver of {name}"))?;
         match (name, &ty, arguments.len()) {
             ("into_iter" | "iter" | "copied" | "to_owned" | "clone", _, 1) => Ok(receiver),
+            ("len", ..) => match self.translator.inside(&ty).unwrap_or(ty) {
+                Type::Array(_, count) => Ok(Value::Plain(count.to_string(), Type::Literal)),
+                ty => Err(format!("the length of {ty:?}")),
+            },
+            ("iter_mut", ..) => {
+                let (text, ty) = self.materialized(receiver)?;
+                Ok(Value::Place(text, ty))
+            }
+            ("enumerate", ..) => {
+                let parts = self.elements(receiver)?.into_iter().enumerate();
+                let numbered = |(i, part): (usize, _)| {
+                    Value::Tuple(vec![Value::Plain(i.to_string(), Type::Literal), part])
+                };
+                Ok(Value::Array(parts.map(numbered).collect()))
+            }
+            ("zip", Type::Array(..), 2) => {
+                let others = self.elements(arguments.remove(1))?;
+                let pairs = self.elements(receiver)?.into_iter().zip(others);
+                Ok(Value::Array(pairs.map(|(a, b)| Value::Tuple(vec![a, b])).collect()))
+            }
             ("each" | "map", Type::Array(..), 2) => {
                 let function = arguments.remove(1);
                 let parts = self.elements(receiver)?;

@@ -188,7 +188,7 @@ impl Body<'_, '_> {
             let (name, ty) = self.translator.constant(index)?;
             return Ok(Value::Plain(name, ty));
         }
-        if let Some(constant) = intrinsics::standard_constant(&last) {
+        if let Some(constant) = intrinsics::standard_constant(owner.as_ref(), &last) {
             return Ok(constant);
         }
         Ok(Value::Function(path.clone()))
@@ -251,6 +251,10 @@ impl Body<'_, '_> {
         if let Some(inside) = self.translator.inside(&ty) {
             return Ok(Value::Plain(text, inside));
         }
+        if let (Type::Tuple(types), Ok(index)) = (&ty, name.parse::<usize>()) {
+            let ty = types.get(index).cloned().ok_or("a field of a tuple")?;
+            return Ok(Value::Plain(format!("{text}.v{index}"), ty));
+        }
         let fields = self.translator.fields(&ty).ok_or_else(|| format!("the fields of {ty:?}"))?;
         let (_, field) = fields.into_iter().find(|(known, _)| *known == name).ok_or("a field")?;
         Ok(Value::Plain(format!("{text}.{}", names::member(&name)), field))
@@ -303,12 +307,14 @@ impl Body<'_, '_> {
             (Type::Named(name, _), Some(owner)) if owner.name() == Some(name) => owner.clone(),
             _ => ty,
         };
-        let fields = self.translator.fields(&ty).ok_or_else(|| format!("the struct {ty:?}"))?;
         let mut values = Vec::new();
         for field in &literal.fields {
             let value = self.expression(&field.expr)?;
-            values.push((field.member.to_token_stream().to_string(), self.materialized(value)?.0));
+            let (text, ty) = self.materialized(value)?;
+            values.push((field.member.to_token_stream().to_string(), text, ty));
         }
+        let ty = self.translator.inferred(ty, &values);
+        let fields = self.translator.fields(&ty).ok_or_else(|| format!("the struct {ty:?}"))?;
         let rest = match &literal.rest {
             Some(rest) => {
                 let value = self.expression(rest)?;
@@ -318,8 +324,8 @@ impl Body<'_, '_> {
         };
         let mut texts = Vec::new();
         for (name, _) in &fields {
-            texts.push(match (values.iter().find(|(known, _)| known == name), &rest) {
-                (Some((_, text)), _) => bare(text).to_owned(),
+            texts.push(match (values.iter().find(|(known, ..)| known == name), &rest) {
+                (Some((_, text, _)), _) => bare(text).to_owned(),
                 (None, Some(Value::Plain(rest, _) | Value::Place(rest, _))) => {
                     format!("{rest}.{}", names::member(name))
                 }

@@ -32,6 +32,10 @@ pub fn operation(owner: &Type, name: &str, arguments: &[String]) -> Option<Value
     match owner {
         Type::Real => real(name, arguments),
         Type::Uint => uint(name, arguments),
+        Type::Sint => match (name, arguments) {
+            ("unsigned_abs", [x]) => plain(format!("u32(abs({x}))"), &Type::Uint),
+            _ => None,
+        },
         Type::Bool => match (name, arguments) {
             ("splat" | "any" | "all", [a]) => Some(Value::bool(a.clone())),
             _ => None,
@@ -86,6 +90,8 @@ fn uint(name: &str, arguments: &[String]) -> Option<Value> {
     let text = match (name, arguments) {
         ("splat", [x]) if names::is_number(x) && !x.ends_with('u') => format!("{x}u"),
         ("splat", [x]) => call("u32", &[x]),
+        ("min", [a, b]) => call("min", &[a, b]),
+        ("div_ceil", [a, b]) => format!("({a} / {b} + u32({a} % {b} != 0))"),
         ("wrapping_add", [a, b]) => format!("({a} + {b})"),
         ("wrapping_sub", [a, b]) => format!("({a} - {b})"),
         ("wrapping_mul", [a, b]) => format!("({a} * {b})"),
@@ -97,9 +103,12 @@ fn uint(name: &str, arguments: &[String]) -> Option<Value> {
     Some(Value::Plain(text, Type::Uint))
 }
 
-/// A constant of `std`.
-pub fn standard_constant(name: &str) -> Option<Value> {
+/// A constant of `std`, or of one of its types.
+pub fn standard_constant(owner: Option<&Type>, name: &str) -> Option<Value> {
     use std::f32::consts as c;
+    if let (Some(Type::Sint), "MAX") = (owner, name) {
+        return Some(Value::Plain(format!("{}i", i32::MAX), Type::Sint));
+    }
     let number = match name {
         "PI" => c::PI,
         "TAU" => c::TAU,

@@ -60,8 +60,14 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/spectrum/src/rgb_spectrum.rs", &["RgbAlbedoSpectrum::at", "RgbUnboundedSpectrum::at"]),
     ("crates/sampling/src/hash.rs", &[]),
     ("crates/sampling/src/hash_sequence.rs", &["HashSequence::get_1d", "HashSequence::get_2d"]),
-    ("crates/sampling/src/sampler/address.rs", &["Address::skip"]),
+    ("crates/sampling/src/sampler/address.rs", &["Address::skip", "interleaved"]),
     ("crates/sampling/src/sampler/independent.rs", &["Independent::at_1d", "Independent::at_2d"]),
+    ("crates/sampling/src/sampler/randomize.rs", &[]),
+    ("crates/sampling/src/low_discrepancy/sobol.rs", &[]),
+    (
+        "crates/sampling/src/sampler/zsobol.rs",
+        &["ZSobol::at_1d", "ZSobol::at_2d", "permuted", "hash_above"],
+    ),
     ("crates/sampling/src/warp/disk.rs", &["sample_uniform_disk_polar", "sample_uniform_disk_concentric"]),
     ("crates/sampling/src/warp/interval.rs", &["sample_linear", "linear_pdf", "sample_tent"]),
     (
@@ -127,6 +133,21 @@ const SOURCES: &[(&str, &[&str])] = &[
         &["Dielectric::f", "Dielectric::sample_f", "Dielectric::pdf"],
     ),
     ("crates/scattering/src/bxdf/thin_dielectric.rs", &["ThinDielectric::sample_f"]),
+    ("crates/scattering/src/bxdf/layered/closed.rs", &[]),
+    ("crates/scattering/src/bxdf/layered/walk.rs", &[]),
+    (
+        "crates/scattering/src/bxdf/layered/mod.rs",
+        &[
+            "Layered<Diffuse>::flags",
+            "Layered<Diffuse>::f",
+            "Layered<Diffuse>::sample_f",
+            "Layered<Diffuse>::pdf",
+            "Layered<Conductor>::flags",
+            "Layered<Conductor>::f",
+            "Layered<Conductor>::sample_f",
+            "Layered<Conductor>::pdf",
+        ],
+    ),
     ("crates/geometry/src/shape/sample.rs", &["ShapeSampleContext::spawn_ray"]),
     ("crates/geometry/src/flat_shape.rs", &["FlatShape::sample_from", "FlatShape::pdf_from"]),
     ("crates/scene/src/light_sampler/cluster.rs", &["Cluster::importance"]),
@@ -138,12 +159,17 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/scene/src/texture/mapping.rs", &[]),
     ("crates/scene/src/texture/checkerboard.rs", &["squares", "cubes"]),
     ("crates/scene/src/texture/bilerp.rs", &["weights"]),
+    ("crates/scene/src/texture/noise.rs", &[]),
+    ("crates/scene/src/texture/dots.rs", &["coverage"]),
+    ("crates/scene/src/texture/fractal.rs", &["fbm", "turbulence", "windy"]),
+    ("crates/scene/src/texture/marble.rs", &["Marble::place"]),
     ("crates/integrators/src/transport/direct.rs", &["power_heuristic"]),
 ];
 
 /// Functions that the prelude of the shaders has. Drivers simplify sums as if they were exact, so
-/// that rounding by adding and subtracting a large number is lost.
-const BY_HAND: [&str; 2] = ["circular_reduce", "function_round"];
+/// that rounding by adding and subtracting a large number is lost; tables are packed; loops are
+/// others in vectors.
+const BY_HAND: [&str; 4] = ["circular_reduce", "function_round", "noise_permuted", "ZSobol_point"];
 
 /// Where the translations are.
 pub const FOLDER: &str = "crates/gpu/shaders/law";

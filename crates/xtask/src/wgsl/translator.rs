@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::library::{Function, Library};
 use super::names;
-use super::types::{Type, TypeNames};
+use super::types::{self, Type, TypeNames};
 
 /// What has a body that is to be translated, by its index in the library.
 pub enum Request {
@@ -33,8 +33,9 @@ impl<'a> Translator<'a> {
     pub fn root(&mut self, source: usize, root: &str) -> Result<(), String> {
         let missing = || format!("there is no {root} in {}", self.library.stems[source]);
         if let Some((owner, method)) = root.split_once("::") {
-            let index = self.library.method(owner, method).ok_or_else(missing)?;
-            self.function(index, Some(Type::named(owner)));
+            let owner = syn::parse_str(owner).ok().and_then(|path| TypeNames::default().path(&path));
+            let index = owner.as_ref().and_then(|owner| self.library.method(owner.name()?, method));
+            self.function(index.ok_or_else(missing)?, owner);
         } else {
             let index = self.library.function(source, root).ok_or_else(missing)?;
             self.function(index, None);
@@ -114,6 +115,23 @@ impl<'a> Translator<'a> {
             names.parameters = structure.parameters.iter().cloned().zip(arguments.iter().cloned()).collect();
         }
         names
+    }
+
+    /// A struct with the type arguments that the values of its fields have, where none are written.
+    pub fn inferred(&self, ty: Type, values: &[(String, String, Type)]) -> Type {
+        let Type::Named(name, arguments) = &ty else { return ty };
+        let Some(structure) = self.library.structures.get(name) else { return ty };
+        if arguments.len() == structure.parameters.len() {
+            return ty;
+        }
+        let find = |parameter: &String| {
+            values.iter().find_map(|(field, _, value)| {
+                let (_, declared) = structure.fields.iter().find(|(known, _)| known == field)?;
+                types::argument(declared, value, parameter)
+            })
+        };
+        let found: Option<Vec<Type>> = structure.parameters.iter().map(find).collect();
+        found.map_or(ty.clone(), |arguments| Type::Named(name.clone(), arguments))
     }
 
     /// The types of a struct's fields.

@@ -116,3 +116,27 @@ impl TypeNames {
         })
     }
 }
+
+/// What a type parameter stands for, given a type that has it in its declaration and the type that
+/// this has in a value.
+pub fn argument(declared: &syn::Type, value: &Type, parameter: &str) -> Option<Type> {
+    match declared {
+        syn::Type::Reference(reference) => argument(&reference.elem, value, parameter),
+        syn::Type::Path(path) if path.path.is_ident(parameter) => Some(value.clone()),
+        syn::Type::Path(path) => {
+            let (Type::Named(_, arguments), PathArguments::AngleBracketed(list)) =
+                (value, &path.path.segments.last()?.arguments)
+            else {
+                return None;
+            };
+            // Numbers with lanes are no arguments of values.
+            let is_number = |ty: &syn::Type| matches!(ty, syn::Type::Path(p) if p.path.is_ident("R"));
+            let types = list.args.iter().filter_map(|argument| match argument {
+                GenericArgument::Type(ty) if !is_number(ty) => Some(ty),
+                _ => None,
+            });
+            types.zip(arguments).find_map(|(ty, value)| argument(ty, value, parameter))
+        }
+        _ => None,
+    }
+}

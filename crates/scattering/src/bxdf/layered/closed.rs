@@ -35,10 +35,10 @@ pub fn inner_reflectance(eta: f32, thickness: f32) -> f32 {
 impl<R: Real, B: CoatedBase<R>> Layered<B, R> {
     /// The albedo of the base, and where there is a closed form.
     #[inline(always)]
-    pub(super) fn closed_form(&self) -> Option<(SampledSpectrum<R>, R::Mask)> {
-        let albedo = self.base.even_albedo()?;
-        let closed = self.interface.flags().is_specular() & !self.has_medium();
-        Some((albedo, closed & self.inner.ge(R::zero())))
+    pub(super) fn closed_form(&self) -> (SampledSpectrum<R>, R::Mask) {
+        let (albedo, is_even) = self.base.even_albedo();
+        let is_clear = self.interface.flags().is_specular() & !self.has_medium();
+        (albedo, is_even & is_clear & self.inner.ge(R::zero()))
     }
 
     /// The share of light that goes through the coat along `w`, which is above it.

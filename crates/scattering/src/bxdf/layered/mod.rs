@@ -64,8 +64,8 @@ pub struct Layered<B, R: Real = f32> {
 
 /// What lies below a coat.
 pub trait CoatedBase<R: Real>: Scatter<R> + Copy {
-    /// The albedo of a base that scatters light evenly, whatever its direction. `None` for others.
-    fn even_albedo(&self) -> Option<SampledSpectrum<R>>;
+    /// The albedo of a base that scatters light evenly, whatever its direction, and where it does.
+    fn even_albedo(&self) -> (SampledSpectrum<R>, R::Mask);
 
     /// The density outside of the coat of light from `wo` that is refracted inwards, reflected by
     /// the base once and refracted outwards, given that it enters. Both directions are above.
@@ -74,8 +74,8 @@ pub trait CoatedBase<R: Real>: Scatter<R> + Copy {
 
 impl<R: Real> CoatedBase<R> for Diffuse<R> {
     #[inline(always)]
-    fn even_albedo(&self) -> Option<SampledSpectrum<R>> {
-        Some(self.reflectance)
+    fn even_albedo(&self) -> (SampledSpectrum<R>, R::Mask) {
+        (self.reflectance, R::Mask::splat(true))
     }
 
     /// Uniform radiance below the coat leaves it as T(cos θ), by the reciprocity of T.
@@ -88,8 +88,8 @@ impl<R: Real> CoatedBase<R> for Diffuse<R> {
 
 impl<R: Real> CoatedBase<R> for Conductor<R> {
     #[inline(always)]
-    fn even_albedo(&self) -> Option<SampledSpectrum<R>> {
-        None
+    fn even_albedo(&self) -> (SampledSpectrum<R>, R::Mask) {
+        (SampledSpectrum::zero(), R::Mask::splat(false))
     }
 
     /// A reflection off microfacets of slope s turns light by 2s, a refraction by (1 − 1/η)s.
@@ -204,11 +204,11 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Value<'_, B, R> {
             return SampledSpectrum::zero();
         }
         let mut f = SampledSpectrum::zero();
-        let mut estimated = valid;
-        if let Some((albedo, closed)) = layers.closed_form() {
+        let (albedo, closed) = layers.closed_form();
+        if closed.any() {
             f = layers.f_closed(albedo, wo, wi);
-            estimated = estimated & !closed;
         }
+        let estimated = valid & !closed;
         if estimated.any() {
             let mut sum = SampledSpectrum::zero();
             for index in 0..layers.samples {
@@ -236,9 +236,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Sample<'_, B, R> {
     #[inline(always)]
     fn run(self) -> BsdfSample<R> {
         let Self { layers, wo, uc, u, mode } = self;
-        let Some((albedo, closed)) = layers.closed_form() else {
-            return R::call(SampleWalk { layers, wo, uc, u, mode });
-        };
+        let (albedo, closed) = layers.closed_form();
         if !closed.any() {
             return R::call(SampleWalk { layers, wo, uc, u, mode });
         }
@@ -278,7 +276,8 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Density<'_, B, R> {
         let even = R::splat(0.1) + R::splat(0.9) * in_medium;
         let through = layers.base.pdf_through(interface, wo, wi);
         let mut pdf = reflected + entering * lerp(even, through, cosine_hemisphere_pdf(wi.z));
-        if let Some((_, closed)) = layers.closed_form() {
+        let (_, closed) = layers.closed_form();
+        if closed.any() {
             pdf = R::select(closed, layers.pdf_closed(wo, wi), pdf);
         }
         R::select(valid, pdf, R::zero())

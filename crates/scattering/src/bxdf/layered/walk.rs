@@ -70,20 +70,19 @@ impl<R: Real> Walk<R> {
         self.alive = self.alive & (!plays | survives);
     }
 
-    /// Goes on to the next event.
+    /// Goes on to the next event, in a coat of this thickness, with a medium where it has one.
     #[inline(always)]
-    fn go_on<B: CoatedBase<R>>(&mut self, layers: &Layered<B, R>, u: R) -> Event<R> {
+    fn go_on(&mut self, thickness: R, has_medium: R::Mask, u: R) -> Event<R> {
         let down = self.w.z.lt(R::zero());
-        let mut height = R::select(down, R::zero(), layers.thickness);
-        let has_medium = layers.has_medium();
+        let mut height = R::select(down, R::zero(), thickness);
         let mut in_medium = R::Mask::splat(false);
         if has_medium.any() {
             let z = self.z - ln(R::one() - u) * self.w.z;
-            in_medium = self.alive & has_medium & z.gt(R::zero()) & z.lt(layers.thickness);
+            in_medium = self.alive & has_medium & z.gt(R::zero()) & z.lt(thickness);
             height = R::select(in_medium, z, height);
         }
         if !has_medium.all() {
-            let transmitted = self.beta * transmittance(layers.thickness, self.w);
+            let transmitted = self.beta * transmittance(thickness, self.w);
             self.beta = SampledSpectrum::select(has_medium, self.beta, transmitted);
         }
         self.z = height;
@@ -190,7 +189,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Estimate<'_, B, R> {
             if !walk.alive.any() {
                 break;
             }
-            let event = walk.go_on(layers, flight);
+            let event = walk.go_on(thickness, layers.has_medium(), flight);
             let wo = -walk.w;
             let (mut pdf, mut has_density) = (R::one(), R::Mask::splat(true));
             if event.in_medium.any() {
@@ -280,7 +279,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for SampleWalk<'_, B, R> {
             if !walk.alive.any() {
                 break;
             }
-            let event = walk.go_on(layers, flight);
+            let event = walk.go_on(thickness, layers.has_medium(), flight);
             let wo = -walk.w;
             if event.in_medium.any() {
                 walk.scatter_in_medium(event.in_medium, &phase, albedo, u);

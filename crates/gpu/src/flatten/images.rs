@@ -1,0 +1,97 @@
+//! Pyramids of images.
+//!
+//! | words | what |
+//! |---|---|
+//! | 0 | the number of levels |
+//! | 1 | how values are stored: 0 bytes, 1 half floats, 2 floats |
+//! | 2 | values a pixel |
+//! | 3–5 | which of them are red, green and blue |
+//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude |
+//! | 7 | of bytes, the offset of the 256 numbers that they stand for |
+//! | 8… | for each level where it begins in the buffer of texels, its width and its height |
+//!
+//! Texels are stored as in the image, as many values a word as it holds, the first one lowest.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use description::Span;
+use image::{ColorEncoding, Image, Pixels, WrapMode};
+
+use super::Flattener;
+
+const BYTES: u32 = 0;
+const HALVES: u32 = 1;
+const FLOATS: u32 = 2;
+
+const REPEAT: u32 = 0;
+const BLACK: u32 = 1;
+const CLAMP: u32 = 2;
+const SPHERE: u32 = 3;
+const LATITUDE_LONGITUDE: u32 = 4;
+
+/// The buffer of texels, and where each image begins in it, by its address.
+#[derive(Default)]
+pub struct Texels {
+    pub words: Vec<u32>,
+    images: HashMap<usize, u32>,
+}
+
+impl Flattener<'_> {
+    /// The levels of an image, the largest first, which a thing at `span` has; their offset.
+    pub fn image(&mut self, levels: &[Arc<Image>], wrap: WrapMode, span: Span) -> u32 {
+        let image = &levels[0];
+        let [red, green, blue] = image.color_channels();
+        // The codes of opacity are linear.
+        let is_opacity = image.alpha_index() == Some(red);
+        let (format, decoded) = match image.pixels() {
+            Pixels::U8(_, encoding) => {
+                let encoding = if is_opacity { ColorEncoding::Linear } else { *encoding };
+                (BYTES, self.slab.add_numbers(encoding.table()))
+            }
+            Pixels::F16(_) => (HALVES, 0),
+            Pixels::F32(_) => (FLOATS, 0),
+        };
+        let wrap = match wrap {
+            WrapMode::Repeat => REPEAT,
+            WrapMode::Black => BLACK,
+            WrapMode::Clamp => CLAMP,
+            WrapMode::OctahedralSphere => SPHERE,
+            WrapMode::LatitudeLongitude => LATITUDE_LONGITUDE,
+        };
+        let channels = [image.channel_count(), red, green, blue].map(|n| n as u32);
+        let mut words = vec![levels.len() as u32, format];
+        words.extend(channels.into_iter().chain([wrap, decoded]));
+        for level in levels {
+            words.extend([self.texels(level, span), level.width(), level.height()]);
+        }
+        self.slab.add(words)
+    }
+
+    /// Where an image begins in the buffer of texels.
+    fn texels(&mut self, image: &Arc<Image>, span: Span) -> u32 {
+        let address = Arc::as_ptr(image) as usize;
+        if let Some(&at) = self.texels.images.get(&address) {
+            return at;
+        }
+        if self.texels.words.len() * 4 + image.byte_size() > self.largest_buffer {
+            let megabytes = self.largest_buffer >> 20;
+            self.refuse(format!("images of more than {megabytes} MiB together"), span);
+            return 0;
+        }
+        let at = self.texels.words.len() as u32;
+        match image.pixels() {
+            Pixels::U8(codes, _) => {
+                let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
+                self.texels.words.extend(codes.chunks(4).map(word));
+            }
+            Pixels::F16(halves) => {
+                let bits = |half: Option<&half::f16>| half.map_or(0, |half| u32::from(half.to_bits()));
+                self.texels.words.extend(halves.chunks(2).map(|pair| bits(pair.first()) | bits(pair.get(1)) << 16));
+            }
+            Pixels::F32(floats) => self.texels.words.extend(floats.iter().map(|x| x.to_bits())),
+        }
+        self.texels.images.insert(address, at);
+        at
+    }
+}

@@ -1,0 +1,39 @@
+//! Sources of random numbers: the kind and the hash of the seed; of `zsobol` then the binary
+//! logarithm of the number of samples, the digits of a pixel's code, and the randomisation.
+
+use description::Span;
+use sampling::Sampler;
+use sampling::sampler::Randomize;
+
+use super::Flattener;
+
+const INDEPENDENT: u32 = 0;
+const ZSOBOL: u32 = 1;
+
+impl Flattener<'_> {
+    /// A sampler; its offset.
+    pub fn sampler(&mut self, sampler: &Sampler) -> u32 {
+        let name = match sampler {
+            Sampler::Independent(sampler) => return self.slab.add([INDEPENDENT, sampler.key()]),
+            Sampler::ZSobol(sampler) => {
+                let (samples, side, randomize, key) = sampler.parts();
+                // In the order of the enum, as its translation has them.
+                let randomize = match randomize {
+                    Randomize::None => 0,
+                    Randomize::PermuteDigits => 1,
+                    Randomize::FastOwen => 2,
+                    Randomize::Owen => 3,
+                };
+                return self.slab.add([ZSOBOL, key, samples, side, randomize]);
+            }
+            Sampler::Stratified(_) => "stratified",
+            Sampler::Halton(_) => "halton",
+            Sampler::PaddedSobol(_) => "paddedsobol",
+            Sampler::Sobol(_) => "sobol",
+            Sampler::Pmj02Bn(_) => "pmj02bn",
+            Sampler::PrimarySample(_) => "of mutations",
+        };
+        self.refuse(format!("sampler `{name}`"), Span::NONE);
+        0
+    }
+}
