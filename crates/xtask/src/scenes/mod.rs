@@ -1,6 +1,8 @@
 //! Scenes that are too large to be checked in, made of formulas and seeds alone: the same files
 //! everywhere.
 
+mod cage;
+mod car;
 mod forest;
 mod mesh;
 mod noise;
@@ -12,7 +14,7 @@ use std::path::Path;
 /// Writes the files of a scene into a folder.
 type Make = fn(&Path) -> io::Result<()>;
 
-const SCENES: [(&str, Make); 1] = [("forest", forest::make)];
+const SCENES: [(&str, Make); 2] = [("car", |folder| car::make(folder, 5)), ("forest", forest::make)];
 
 /// Makes the scenes of these names, or all, in `target/scenes`.
 pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {

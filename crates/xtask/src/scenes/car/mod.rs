@@ -1,0 +1,154 @@
+//! A coupé in a studio and on a street.
+
+mod body;
+mod fittings;
+mod interior;
+mod paint;
+mod panels;
+mod places;
+mod wheel;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use math::Vec3;
+
+use super::mesh::Mesh;
+use body::{AXLES, PANELS, Panel};
+use panels::{Edge, Surface};
+
+/// The files of the car while they are made.
+struct Car<'a> {
+    folder: &'a Path,
+    /// The statements.
+    text: String,
+    /// Triangles of the files.
+    triangles: usize,
+}
+
+impl Car<'_> {
+    fn part(&mut self, name: &str, material: &str, mesh: &Mesh) -> io::Result<()> {
+        mesh.write(&self.folder.join(format!("{name}.ply")))?;
+        self.triangles += mesh.triangles.len();
+        let _ = writeln!(
+            self.text,
+            "NamedMaterial \"{material}\" Shape \"plymesh\" \"string filename\" \"{name}.ply\""
+        );
+        Ok(())
+    }
+}
+
+/// Makes the scenes, with a car that is subdivided in `steps` steps; one less has a fourth of the
+/// triangles.
+pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
+    let surface = Surface::new(body::cage().subdivided(steps));
+    let sides = 6 << steps;
+    let fine = steps.saturating_sub(1);
+    let mut car = Car { folder, text: String::new(), triangles: 0 };
+    panels(&mut car, &surface)?;
+
+    car.part("board", "leather", &interior::board(fine))?;
+    car.part("seats", "seat leather", &interior::seats(fine))?;
+    car.part("steering", "leather", &interior::steering(sides / 4))?;
+    car.part("mirrors", "paint", &fittings::mirrors(fine))?;
+    car.part("mirror-glass", "chrome", &fittings::mirror_glass(fine))?;
+    car.part("handles", "chrome", &fittings::handles(&surface, fine))?;
+    car.part("grille-slats", "chrome", &fittings::grille(&surface))?;
+    car.part("exhausts", "chrome", &fittings::exhausts(sides / 2))?;
+    car.part("wipers", "plastic", &fittings::wipers(&surface))?;
+    car.part("badges", "chrome", &fittings::badges(&surface, sides / 2))?;
+    car.text += "AttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 9 9.4 10 ]\n  ";
+    car.part("daylight", "plastic", &fittings::daylight(&surface))?;
+    car.text += "AttributeEnd\nAttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 2.4 0.06 0.03 ]\n  ";
+    car.part("taillight", "plastic", &fittings::taillight(&surface))?;
+    car.text += "AttributeEnd\n";
+
+    objects(&mut car, sides, fine)?;
+    place_lamps(&mut car.text, &fittings::projectors(&surface));
+    place_wheels(&mut car.text);
+    fs::write(folder.join("flakes.pfm"), paint::flakes(512))?;
+    fs::write(folder.join("car.pbrt"), format!("{}{}", paint::MATERIALS, car.text))?;
+    places::write(folder)?;
+    println!("{} triangles in files", car.triangles);
+    Ok(())
+}
+
+/// The outside, and a dark lining under all that is not transparent.
+fn panels(car: &mut Car, surface: &Surface) -> io::Result<()> {
+    let sheet = Edge { gap: 0.0018, bend: 0.0022, flange: 0.014, depth: 0.0 };
+    let pane = Edge { gap: 0.0012, bend: 0.0015, flange: 0.006, depth: 0.002 };
+    for panel in PANELS {
+        let (end, material) = match panel {
+            Panel::Windscreen | Panel::DoorGlass | Panel::QuarterGlass | Panel::RearScreen => (pane, "glass"),
+            Panel::Headlamp => (pane, "glass"),
+            Panel::TailLamp => (pane, "red glass"),
+            Panel::Cowl | Panel::Splitter | Panel::Diffuser | Panel::Sill => (sheet, "plastic"),
+            Panel::Grille | Panel::Intake => (Edge { depth: 0.05, ..sheet }, "mesh"),
+            _ => (sheet, "paint"),
+        };
+        let name = format!("{panel:?}").to_lowercase();
+        car.part(&name, material, &surface.panel(|other| other == panel, end))?;
+    }
+    let is_lamp = |panel| matches!(panel, Panel::Headlamp | Panel::TailLamp);
+    let is_lined = |panel| {
+        !matches!(
+            panel,
+            Panel::Windscreen | Panel::DoorGlass | Panel::QuarterGlass | Panel::RearScreen | Panel::Grille
+        ) && !is_lamp(panel)
+    };
+    car.part("lining", "lining", &surface.sheet(is_lined, 0.022))?;
+    car.part("headlamp-bowl", "bowl", &surface.panel(|p| p == Panel::Headlamp, Edge { gap: 0.004, bend: 0.0, flange: 0.05, depth: 0.07 }))?;
+    car.part("taillamp-bowl", "bowl", &surface.sheet(|p| p == Panel::TailLamp, 0.03))
+}
+
+/// Parts that are there more than once.
+fn objects(car: &mut Car, sides: u32, fine: u32) -> io::Result<()> {
+    car.text += "ObjectBegin \"wheel\"\n";
+    car.part("tyre", "rubber", &wheel::tyre(8 * sides, sides))?;
+    car.part("rim", "alloy", &wheel::rim(sides * 2, fine))?;
+    car.part("disc", "steel", &wheel::disc(sides * 2))?;
+    car.text += "ObjectEnd\nObjectBegin \"caliper\"\n";
+    car.part("caliper", "caliper", &wheel::caliper(fine))?;
+    car.text += "ObjectEnd\nObjectBegin \"well\"\n";
+    car.part("well", "lining", &fittings::well(sides))?;
+    car.text += "ObjectEnd\nObjectBegin \"projector\"\n";
+    car.part("projector", "chrome", &fittings::projector(sides / 2))?;
+    car.text += "NamedMaterial \"crystal\" Translate -0.012 0 0 Shape \"sphere\" \"float radius\" 0.03\nObjectEnd\n";
+    Ok(())
+}
+
+fn place_lamps(text: &mut String, places: &[Vec3]) {
+    for p in places {
+        for x in [p.x, -p.x] {
+            let _ = writeln!(
+                text,
+                "AttributeBegin Translate {x} {} {} Rotate 90 0 0 1 ObjectInstance \"projector\" AttributeEnd",
+                p.y, p.z
+            );
+        }
+    }
+}
+
+fn place_wheels(text: &mut String) {
+    for (axle, half, steer) in [(AXLES[0], 0.783, 12.0), (AXLES[1], 0.798, 0.0)] {
+        for (side, turn) in [(1.0, 0.0), (-1.0, 180.0)] {
+            let x = side * half;
+            let _ = writeln!(
+                text,
+                "AttributeBegin Translate {x} {axle} {} Rotate {} 0 0 1 \
+                 ObjectInstance \"wheel\" Rotate {} 1 0 0 ObjectInstance \"caliper\" AttributeEnd",
+                body::WHEEL,
+                turn + steer,
+                if side > 0.0 { -75.0 } else { -105.0 },
+            );
+            let _ = writeln!(
+                text,
+                "AttributeBegin Translate {x} {axle} {} Rotate {turn} 0 0 1 ObjectInstance \"well\" AttributeEnd",
+                body::WHEEL
+            );
+        }
+    }
+    *text += "NamedMaterial \"lining\" Shape \"bilinearmesh\" \"point3 P\" [ -0.78 -1.95 0.19  0.78 -1.95 0.19  -0.78 1.95 0.19  0.78 1.95 0.19 ]\n";
+}
