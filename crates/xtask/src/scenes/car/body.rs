@@ -14,7 +14,7 @@ pub const AXLES: [f32; 2] = [1.25, -1.25];
 /// The radius of the tyres.
 pub const WHEEL: f32 = 0.335;
 /// The radius of the wheel arches, of which a spline stays a little inside.
-const ARCH: f32 = 0.375 * 1.025;
+const ARCH: f32 = 0.366 * 1.025;
 
 /// What a face of the body is part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -143,44 +143,34 @@ const CREST: [Line; 2] = [
 ];
 
 /// The side below the crest: heights of its rows, and how far they are outside the crest.
-const SIDE_Z: [f32; ROWS] = [0.0, 0.775, 0.66, 0.54, 0.40, 0.26, 0.17];
-const SIDE_OUT: [f32; ROWS] = [0.0, 0.014, 0.022, 0.010, -0.008, -0.012, -0.075];
+const SIDE_Z: [f32; ROWS] = [0.0, 0.775, 0.66, 0.53, 0.38, 0.225, 0.135];
+const SIDE_OUT: [f32; ROWS] = [0.0, 0.014, 0.024, 0.006, -0.012, 0.006, -0.06];
 
-/// The corner of nose and side, and that of tail and side: x, y, z of the rows below the crest.
-const NOSE_CORNER: [[f32; 3]; ROWS - 1] = [
-    [0.848, 1.81, 0.60],
-    [0.86, 1.82, 0.53],
-    [0.865, 1.825, 0.45],
-    [0.865, 1.825, 0.36],
-    [0.86, 1.81, 0.26],
-    [0.80, 1.76, 0.185],
+/// Nose and tail: x and z of the lines in the rows below the first.
+const NOSE: [[[f32; 2]; LINES]; ROWS - 1] = [
+    [[0.0, 0.668], [0.24, 0.667], [0.47, 0.655], [0.58, 0.643], [0.73, 0.631], [0.848, 0.614]],
+    [[0.0, 0.606], [0.26, 0.602], [0.50, 0.556], [0.565, 0.592], [0.72, 0.575], [0.858, 0.556]],
+    [[0.0, 0.50], [0.28, 0.50], [0.56, 0.488], [0.64, 0.49], [0.755, 0.475], [0.865, 0.455]],
+    [[0.0, 0.372], [0.26, 0.374], [0.49, 0.415], [0.60, 0.40], [0.755, 0.375], [0.868, 0.345]],
+    [[0.0, 0.235], [0.24, 0.235], [0.44, 0.24], [0.56, 0.235], [0.74, 0.225], [0.862, 0.215]],
+    [[0.0, 0.135], [0.23, 0.135], [0.45, 0.135], [0.59, 0.135], [0.73, 0.137], [0.82, 0.14]],
 ];
-const TAIL_CORNER: [[f32; 3]; ROWS - 1] = [
-    [0.79, -2.015, 0.84],
-    [0.81, -2.03, 0.76],
-    [0.82, -2.04, 0.64],
-    [0.82, -2.04, 0.50],
-    [0.80, -2.03, 0.34],
-    [0.72, -1.95, 0.21],
+const TAIL: [[[f32; 2]; LINES]; ROWS - 1] = [
+    [[0.0, 0.90], [0.24, 0.898], [0.47, 0.888], [0.60, 0.876], [0.71, 0.862], [0.792, 0.842]],
+    [[0.0, 0.815], [0.21, 0.813], [0.46, 0.803], [0.60, 0.792], [0.725, 0.778], [0.812, 0.758]],
+    [[0.0, 0.66], [0.23, 0.66], [0.46, 0.652], [0.61, 0.64], [0.735, 0.625], [0.825, 0.605]],
+    [[0.0, 0.455], [0.23, 0.455], [0.44, 0.445], [0.58, 0.37], [0.73, 0.325], [0.832, 0.305]],
+    [[0.0, 0.30], [0.23, 0.30], [0.42, 0.29], [0.56, 0.245], [0.71, 0.225], [0.822, 0.215]],
+    [[0.0, 0.185], [0.22, 0.185], [0.42, 0.18], [0.56, 0.165], [0.68, 0.155], [0.76, 0.15]],
 ];
-/// The middle of nose and tail: y and z.
-const NOSE: [[f32; 2]; ROWS - 1] =
-    [[2.09, 0.675], [2.115, 0.60], [2.125, 0.505], [2.125, 0.39], [2.11, 0.26], [2.03, 0.185]];
-const TAIL: [[f32; 2]; ROWS - 1] =
-    [[-2.10, 0.90], [-2.09, 0.80], [-2.10, 0.68], [-2.13, 0.54], [-2.13, 0.36], [-2.03, 0.23]];
-/// x of the lines there, and which part of the way to the corner they have gone in y and in z.
-const END_X: [f32; LINES - 1] = [0.0, 0.23, 0.46, 0.60, 0.745];
-const NOSE_ROUND: [f32; LINES - 1] = [0.0, 0.04, 0.17, 0.35, 0.62];
-const TAIL_ROUND: [f32; LINES - 1] = [0.0, 0.06, 0.25, 0.45, 0.72];
-const END_FALL: [f32; LINES - 1] = [0.0, 0.06, 0.25, 0.5, 0.8];
 
 /// Around a wheel, from ahead below the axle over its top to behind: the hole's points by their
 /// angles in degrees, and those of the ring around it with their distance from the hole.
 const HOLE: [f32; 13] =
-    [-27.0, -7.5, 12.0, 31.5, 51.0, 70.5, 90.0, 109.5, 129.0, 148.5, 168.0, 187.5, 207.0];
+    [-32.0, -10.0, 12.0, 31.5, 51.0, 70.5, 90.0, 109.5, 129.0, 148.5, 168.0, 190.0, 212.0];
 const RING: [[f32; 2]; 15] = [
-    [-25.0, 0.045],
-    [-7.0, 0.045],
+    [-29.0, 0.045],
+    [-9.0, 0.045],
     [12.0, 0.042],
     [29.0, 0.042],
     [43.0, 0.05],
@@ -231,6 +221,16 @@ pub fn cage() -> Cage<Tag> {
             cage.face(corners, (tail_panel(row, line), Grid::End));
         }
     }
+    // The crest is a soft edge, and so is that of the tail.
+    for s in 1..STATIONS {
+        cage.crease(side[0][s - 1], side[0][s], 0.7);
+    }
+    for line in 1..LINES {
+        cage.crease(tail[0][line - 1], tail[0][line], 0.9);
+    }
+    for s in 1..9 {
+        cage.crease(top[2][s - 1], top[2][s], 0.35);
+    }
     cage.mirror();
     cage
 }
@@ -250,8 +250,7 @@ fn top(line: usize, s: usize) -> Vec3 {
 
 fn side_point(row: usize, s: usize) -> Vec3 {
     match s {
-        0 => Vec3::from_array(NOSE_CORNER[row - 1]),
-        22 => Vec3::from_array(TAIL_CORNER[row - 1]),
+        0 | 22 => end_point(row, LINES - 1, s),
         _ => {
             let z = if row == 1 { CREST[1][s] - 0.055 } else { SIDE_Z[row] };
             Vec3::new(CREST[0][s] + SIDE_OUT[row], CREST_Y[s], z)
@@ -285,6 +284,21 @@ fn arch(cage: &mut Cage<Tag>, side: &[[u32; STATIONS]], middle: usize, axle: f32
     }
 }
 
+/// A point of nose or tail, which are bent in both directions.
+fn end_point(row: usize, line: usize, s: usize) -> Vec3 {
+    let is_nose = s == 0;
+    let [x, z] = if is_nose { NOSE } else { TAIL }[row - 1][line];
+    let y = if is_nose {
+        2.13 - 1.2 * (z - 0.48) * (z - 0.48) - 0.30 * lanes::pow(x / 0.86, 2.6)
+    } else {
+        // The tail leans under its edge, and the bumper stands out.
+        let bumper = 0.05 * lanes::exp(-((z - 0.47) / 0.17) * ((z - 0.47) / 0.17));
+        let under = 1.5 * (0.40 - z).max(0.0) * (0.40 - z).max(0.0);
+        -2.075 - 0.25 * (0.93 - z) * (z - 0.55).max(0.0) - bumper + under + 0.10 * lanes::pow(x / 0.80, 2.8)
+    };
+    Vec3::new(x, y, z)
+}
+
 /// The points of nose or tail, by rows and lines.
 fn end(
     cage: &mut Cage<Tag>,
@@ -294,17 +308,8 @@ fn end(
 ) -> Vec<[u32; LINES]> {
     let mut rows = vec![std::array::from_fn(|line| top[line][s])];
     for row in 1..ROWS {
-        let (middle, corner, round) = match s {
-            0 => (NOSE[row - 1], NOSE_CORNER[row - 1], NOSE_ROUND),
-            _ => (TAIL[row - 1], TAIL_CORNER[row - 1], TAIL_ROUND),
-        };
         rows.push(std::array::from_fn(|line| {
-            if line == LINES - 1 {
-                return side[row][s];
-            }
-            let y = middle[0] + round[line] * (corner[1] - middle[0]);
-            let z = middle[1] + END_FALL[line] * (corner[2] - middle[1]);
-            cage.add(Vec3::new(END_X[line], y, z))
+            if line == LINES - 1 { side[row][s] } else { cage.add(end_point(row, line, s)) }
         }));
     }
     rows
@@ -331,10 +336,12 @@ fn side_panel(row: usize, s: usize) -> Panel {
         (0..=1, 0) => Panel::Headlamp,
         (5, 0) => Panel::Splitter,
         (_, 0) => Panel::FrontBumper,
-        (5, 7..=13) => Panel::Sill,
+        (5, 8..=13) => Panel::Sill,
+        (5, 7) => Panel::Sill,
         (_, 1..=7) => Panel::Wing,
         (_, 8..=12) => Panel::Door,
         (1, 21) => Panel::TailLamp,
+        (5, 20..) => Panel::Diffuser,
         (2.., 20..) => Panel::RearBumper,
         _ => Panel::Side,
     }
@@ -344,7 +351,7 @@ fn nose_panel(row: usize, line: usize) -> Panel {
     match (row, line) {
         (0..=1, 3..=4) => Panel::Headlamp,
         (2..=3, 0..=1) => Panel::Grille,
-        (3..=4, 3) => Panel::Intake,
+        (4, 2..=3) => Panel::Intake,
         (5, _) => Panel::Splitter,
         _ => Panel::FrontBumper,
     }
@@ -355,7 +362,7 @@ fn tail_panel(row: usize, line: usize) -> Panel {
         (1, 1..) => Panel::TailLamp,
         (0, 2..) => Panel::Side,
         (0..=1, _) => Panel::Boot,
-        (5, _) | (4, 0..=2) => Panel::Diffuser,
+        (4..=5, _) => Panel::Diffuser,
         _ => Panel::RearBumper,
     }
 }

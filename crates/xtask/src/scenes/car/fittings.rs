@@ -78,13 +78,13 @@ pub fn handles(body: &Surface, steps: u32) -> Mesh {
 pub fn grille(body: &Surface) -> Mesh {
     let mut mesh = Mesh::default();
     let grille = |p: Panel| p == Panel::Grille;
-    for row in 0..9 {
-        let z = 0.395 + 0.024 * row as f32;
+    for row in 0..11 {
+        let z = 0.378 + 0.022 * row as f32;
         let mut points = Vec::new();
         for i in 0..=64 {
-            let x = 0.46 * (i as f32 / 32.0 - 1.0);
+            let x = 0.56 * (i as f32 / 32.0 - 1.0);
             if let Some([p, _]) = body.project(grille, 1, 1.0, Vec2::new(x, z)) {
-                points.push((p - Vec3::Y * 0.022, 0.0042));
+                points.push((p - Vec3::Y * 0.022, 0.0036));
             }
         }
         if points.len() > 1 {
@@ -164,7 +164,7 @@ pub fn projector(sides: u32) -> Mesh {
 /// Where the projectors of the right headlamp are.
 pub fn projectors(body: &Surface) -> Vec<Vec3> {
     let lamp = |p: Panel| p == Panel::Headlamp;
-    [(0.635, 0.578), (0.74, 0.572)]
+    [(0.63, 0.62), (0.725, 0.604)]
         .into_iter()
         .filter_map(|(x, z)| body.project(lamp, 1, 1.0, Vec2::new(x, z)))
         .map(|[p, _]| p - Vec3::Y * 0.055)
@@ -178,7 +178,7 @@ pub fn daylight(body: &Surface) -> Mesh {
     let mut points = Vec::new();
     for i in 0..=40 {
         let t = i as f32 / 40.0;
-        let (x, z) = (0.615 + 0.19 * t, 0.535 + 0.012 * lanes::sin(PI * t));
+        let (x, z) = (0.60 + 0.215 * t, 0.594 - 0.022 * t - 0.006 * lanes::sin(PI * t));
         if let Some([p, n]) = body.project(lamp, 1, 1.0, Vec2::new(x, z)) {
             points.push((p - n * 0.016, 0.0045));
         }

@@ -5,7 +5,8 @@ mod fittings;
 mod interior;
 mod paint;
 mod panels;
-mod places;
+mod street;
+mod studio;
 mod wheel;
 
 use std::fmt::Write as _;
@@ -47,7 +48,7 @@ pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
     let sides = 6 << steps;
     let fine = steps.saturating_sub(1);
     let mut car = Car { folder, text: String::new(), triangles: 0 };
-    panels(&mut car, &surface)?;
+    panels(&mut car, &surface, fine)?;
 
     car.part("board", "leather", &interior::board(fine))?;
     car.part("seats", "seat leather", &interior::seats(fine))?;
@@ -70,14 +71,15 @@ pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
     place_wheels(&mut car.text);
     fs::write(folder.join("flakes.pfm"), paint::flakes(512))?;
     fs::write(folder.join("car.pbrt"), format!("{}{}", paint::MATERIALS, car.text))?;
-    places::write(folder)?;
+    studio::write(folder)?;
+    street::write(folder)?;
     println!("{} triangles in files", car.triangles);
     Ok(())
 }
 
 /// The outside, and a dark lining under all that is not transparent.
-fn panels(car: &mut Car, surface: &Surface) -> io::Result<()> {
-    let sheet = Edge { gap: 0.0018, bend: 0.0022, flange: 0.014, depth: 0.0 };
+fn panels(car: &mut Car, surface: &Surface, fine: u32) -> io::Result<()> {
+    let sheet = Edge { gap: 0.0018, bend: 0.0022, flange: 0.02, depth: 0.0 };
     let pane = Edge { gap: 0.0012, bend: 0.0015, flange: 0.006, depth: 0.002 };
     for panel in PANELS {
         let (end, material) = match panel {
@@ -98,7 +100,8 @@ fn panels(car: &mut Car, surface: &Surface) -> io::Result<()> {
             Panel::Windscreen | Panel::DoorGlass | Panel::QuarterGlass | Panel::RearScreen | Panel::Grille
         ) && !is_lamp(panel)
     };
-    car.part("lining", "lining", &surface.sheet(is_lined, 0.022))?;
+    let coarse = Surface::new(body::cage().subdivided(fine.max(2) - 1));
+    car.part("lining", "lining", &coarse.sheet(is_lined, 0.022))?;
     car.part("headlamp-bowl", "bowl", &surface.panel(|p| p == Panel::Headlamp, Edge { gap: 0.004, bend: 0.0, flange: 0.05, depth: 0.07 }))?;
     car.part("taillamp-bowl", "bowl", &surface.sheet(|p| p == Panel::TailLamp, 0.03))
 }
@@ -106,7 +109,7 @@ fn panels(car: &mut Car, surface: &Surface) -> io::Result<()> {
 /// Parts that are there more than once.
 fn objects(car: &mut Car, sides: u32, fine: u32) -> io::Result<()> {
     car.text += "ObjectBegin \"wheel\"\n";
-    car.part("tyre", "rubber", &wheel::tyre(8 * sides, sides))?;
+    car.part("tyre", "rubber", &wheel::tyre(6 * sides, 2 * sides / 3))?;
     car.part("rim", "alloy", &wheel::rim(sides * 2, fine))?;
     car.part("disc", "steel", &wheel::disc(sides * 2))?;
     car.text += "ObjectEnd\nObjectBegin \"caliper\"\n";
@@ -132,7 +135,7 @@ fn place_lamps(text: &mut String, places: &[Vec3]) {
 }
 
 fn place_wheels(text: &mut String) {
-    for (axle, half, steer) in [(AXLES[0], 0.783, 12.0), (AXLES[1], 0.798, 0.0)] {
+    for (axle, half, steer) in [(AXLES[0], 0.775, 7.0), (AXLES[1], 0.798, 0.0)] {
         for (side, turn) in [(1.0, 0.0), (-1.0, 180.0)] {
             let x = side * half;
             let _ = writeln!(
@@ -150,5 +153,5 @@ fn place_wheels(text: &mut String) {
             );
         }
     }
-    *text += "NamedMaterial \"lining\" Shape \"bilinearmesh\" \"point3 P\" [ -0.78 -1.95 0.19  0.78 -1.95 0.19  -0.78 1.95 0.19  0.78 1.95 0.19 ]\n";
+    *text += "NamedMaterial \"lining\" Shape \"bilinearmesh\" \"point3 P\" [ -0.7 -1.9 0.17  0.7 -1.9 0.17  -0.7 1.6 0.17  0.7 1.6 0.17 ]\n";
 }

@@ -1,0 +1,75 @@
+//! A studio with soft boxes of light over a dark floor.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use math::Vec3;
+
+use crate::scenes::mesh::Mesh;
+
+/// Where the camera of the studio looks, on the ground.
+const VIEW: [f32; 2] = [-0.587, -0.81];
+
+pub fn write(folder: &Path) -> io::Result<()> {
+    backdrop().write(&folder.join("backdrop.ply"))?;
+    fs::write(folder.join("car-studio.pbrt"), STUDIO)
+}
+
+/// The floor of the studio, which rises behind the car in an arc.
+fn backdrop() -> Mesh {
+    const FLOOR: f32 = 6.0;
+    const RADIUS: f32 = 3.5;
+    const HIGH: f32 = 9.0;
+    let mut mesh = Mesh::default();
+    mesh.grid([41, 66], |i, j| {
+        let across = 1.5 * (i as f32 - 20.0);
+        let (out, z, turn) = match j {
+            0 => (-30.0, 0.0, 0.0),
+            65 => (FLOOR + RADIUS, HIGH, 90.0_f32),
+            j => {
+                let turn = 90.0 * (j - 1) as f32 / 63.0;
+                let (sin, cos) = lanes::sin_cos(turn.to_radians());
+                (FLOOR + RADIUS * sin, RADIUS * (1.0 - cos), turn)
+            }
+        };
+        let (sin, cos) = lanes::sin_cos(turn.to_radians());
+        let [x, y] = VIEW;
+        let p = Vec3::new(x * out + y * across, y * out - x * across, z);
+        [p, Vec3::new(-x * sin, -y * sin, cos)]
+    });
+    mesh
+}
+
+const STUDIO: &str = r#"# A coupé in a studio: soft boxes over a dark floor that reflects.
+# Made by `cargo xtask scenes car`. x is to the left, y ahead, z up; metres.
+
+Film "rgb" "integer xresolution" 1920 "integer yresolution" 1080 "string filename" "car-studio.png"
+    "float maxcomponentvalue" 6
+Sampler "zsobol" "integer pixelsamples" 256
+Integrator "path" "integer maxdepth" 12 "bool regularize" true
+
+LookAt 5.0 6.9 1.25   0.0 0.05 0.57   0 0 1
+Camera "perspective" "float fov" 19.5
+
+WorldBegin
+# Above the car, beside it, and behind the camera.
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 5 5 5 ]
+    Shape "bilinearmesh" "point3 P" [ -1.2 3.4 3.6  1.2 3.4 3.6  -1.2 -3.4 3.6  1.2 -3.4 3.6 ]
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 2.6 2.75 3 ] "bool twosided" true
+    Shape "bilinearmesh" "point3 P" [ 6.5 -6 0.5  6.5 3 0.5  6.5 -6 1.9  6.5 3 1.9 ]
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 2.2 2.2 2.2 ] "bool twosided" true
+    Shape "bilinearmesh" "point3 P" [ 1 9.5 0.6  -6 7.5 0.6  1 9.5 2.2  -6 7.5 2.2 ]
+AttributeEnd
+# A glow on the backdrop.
+LightSource "spot" "point3 from" [ -2.0 -2.9 0.35 ] "point3 to" [ -5.2 -7.0 1.7 ] "rgb I" [ 300 310 330 ]
+    "float coneangle" 68 "float conedeltaangle" 66
+Material "openpbr" "rgb base_color" [ 0.05 0.051 0.055 ] "float specular_roughness" 0.16
+Shape "plymesh" "string filename" "backdrop.ply"
+Include "car.pbrt"
+"#;
