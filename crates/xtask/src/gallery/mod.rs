@@ -7,6 +7,7 @@
 mod command;
 mod page;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -23,10 +24,9 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     super::command::succeed(super::command::cargo(root).args(["build", "--release", "-p", "alhazen-cli"]))?;
     let program = super::command::target(root).join("release/alhazen");
     let pages = pages(root)?;
-    for (i, page) in pages.iter().enumerate() {
-        if !(names.is_empty() || names.iter().any(|name| page.file().contains(name))) {
-            continue;
-        }
+    let is_chosen = |page: &Page| names.is_empty() || names.iter().any(|name| page.file().contains(name));
+    make_scenes(root, pages.iter().filter(|page| is_chosen(page)))?;
+    for (i, page) in pages.iter().enumerate().filter(|(_, page)| is_chosen(page)) {
         println!("{}", page.title);
         let neighbours = [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)));
         let html = page.to_html(root, &program, neighbours)?;
@@ -40,12 +40,28 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
 /// Runs the commands of all pages at a small size with the program of tests.
 pub fn check(root: &Path) -> Result<(), String> {
     let program = super::command::target(root).join("checked/alhazen");
-    for page in pages(root)? {
+    let pages = pages(root)?;
+    make_scenes(root, pages.iter())?;
+    for page in pages {
         for command in page.commands() {
             command::run(root, &program, &command, Size::Small)?;
         }
     }
     Ok(())
+}
+
+/// Makes the scenes of formulas that pages draw.
+fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>) -> Result<(), String> {
+    let commands: Vec<String> = pages.flat_map(Page::commands).collect();
+    let names: BTreeSet<&str> = commands
+        .iter()
+        .flat_map(|line| line.split_whitespace())
+        .filter_map(|word| word.strip_prefix("target/scenes/")?.split('/').next())
+        .collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    super::scenes::run(root, &Vec::from_iter(names))
 }
 
 /// The texts in the order of their names.

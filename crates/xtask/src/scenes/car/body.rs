@@ -151,8 +151,8 @@ const NOSE: [[[f32; 2]; LINES]; ROWS - 1] = [
     [[0.0, 0.668], [0.24, 0.667], [0.47, 0.655], [0.58, 0.643], [0.73, 0.631], [0.848, 0.614]],
     [[0.0, 0.606], [0.26, 0.602], [0.50, 0.556], [0.565, 0.592], [0.72, 0.575], [0.858, 0.556]],
     [[0.0, 0.50], [0.28, 0.50], [0.56, 0.488], [0.64, 0.49], [0.755, 0.475], [0.865, 0.455]],
-    [[0.0, 0.372], [0.26, 0.374], [0.49, 0.415], [0.60, 0.40], [0.755, 0.375], [0.868, 0.345]],
-    [[0.0, 0.235], [0.24, 0.235], [0.44, 0.24], [0.56, 0.235], [0.74, 0.225], [0.862, 0.215]],
+    [[0.0, 0.372], [0.26, 0.374], [0.47, 0.408], [0.60, 0.395], [0.775, 0.395], [0.868, 0.36]],
+    [[0.0, 0.235], [0.22, 0.235], [0.36, 0.24], [0.54, 0.235], [0.785, 0.235], [0.862, 0.215]],
     [[0.0, 0.135], [0.23, 0.135], [0.45, 0.135], [0.59, 0.135], [0.73, 0.137], [0.82, 0.14]],
 ];
 const TAIL: [[[f32; 2]; LINES]; ROWS - 1] = [
@@ -364,5 +364,70 @@ fn tail_panel(row: usize, line: usize) -> Panel {
         (0..=1, _) => Panel::Boot,
         (4..=5, _) => Panel::Diffuser,
         _ => Panel::RearBumper,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::scenes::cage::edge;
+
+    #[test]
+    fn the_cage_is_one_sheet_with_one_border() {
+        let cage = cage();
+        let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
+        for face in &cage.faces {
+            for i in 0..4 {
+                *edges.entry(edge(face[i], face[(i + 1) % 4])).or_insert(0) += 1;
+            }
+        }
+        assert!(edges.values().all(|&faces| faces <= 2));
+        // Each point of the border has two of its edges, and all of them are one line, along sills
+        // and wheel arches.
+        let border: Vec<[u32; 2]> = edges.iter().filter(|(_, faces)| **faces == 1).map(|(e, _)| *e).collect();
+        let mut around: HashMap<u32, Vec<u32>> = HashMap::new();
+        for [a, b] in &border {
+            around.entry(*a).or_default().push(*b);
+            around.entry(*b).or_default().push(*a);
+        }
+        assert!(around.values().all(|others| others.len() == 2));
+        let start = border[0][0];
+        let (mut before, mut at, mut length) = (start, around[&start][0], 1);
+        while at != start {
+            let next = around[&at].iter().copied().find(|&other| other != before).unwrap();
+            (before, at, length) = (at, next, length + 1);
+        }
+        assert_eq!(length, border.len());
+        assert!(around.keys().all(|&point| cage.points[point as usize].z < 0.8));
+    }
+
+    #[test]
+    fn it_has_the_proportions_of_a_coupe() {
+        let smooth = cage().subdivided(3);
+        let low = smooth.points.iter().copied().reduce(Vec3::min).unwrap();
+        let high = smooth.points.iter().copied().reduce(Vec3::max).unwrap();
+        let [width, length, height] = (high - Vec3::new(low.x, low.y, 0.0)).to_array();
+        assert!((4.1..4.4).contains(&length) && (1.8..1.95).contains(&width), "{length} {width}");
+        assert!((1.22..1.3).contains(&height), "{height}");
+        // A wheel is half as high as the car, and almost three of them fit between the wheels.
+        assert!((0.48..0.56).contains(&(2.0 * WHEEL / height)));
+        let between = (AXLES[0] - AXLES[1]) / (2.0 * WHEEL) - 1.0;
+        assert!((2.6..3.0).contains(&between), "{between}");
+        // The body stays out of the way of the wheels.
+        let nearest = |p: &Vec3| AXLES.map(|y| (p.y - y).hypot(p.z - WHEEL)).into_iter().fold(9.0, f32::min);
+        assert!(smooth.points.iter().all(|p| nearest(p) > WHEEL + 0.01));
+    }
+
+    #[test]
+    fn every_panel_is_somewhere() {
+        let cage = cage();
+        assert!(PANELS.iter().all(|panel| cage.tags.iter().any(|tag| tag.0 == *panel)));
+        // Both halves are the same.
+        let mirrored = |p: &Vec3| Vec3::new(-p.x, p.y, p.z);
+        let bits = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
+        let points: std::collections::HashSet<_> = cage.points.iter().map(|p| bits(*p)).collect();
+        assert!(cage.points.iter().all(|p| points.contains(&bits(mirrored(p)))));
     }
 }

@@ -7,6 +7,7 @@ mod paint;
 mod panels;
 mod street;
 mod studio;
+mod trim;
 mod wheel;
 
 use std::fmt::Write as _;
@@ -60,6 +61,9 @@ pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
     car.part("exhausts", "chrome", &fittings::exhausts(sides / 2))?;
     car.part("wipers", "plastic", &fittings::wipers(&surface))?;
     car.part("badges", "chrome", &fittings::badges(&surface, sides / 2))?;
+    let is_side = |p| matches!(p, Panel::DoorGlass | Panel::QuarterGlass);
+    car.part("window-trim", "chrome", &trim::strips(&surface, is_side, 0.0045, 0.0005))?;
+    car.part("grille-trim", "chrome", &trim::strips(&surface, |p| p == Panel::Grille, 0.006, 0.0))?;
     car.text += "AttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 9 9.4 10 ]\n  ";
     car.part("daylight", "plastic", &fittings::daylight(&surface))?;
     car.text += "AttributeEnd\nAttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 2.4 0.06 0.03 ]\n  ";
@@ -154,4 +158,54 @@ fn place_wheels(text: &mut String) {
         }
     }
     *text += "NamedMaterial \"lining\" Shape \"bilinearmesh\" \"point3 P\" [ -0.7 -1.9 0.17  0.7 -1.9 0.17  -0.7 1.6 0.17  0.7 1.6 0.17 ]\n";
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// The files of a car of so many steps.
+    fn files(name: &str, steps: u32) -> BTreeMap<String, Vec<u8>> {
+        let folder = std::env::temp_dir().join(format!("{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        make(&folder, steps).unwrap();
+        let read = |entry: io::Result<fs::DirEntry>| {
+            let entry = entry.unwrap();
+            (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())
+        };
+        let files = fs::read_dir(&folder).unwrap().map(read).collect();
+        fs::remove_dir_all(&folder).unwrap();
+        files
+    }
+
+    /// The triangles of a file.
+    fn triangles(file: &[u8]) -> usize {
+        let head = String::from_utf8_lossy(&file[..400.min(file.len())]).into_owned();
+        let line = head.lines().find_map(|line| line.strip_prefix("element face ")).unwrap();
+        line.parse().unwrap()
+    }
+
+    #[test]
+    fn the_same_files_are_made_again() {
+        let [a, b] = ["car-a", "car-b"].map(|name| files(name, 2));
+        assert!(a == b);
+        // All that scenes refer to is there.
+        for (_, text) in a.iter().filter(|(name, _)| name.ends_with(".pbrt")) {
+            let text = String::from_utf8_lossy(text);
+            let named = text.split('"').filter(|word| word.ends_with(".ply") || word.ends_with(".pfm"));
+            assert!(named.clone().count() > 0 || text.contains("Include"));
+            assert!(named.into_iter().all(|name| a.contains_key(name)));
+        }
+    }
+
+    #[test]
+    fn a_step_makes_four_triangles_of_one() {
+        let [coarse, fine] = [2, 3].map(|steps| files(&format!("car-{steps}"), steps));
+        for name in ["bonnet.ply", "door.ply", "seats.ply"] {
+            let ratio = triangles(&fine[name]) as f32 / triangles(&coarse[name]) as f32;
+            assert!((3.0..4.3).contains(&ratio), "{name}: {ratio}");
+        }
+    }
 }

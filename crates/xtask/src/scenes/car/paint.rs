@@ -57,8 +57,34 @@ MakeNamedMaterial "plastic" "string type" "openpbr" "rgb base_color" [ 0.012 0.0
 MakeNamedMaterial "mesh" "string type" "openpbr" "rgb base_color" [ 0.006 0.006 0.006 ] "float specular_roughness" 0.5
 MakeNamedMaterial "lining" "string type" "diffuse" "rgb reflectance" [ 0.012 0.012 0.012 ]
 MakeNamedMaterial "bowl" "string type" "openpbr" "rgb base_color" [ 0.25 0.25 0.27 ] "float base_metalness" 1 "float specular_roughness" 0.25
-Texture "grain" "float" "wrinkled" "integer octaves" 4 "float roughness" 0.6
+AttributeBegin
+    Scale 0.007 0.007 0.007
+    Texture "grain" "float" "wrinkled" "integer octaves" 4 "float roughness" 0.6
+AttributeEnd
+Texture "grain height" "float" "scale" "texture tex" "grain" "float scale" 0.0011
 MakeNamedMaterial "rubber" "string type" "openpbr" "rgb base_color" [ 0.016 0.016 0.017 ] "float specular_roughness" 0.55
-MakeNamedMaterial "leather" "string type" "openpbr" "rgb base_color" [ 0.02 0.019 0.018 ] "float specular_roughness" 0.45
-MakeNamedMaterial "seat leather" "string type" "openpbr" "rgb base_color" [ 0.34 0.17 0.075 ] "float specular_roughness" 0.42
+MakeNamedMaterial "leather" "string type" "openpbr" "rgb base_color" [ 0.02 0.019 0.018 ] "float specular_roughness" 0.45 "texture displacement" "grain height"
+MakeNamedMaterial "seat leather" "string type" "openpbr" "rgb base_color" [ 0.4 0.2 0.09 ] "float specular_roughness" 0.42 "texture displacement" "grain height"
 "#;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flakes_are_tilted_to_all_sides_alike() {
+        let file = flakes(128);
+        let head = b"PF\n128 128\n-1.0\n".len();
+        let normals: Vec<Vec3> = file[head..]
+            .chunks_exact(12)
+            .map(|pixel| {
+                let v = |i: usize| f32::from_le_bytes(pixel[4 * i..4 * i + 4].try_into().unwrap());
+                Vec3::new(v(0), v(1), v(2)) * 2.0 - Vec3::ONE
+            })
+            .collect();
+        assert_eq!(normals.len(), 128 * 128);
+        assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3 && n.z > 0.5));
+        let mean = normals.iter().fold(Vec3::ZERO, |sum, n| sum + *n) / normals.len() as f32;
+        assert!(mean.x.abs() < 0.01 && mean.y.abs() < 0.01 && mean.z > 0.95 && mean.z < 0.995, "{mean}");
+    }
+}

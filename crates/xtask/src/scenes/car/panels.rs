@@ -233,3 +233,56 @@ impl Rim {
         nearest.into_iter().map(shift).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::car::body;
+
+    const END: Edge = Edge { gap: 0.002, bend: 0.002, flange: 0.01, depth: 0.0 };
+
+    fn surface() -> Surface {
+        Surface::new(body::cage().subdivided(3))
+    }
+
+    fn triangles(mesh: &Mesh) -> impl Iterator<Item = [Vec3; 3]> {
+        mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize]))
+    }
+
+    #[test]
+    fn a_gap_is_as_wide_as_both_its_halves() {
+        let surface = surface();
+        let door = surface.panel(|p| p == Panel::Door, END);
+        let wing = surface.panel(|p| p == Panel::Wing, END);
+        // The gap at the height of the handle, in front of the left door.
+        let is_near = |p: &&Vec3| p.x > 0.0 && (p.z - 0.7).abs() < 0.03 && (p.y - 0.65).abs() < 0.08;
+        let front = door.positions.iter().filter(is_near).map(|p| p.y).fold(-9.0, f32::max);
+        let back = wing.positions.iter().filter(is_near).map(|p| p.y).fold(9.0, f32::min);
+        assert!((back - front - 2.0 * END.gap).abs() < 0.001, "{front} {back}");
+    }
+
+    #[test]
+    fn no_face_of_a_panel_is_turned_over() {
+        let surface = surface();
+        for panel in body::PANELS {
+            let mesh = surface.panel(|p| p == panel, END);
+            let turned = mesh.triangles.iter().zip(triangles(&mesh)).filter(|(t, [a, b, c])| {
+                let n = t.iter().fold(Vec3::ZERO, |sum, &i| sum + mesh.normals[i as usize]);
+                (*b - *a).cross(*c - *a).dot(n) < 0.0
+            });
+            assert_eq!(turned.count(), 0, "{panel:?}");
+            assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+            assert_eq!(mesh.uvs.len(), mesh.positions.len());
+        }
+    }
+
+    #[test]
+    fn a_sheet_has_the_faces_of_its_panels() {
+        let surface = surface();
+        let sheet = surface.sheet(|_| true, 0.02);
+        assert!(sheet.triangles.len() >= 2 * surface.cage.faces.len());
+        let [p, n] = surface.project(|p| p == Panel::Roof, 2, 1.0, Vec2::new(0.1, -0.3)).unwrap();
+        assert!(p.z > 1.2 && p.z < 1.3 && n.z > 0.95 && (p.x - 0.1).abs() < 1e-4, "{p} {n}");
+        assert!(surface.project(|p| p == Panel::Roof, 2, 1.0, Vec2::new(0.1, 1.5)).is_none());
+    }
+}

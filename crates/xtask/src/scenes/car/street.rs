@@ -30,7 +30,7 @@ struct Houses {
 }
 
 pub fn write(folder: &Path) -> io::Result<()> {
-    fs::write(folder.join("dusk.pfm"), sky(256))?;
+    fs::write(folder.join("dusk.pfm"), sky(1024))?;
     let houses = houses();
     for (i, walls) in houses.walls.iter().enumerate() {
         walls.write(&folder.join(format!("walls-{i}.ply")))?;
@@ -59,21 +59,18 @@ fn sky(size: u32) -> Vec<u8> {
         for x in 0..size {
             let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size as f32;
             let d = equal_area_square_to_sphere(uv);
-            let up = d.z.max(0.0);
-            // Towards the sunset, which is at −y and a little to the left.
-            let west = (d.dot(Vec3::new(0.35, -0.93, 0.05)).max(0.0)).min(1.0);
+            let up = d.z.abs();
+            // Towards the sunset, which is at −y.
+            let west = (d.dot(Vec3::new(-0.1, -0.99, 0.05)).max(0.0)).min(1.0);
             let glow = lanes::pow(west, 6.0) * lanes::exp(-5.0 * up);
             let band = lanes::exp(-3.2 * up);
             let clouds = fbm(1.2 * d.x / (up + 0.22), 2.4 * d.y / (up + 0.22), 5);
             let streaks = (0.5 + clouds).clamp(0.0, 1.0);
-            let mut colour = Vec3::new(0.10, 0.17, 0.36) * (1.0 - 0.35 * up);
-            colour += Vec3::new(0.30, 0.27, 0.34) * band;
-            colour += Vec3::new(2.6, 1.05, 0.32) * glow;
+            let mut colour = Vec3::new(0.26, 0.37, 0.62) * (1.0 - 0.35 * up);
+            colour += Vec3::new(0.26, 0.24, 0.28) * band;
+            colour += Vec3::new(1.25, 0.5, 0.13) * glow;
             colour = colour * (0.75 + 0.5 * streaks);
-            colour += Vec3::new(0.55, 0.24, 0.18) * (streaks * band * (0.25 + west));
-            if d.z <= 0.0 {
-                colour = Vec3::splat(0.02);
-            }
+            colour += Vec3::new(0.42, 0.17, 0.12) * (streaks * band * (0.2 + west));
             for v in colour.to_array() {
                 file.extend(v.to_le_bytes());
             }
@@ -219,8 +216,8 @@ Film "rgb" "integer xresolution" 1920 "integer yresolution" 1080 "string filenam
 Sampler "zsobol" "integer pixelsamples" 256
 Integrator "path" "integer maxdepth" 8 "bool regularize" true
 
-LookAt 4.3 6.3 0.85   0.1 -0.1 0.72   0 0 1
-Camera "perspective" "float fov" 25
+LookAt 3.55 7.1 0.8   0.2 -0.25 0.76   0 0 1
+Camera "perspective" "float fov" 24
 
 WorldBegin
 Include "street.pbrt"
@@ -264,7 +261,7 @@ Shape "plymesh" "string filename" "panes.ply"
 Material "openpbr" "rgb base_color" [ 0.02 0.02 0.02 ] "float specular_roughness" 0.4
 Shape "plymesh" "string filename" "posts.ply"
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 2.3 1.35 0.55 ] "bool twosided" true
+    AreaLightSource "diffuse" "rgb L" [ 1.05 0.62 0.27 ] "bool twosided" true
     Shape "plymesh" "string filename" "lit-panes.ply"
 AttributeEnd
 "#;

@@ -208,3 +208,34 @@ pub fn caliper(steps: u32) -> Mesh {
     }
     cage.subdivided(steps).mesh()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn radii(mesh: &Mesh) -> impl Iterator<Item = f32> {
+        mesh.positions.iter().map(|p| p.y.hypot(p.z))
+    }
+
+    #[test]
+    fn a_tyre_has_grooves_and_stands_on_the_ground() {
+        let tyre = tyre(640, 128);
+        let highest = radii(&tyre).fold(0.0, f32::max);
+        assert!((highest - WHEEL).abs() < 0.002, "{highest}");
+        let tread = tyre.positions.iter().filter(|p| p.x.abs() < 0.08).map(|p| p.y.hypot(p.z));
+        assert!(tread.fold(9.0, f32::min) < WHEEL - 0.006);
+        assert_eq!(tyre.triangles.len(), 2 * 640 * 127);
+        // Normals are outside.
+        let outside = tyre.positions.iter().zip(&tyre.normals);
+        assert!(outside.filter(|(p, _)| p.y.hypot(p.z) > 0.334).all(|(p, n)| p.y * n.y + p.z * n.z > 0.0));
+    }
+
+    #[test]
+    fn the_rim_is_within_the_tyre() {
+        let rim = rim(128, 2);
+        assert!(radii(&rim).all(|radius| radius < 0.255));
+        let tyre = tyre(64, 64);
+        assert!(rim.positions.iter().all(|p| p.x.abs() < 0.122) && tyre.positions.len() == 64 * 64);
+        assert!(radii(&disc(64)).all(|radius| radius < 0.2) && radii(&caliper(2)).all(|radius| radius < 0.215));
+    }
+}
