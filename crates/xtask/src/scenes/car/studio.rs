@@ -13,7 +13,14 @@ const VIEW: [f32; 2] = [-0.587, -0.81];
 
 pub fn write(folder: &Path) -> io::Result<()> {
     backdrop().write(&folder.join("backdrop.ply"))?;
-    fs::write(folder.join("car-studio.pbrt"), STUDIO)
+    for (name, look, angle) in [
+        ("car-studio", "5.0 6.9 1.25   0.0 0.05 0.57", "19.5"),
+        ("car-paint", "2.3 4.0 0.95   0.66 1.85 0.57", "17"),
+    ] {
+        let scene = STUDIO.replace("NAME", name).replace("LOOK", look).replace("ANGLE", angle);
+        fs::write(folder.join(format!("{name}.pbrt")), scene)?;
+    }
+    Ok(())
 }
 
 /// The floor of the studio, which rises behind the car in an arc.
@@ -44,13 +51,13 @@ fn backdrop() -> Mesh {
 const STUDIO: &str = r#"# A coupé in a studio: soft boxes over a dark floor that reflects.
 # Made by `cargo xtask scenes car`. x is to the left, y ahead, z up; metres.
 
-Film "rgb" "integer xresolution" 1920 "integer yresolution" 1080 "string filename" "car-studio.png"
-    "float maxcomponentvalue" 6
+Film "rgb" "integer xresolution" 1920 "integer yresolution" 1080 "string filename" "NAME.png"
+    "float maxcomponentvalue" 3
 Sampler "zsobol" "integer pixelsamples" 256
 Integrator "path" "integer maxdepth" 12 "bool regularize" true
 
-LookAt 5.0 6.9 1.25   0.0 0.05 0.57   0 0 1
-Camera "perspective" "float fov" 19.5
+LookAt LOOK   0 0 1
+Camera "perspective" "float fov" ANGLE
 
 WorldBegin
 # Above the car, beside it, and behind the camera.
@@ -66,9 +73,11 @@ AttributeBegin
     AreaLightSource "diffuse" "rgb L" [ 2.2 2.2 2.2 ] "bool twosided" true
     Shape "bilinearmesh" "point3 P" [ 1 9.5 0.6  -6 7.5 0.6  1 9.5 2.2  -6 7.5 2.2 ]
 AttributeEnd
-# A glow on the backdrop.
-LightSource "spot" "point3 from" [ -2.0 -2.9 0.35 ] "point3 to" [ -5.2 -7.0 1.7 ] "rgb I" [ 300 310 330 ]
-    "float coneangle" 68 "float conedeltaangle" 66
+# Behind the car, and hidden by it, one that makes the backdrop glow.
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 75 78 84 ]
+    Shape "bilinearmesh" "point3 P" [ -3.0 -2.2 0.05  -1.0 -3.7 0.05  -3.0 -2.2 0.3  -1.0 -3.7 0.3 ]
+AttributeEnd
 Material "openpbr" "rgb base_color" [ 0.05 0.051 0.055 ] "float specular_roughness" 0.16
 Shape "plymesh" "string filename" "backdrop.ply"
 Include "car.pbrt"
