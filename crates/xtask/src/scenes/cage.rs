@@ -61,6 +61,14 @@ impl<T: Copy> Cage<T> {
         self.creases.insert(edge(a, b), sharpness);
     }
 
+    /// Makes all edges of the faces from a number on sharper than they are.
+    pub fn sharpen(&mut self, first: usize, sharpness: f32) {
+        for i in first..self.faces.len() {
+            let face = self.faces[i];
+            (0..4).for_each(|k| self.crease(face[k], face[(k + 1) % 4], sharpness));
+        }
+    }
+
     /// A block of cells in rows, columns and layers, whose outer faces are the cage; `point` places
     /// its points.
     pub fn block(&mut self, cells: [u32; 3], tag: T, point: impl Fn([u32; 3]) -> Vec3) {
@@ -267,9 +275,7 @@ mod tests {
     #[test]
     fn sharp_edges_stay() {
         let mut cage = cube();
-        for face in cage.faces.clone() {
-            (0..4).for_each(|i| cage.crease(face[i], face[(i + 1) % 4], SHARP));
-        }
+        cage.sharpen(0, SHARP);
         let smooth = cage.subdivided(3);
         assert!(smooth.points.iter().all(|p| p.abs().max_element() == 1.0));
     }

@@ -26,7 +26,7 @@ pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {
         let folder = workspace.join("target/scenes").join(name);
         let made = std::fs::create_dir_all(&folder).and_then(|()| make(&folder));
         made.map_err(|error| format!("{}: {error}", folder.display()))?;
-        println!("{}", folder.join(format!("{name}.pbrt")).display());
+        println!("{}", folder.display());
     }
     Ok(())
 }

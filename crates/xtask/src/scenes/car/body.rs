@@ -41,6 +41,7 @@ pub enum Panel {
     Intake,
 }
 
+/// All of them.
 pub const PANELS: [Panel; 20] = [
     Panel::Bonnet,
     Panel::Wing,
@@ -63,6 +64,14 @@ pub const PANELS: [Panel; 20] = [
     Panel::Grille,
     Panel::Intake,
 ];
+
+impl Panel {
+    /// Whether one can see through it.
+    pub fn is_clear(self) -> bool {
+        use Panel::{DoorGlass, Headlamp, QuarterGlass, RearScreen, TailLamp, Windscreen};
+        matches!(self, Windscreen | DoorGlass | QuarterGlass | RearScreen | Headlamp | TailLamp)
+    }
+}
 
 /// The grid that a face is of, which has texture coordinates of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -311,9 +320,9 @@ fn end(
     s: usize,
 ) -> Vec<[u32; LINES]> {
     let mut rows = vec![std::array::from_fn(|line| top[line][s])];
-    for row in 1..ROWS {
+    for (row, side) in side.iter().enumerate().skip(1) {
         rows.push(std::array::from_fn(|line| {
-            if line == LINES - 1 { side[row][s] } else { cage.add(end_point(row, line, s)) }
+            if line == LINES - 1 { side[s] } else { cage.add(end_point(row, line, s)) }
         }));
     }
     rows

@@ -1,6 +1,6 @@
 //! What is fixed to the body: mirrors, handles, lamps, grille, exhausts, wipers, badges.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use math::{Vec2, Vec3};
 
@@ -16,12 +16,10 @@ fn pebble(cage: &mut Cage<()>, at: Vec3, axes: [Vec3; 3], sharpness: f32) {
         let [a, b, c] = i.map(|i| i as f32 - 1.0);
         at + axes[0] * a + axes[1] * b + axes[2] * c
     });
-    for face in cage.faces[first..].to_vec() {
-        (0..4).for_each(|i| cage.crease(face[i], face[(i + 1) % 4], sharpness));
-    }
+    cage.sharpen(first, sharpness);
 }
 
-/// Adds the other side's twin of a mesh.
+/// A mesh with its twin on the other side.
 fn mirrored(mesh: &Mesh) -> Mesh {
     let mut both = Mesh::default();
     both.add(mesh, |p| p, |n| n);
@@ -62,7 +60,7 @@ pub fn mirror_glass(steps: u32) -> Mesh {
     mirrored(&cage.subdivided(steps).mesh())
 }
 
-/// Door handles, and the lid of the tank.
+/// Door handles.
 pub fn handles(body: &Surface, steps: u32) -> Mesh {
     let mut cage = Cage::default();
     let door = |p: Panel| p == Panel::Door;
@@ -74,7 +72,7 @@ pub fn handles(body: &Surface, steps: u32) -> Mesh {
     mirrored(&cage.subdivided(steps).mesh())
 }
 
-/// Slats of the grille, and a frame around its edge.
+/// Slats of the grille.
 pub fn grille(body: &Surface) -> Mesh {
     let mut mesh = Mesh::default();
     let grille = |p: Panel| p == Panel::Grille;
@@ -189,7 +187,7 @@ pub fn daylight(body: &Surface) -> Mesh {
     mirrored(&mesh)
 }
 
-/// The tube of light in the tail lamps.
+/// The tubes of light in the tail lamps.
 pub fn taillight(body: &Surface) -> Mesh {
     let mut mesh = Mesh::default();
     let lamp = |p: Panel| p == Panel::TailLamp;
@@ -197,7 +195,8 @@ pub fn taillight(body: &Surface) -> Mesh {
         let mut points = Vec::new();
         for i in 0..=48 {
             let x = 0.26 + 0.5 * i as f32 / 48.0;
-            let z = 0.848 - 0.07 * ((x - 0.2) / 0.6) * ((x - 0.2) / 0.6) * 0.6 + lift;
+            let t = (x - 0.2) / 0.6;
+            let z = 0.848 - 0.042 * t * t + lift;
             if let Some([p, n]) = body.project(lamp, 1, -1.0, Vec2::new(x, z)) {
                 points.push((p - n * 0.014, 0.0055));
             }
@@ -213,6 +212,5 @@ pub fn taillight(body: &Surface) -> Mesh {
 pub fn well(sides: u32) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.lathe(&[[0.135, 0.392], [-0.22, 0.392], [-0.22, 0.392], [-0.22, 0.001]], sides);
-    let _ = TAU;
     mesh
 }

@@ -69,9 +69,7 @@ pub fn board(steps: u32) -> Mesh {
         let (x, y) = (1.16 * (i as f32 / 4.0 - 0.5), -0.80 - 0.24 * j as f32);
         Vec3::new(x, y, if up == 1 { 0.83 } else { 0.70 })
     });
-    for face in cage.faces.clone() {
-        (0..4).for_each(|i| cage.crease(face[i], face[(i + 1) % 4], 0.5));
-    }
+    cage.sharpen(0, 0.5);
     cage.subdivided(steps).mesh()
 }
 

@@ -61,7 +61,7 @@ fn sky(size: u32) -> Vec<u8> {
             let d = equal_area_square_to_sphere(uv);
             let up = d.z.abs();
             // Towards the sunset, which is at −y.
-            let west = (d.dot(Vec3::new(-0.1, -0.99, 0.05)).max(0.0)).min(1.0);
+            let west = d.dot(Vec3::new(-0.1, -0.99, 0.05)).clamp(0.0, 1.0);
             let glow = lanes::pow(west, 6.0) * lanes::exp(-5.0 * up);
             let band = lanes::exp(-3.2 * up);
             let clouds = fbm(1.2 * d.x / (up + 0.22), 2.4 * d.y / (up + 0.22), 5);
@@ -69,7 +69,7 @@ fn sky(size: u32) -> Vec<u8> {
             let mut colour = Vec3::new(0.26, 0.37, 0.62) * (1.0 - 0.35 * up);
             colour += Vec3::new(0.26, 0.24, 0.28) * band;
             colour += Vec3::new(1.25, 0.5, 0.13) * glow;
-            colour = colour * (0.75 + 0.5 * streaks);
+            colour *= 0.75 + 0.5 * streaks;
             colour += Vec3::new(0.42, 0.17, 0.12) * (streaks * band * (0.2 + west));
             for v in colour.to_array() {
                 file.extend(v.to_le_bytes());

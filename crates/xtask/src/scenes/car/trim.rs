@@ -24,7 +24,7 @@ pub fn strips(body: &Surface, is_chosen: impl Fn(Panel) -> bool, radius: f32, he
 }
 
 /// The closed borders of some panels, in the order of their least points.
-pub fn borders(body: &Surface, is_chosen: impl Fn(Panel) -> bool) -> Vec<Vec<u32>> {
+fn borders(body: &Surface, is_chosen: impl Fn(Panel) -> bool) -> Vec<Vec<u32>> {
     let mut count: HashMap<[u32; 2], u32> = HashMap::new();
     let chosen = || (0..body.cage.faces.len()).filter(|&face| is_chosen(body.cage.tags[face].0));
     let sides = |face: usize| {

@@ -11,6 +11,8 @@ use crate::scenes::mesh::Mesh;
 
 /// Half the width of the tyre.
 const HALF: f32 = 0.122;
+/// Where the tread begins.
+const TREAD: f32 = WHEEL - 0.017;
 /// Pairs of spokes.
 const PAIRS: u32 = 5;
 
@@ -59,7 +61,7 @@ pub fn tyre(columns: u32, rows: u32) -> Mesh {
         let sum = |axis: usize| (0..4).map(|m| weights[m] * at(k + m)[axis]).sum::<f32>() / 6.0;
         let (x, mut radius) = (HALF * sum(0), sum(1));
         let turn = i as f32 / columns as f32;
-        if radius > 0.318 {
+        if radius > TREAD {
             // Grooves around, and slanted ones across the shoulders.
             let mut depth: f32 = 0.0;
             for at in [-0.062, -0.021, 0.021, 0.062] {
@@ -72,7 +74,7 @@ pub fn tyre(columns: u32, rows: u32) -> Mesh {
             } else if x.abs() > 0.027 {
                 depth = depth.max(0.6 * groove(across - 0.004, 0.0011, 0.0008));
             }
-            radius -= 0.0075 * depth * ((radius - 0.318) / 0.008).min(1.0);
+            radius -= 0.0075 * depth * ((radius - TREAD) / 0.008).min(1.0);
         }
         // Rings on the side walls.
         let ring = groove(radius - 0.2585, 0.0012, 0.001) + groove(radius - 0.305, 0.001, 0.001);
@@ -202,10 +204,7 @@ pub fn caliper(steps: u32) -> Mesh {
         let (sin, cos) = lanes::sin_cos(angle);
         Vec3::new(x, -radius * cos, radius * sin)
     });
-    let sharp: Vec<_> = cage.faces.clone();
-    for face in sharp {
-        (0..4).for_each(|i| cage.crease(face[i], face[(i + 1) % 4], 0.6));
-    }
+    cage.sharpen(0, 0.6);
     cage.subdivided(steps).mesh()
 }
 
