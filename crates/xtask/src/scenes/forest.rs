@@ -253,10 +253,10 @@ Film "rgb" "integer xresolution" 960 "integer yresolution" 540 "string filename"
 Sampler "zsobol" "integer pixelsamples" 64
 Integrator "volpath" "integer maxdepth" 16
 
-MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0.0055 0.006 0.0066 ]
+MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0.0085 0.009 0.0096 ]
 MediumInterface "" "mist"
-LookAt 1.5 -13.2 1.7   0.2 0 1.75   0 0 1
-Camera "perspective" "float fov" 46
+LookAt 1.5 -13.2 1.5   0.2 0 2.3   0 0 1
+Camera "perspective" "float fov" 44
 
 WorldBegin
 Include "place.pbrt"
@@ -267,7 +267,7 @@ Include "TREES"
 
 const PLACE: &str = r#"# Sky, mist, ground and water, and the materials of plants.
 
-LightSource "infinite" "string filename" "sky.pfm" "float scale" 2.2
+LightSource "infinite" "string filename" "sky.pfm" "float scale" 2.5
 
 MakeNamedMedium "water" "string type" "homogeneous" "rgb sigma_a" [ 0.9 0.35 0.3 ] "rgb sigma_s" [ 0.05 0.06 0.05 ]
 AttributeBegin
@@ -287,12 +287,12 @@ Material "diffuse" "texture reflectance" "soil"
 Shape "plymesh" "string filename" "ground.ply"
 
 MakeNamedMaterial "oak wood" "string type" "diffuse" "rgb reflectance" [ 0.11 0.085 0.06 ]
-MakeNamedMaterial "oak leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.06 0.13 0.025 ] "rgb transmittance" [ 0.07 0.16 0.02 ]
+MakeNamedMaterial "oak leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.085 0.17 0.03 ] "rgb transmittance" [ 0.12 0.23 0.025 ]
 MakeNamedMaterial "birch wood" "string type" "diffuse" "rgb reflectance" [ 0.48 0.46 0.42 ]
-MakeNamedMaterial "birch leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.11 0.17 0.03 ] "rgb transmittance" [ 0.13 0.2 0.025 ]
+MakeNamedMaterial "birch leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.15 0.2 0.035 ] "rgb transmittance" [ 0.2 0.26 0.03 ]
 MakeNamedMaterial "spruce wood" "string type" "diffuse" "rgb reflectance" [ 0.1 0.07 0.05 ]
 MakeNamedMaterial "spruce leaves" "string type" "diffuse" "rgb reflectance" [ 0.035 0.075 0.035 ]
 MakeNamedMaterial "bush wood" "string type" "diffuse" "rgb reflectance" [ 0.12 0.09 0.06 ]
-MakeNamedMaterial "bush leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.08 0.12 0.03 ] "rgb transmittance" [ 0.09 0.15 0.03 ]
-MakeNamedMaterial "grass" "string type" "diffusetransmission" "rgb reflectance" [ 0.08 0.14 0.03 ] "rgb transmittance" [ 0.07 0.14 0.02 ]
+MakeNamedMaterial "bush leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.11 0.15 0.03 ] "rgb transmittance" [ 0.14 0.19 0.03 ]
+MakeNamedMaterial "grass" "string type" "diffusetransmission" "rgb reflectance" [ 0.11 0.18 0.035 ] "rgb transmittance" [ 0.11 0.2 0.025 ]
 "#;

@@ -75,7 +75,7 @@ AttributeBegin
 AttributeEnd
 # Behind the car, and hidden by it, one that makes the backdrop glow.
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 75 78 84 ]
+    AreaLightSource "diffuse" "rgb L" [ 110 114 122 ]
     Shape "bilinearmesh" "point3 P" [ -3.0 -2.2 0.05  -1.0 -3.7 0.05  -3.0 -2.2 0.3  -1.0 -3.7 0.3 ]
 AttributeEnd
 Material "openpbr" "rgb base_color" [ 0.05 0.051 0.055 ] "float specular_roughness" 0.16
