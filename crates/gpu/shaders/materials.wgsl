@@ -165,6 +165,12 @@ fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {
 }
 
 fn bsdf_flags(bsdf: Bsdf) -> u32 {
+    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+        return Layered_Diffuse_flags(coated_diffuse(bsdf));
+    }
+    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+        return Layered_Conductor_flags(coated_conductor(bsdf));
+    }
     let is_smooth = TrowbridgeReitz_effectively_smooth(bsdf.facets);
     switch (bsdf.kind) {
         case DIFFUSE: {
@@ -182,8 +188,6 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
             return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
                 | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
         }
-        case COATED_DIFFUSE: { return Layered_Diffuse_flags(coated_diffuse(bsdf)); }
-        case COATED_CONDUCTOR: { return Layered_Conductor_flags(coated_conductor(bsdf)); }
         default: {
             return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
         }
@@ -215,6 +219,12 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (!is_normal(wo.z)) {
         return vec4f();
     }
+    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+        return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, TransportMode_Radiance);
+    }
+    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+        return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, TransportMode_Radiance);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, TransportMode_Radiance); }
         case DIFFUSE_TRANSMISSION: {
@@ -225,10 +235,6 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
         }
         case DIELECTRIC: {
             return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, TransportMode_Radiance);
-        }
-        case COATED_DIFFUSE: { return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, TransportMode_Radiance); }
-        case COATED_CONDUCTOR: {
-            return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, TransportMode_Radiance);
         }
         default: { return vec4f(); }
     }
@@ -241,6 +247,12 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         return 0;
     }
     let mode = TransportMode_Radiance;
+    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+        return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
+    }
+    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+        return Layered_Conductor_pdf(coated_conductor(bsdf), wo, wi, mode, Directions_All);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
         case DIFFUSE_TRANSMISSION: {
@@ -252,12 +264,6 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         }
         case DIELECTRIC: {
             return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
-        }
-        case COATED_DIFFUSE: {
-            return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
-        }
-        case COATED_CONDUCTOR: {
-            return Layered_Conductor_pdf(coated_conductor(bsdf), wo, wi, mode, Directions_All);
         }
         default: { return 0; }
     }
@@ -284,15 +290,16 @@ fn bsdf_sample(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f) -> BsdfSample {
         case DIELECTRIC: {
             sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, Directions_All);
         }
-        case COATED_DIFFUSE: {
-            sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, Directions_All);
-        }
-        case COATED_CONDUCTOR: {
-            sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, Directions_All);
-        }
-        default: {
+        case THIN_DIELECTRIC: {
             sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, Directions_All);
         }
+        default: {}
+    }
+    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+        sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, Directions_All);
+    }
+    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+        sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, Directions_All);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);

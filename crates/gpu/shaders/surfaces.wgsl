@@ -291,6 +291,9 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
 // Whether a hit on a surface that is cut out counts: with the probability that its alpha is, by a
 // hash of the ray and the distance.
 fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
+    if (!HAS_HOLES) {
+        return true;
+    }
     let s = surface_at(hit, Ray(o, d, 0));
     let context = TextureContext(s.p.p, s.n, s.uv, Footprint());
     let alpha = texture(tables[world.geometries + 5 * hit.geometry + 4], context, SampledWavelengths()).x;

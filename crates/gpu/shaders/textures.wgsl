@@ -61,18 +61,22 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
             case CODE_SQUARES, CODE_BILERP, CODE_IMAGE, CODE_DOTS: {
                 let is_image = tables[operation] == CODE_IMAGE;
                 let place = on_texture(select(argument, tables[argument + 1], is_image), context);
-                if (is_image) {
+                if (HAS_IMAGES && is_image) {
                     value = image_texture(argument, place, lambda);
                 } else if (tables[operation] == CODE_SQUARES) {
                     value = vec4f(squares(place));
-                } else if (tables[operation] == CODE_DOTS) {
+                } else if (HAS_NOISE && tables[operation] == CODE_DOTS) {
                     value = vec4f(coverage(place.st));
                 } else {
                     let w = weights(place.st);
                     value = a * w.x + b * w.y + c * w.z + slots[operands >> 24] * w.w;
                 }
             }
-            default: { value = pattern(tables[operation], argument, context, lambda); }
+            default: {
+                if (HAS_NOISE) {
+                    value = pattern(tables[operation], argument, context, lambda);
+                }
+            }
         }
         slots[tables[operation + 1]] = value;
     }

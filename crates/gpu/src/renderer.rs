@@ -17,7 +17,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
-use crate::shaders;
+use crate::shaders::{self, Parts};
 
 /// The most pixels of a strip, unless a row of tiles has more.
 const MAX_PIXELS: usize = 1 << 18;
@@ -42,9 +42,9 @@ impl Kernels {
         &self.device
     }
 
-    fn get(&self, algorithm: &Algorithm) -> Result<Arc<Kernel>, GpuError> {
+    fn get(&self, algorithm: &Algorithm, parts: Parts) -> Result<Arc<Kernel>, GpuError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let source = shaders::pixels(algorithm);
+        let source = shaders::pixels(algorithm, parts);
         if let Some(kernel) = made.get(&source) {
             return Ok(kernel.clone());
         }
@@ -90,7 +90,7 @@ impl Renderer {
         algorithm: &Algorithm,
         film: &Film,
     ) -> Result<Self, GpuError> {
-        let kernel = kernels.get(algorithm)?;
+        let kernel = kernels.get(algorithm, flat.parts)?;
         let device = &kernels.device;
         let batch = Batch { low: [0; 2], size: [0; 2], index: 0, unused: 0 };
         let samples = strips(film.pixel_bounds()).map(|strip| strip.area()).max().unwrap_or(0);

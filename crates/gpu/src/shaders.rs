@@ -41,13 +41,31 @@ pub fn with_laws(parts: &[&str]) -> String {
     all.copied().collect::<Vec<_>>().join("\n")
 }
 
+/// What kernels have only for scenes that need it, because it is much code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// Surfaces with an alpha.
+    pub holes: bool,
+    /// Textures of images.
+    pub images: bool,
+    /// Textures of noise.
+    pub noise: bool,
+    /// Coated materials.
+    pub coats: bool,
+}
+
 /// The kernel that renders a sample of each pixel by an algorithm.
-pub fn pixels(algorithm: &Algorithm) -> String {
+pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
     let rays = match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
     };
     let direct = include_str!("../shaders/direct.wgsl");
-    with_laws(&[&PLUMBING[..], &[direct, rays]].concat())
+    let Parts { holes, images, noise, coats } = parts;
+    let has = format!(
+        "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
+        const HAS_COATS = {coats};\n"
+    );
+    with_laws(&[&PLUMBING[..], &[direct, rays, &has]].concat())
 }

@@ -65,7 +65,7 @@ pub enum BvhError {
 
 impl Bvh {
     /// The buffers of a world at rest, of meshes, single shapes, sets of spheres, and instances of
-    /// groups of them. Hits on geometries that are cut out count if `accepts` of the kernel says so.
+    /// groups of them. Hits on geometries that are cut out count if the kernel's `accepts` says so.
     pub fn new(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
         let mut groups = vec![Group::default(); world.groups()];

@@ -28,6 +28,7 @@ impl Flattener<'_> {
                 Geometry::Curves(_) => self.refuse("curves", entry.span),
             }
             let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
+            self.parts.holes |= entry.alpha.is_some();
             let light = entry.first_light.map_or(0, |light| light + 1);
             rows.extend([entry.material.0, light, attributes, flips.into(), alpha]);
         }

@@ -110,6 +110,7 @@ impl Flattener<'_> {
 
     /// A coat over a base, of which two words and the textures are given.
     fn coated(&mut self, kind: u32, coat: &Coat, base: [u32; 2], textures: Vec<u32>, span: Span) -> Record {
+        self.parts.coats = true;
         let (remap, mut all) = self.roughness(&coat.roughness, span);
         all.extend([coat.thickness, coat.g].map(|id| self.number_texture(id, span)));
         all.push(self.spectrum_texture(coat.albedo, span));

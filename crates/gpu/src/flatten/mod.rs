@@ -31,6 +31,7 @@ use scene::{Scene, View};
 
 use crate::algorithm::Algorithm;
 use crate::bvh::{Bvh, BvhError, Top};
+use crate::shaders::Parts;
 use slab::Slab;
 
 /// Something that kernels do not draw.
@@ -59,6 +60,8 @@ pub struct Flat {
     pub(crate) tables: Vec<u32>,
     /// The texels of images.
     pub(crate) texels: Vec<u32>,
+    /// What kernels need for it.
+    pub(crate) parts: Parts,
 }
 
 /// The first buffer: `World` of `shaders/scene.wgsl`.
@@ -138,6 +141,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         pyramids: Default::default(),
         texels: Default::default(),
         largest_buffer,
+        parts: Parts::default(),
         refusals: Vec::new(),
     };
     flattener.check(view, film);
@@ -172,8 +176,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     }
     let bvh = flattener.bvh();
     head.top = bvh.top;
-    let Flattener { slab, texels, refusals, .. } = flattener;
-    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words };
+    let Flattener { slab, texels, parts, refusals, .. } = flattener;
+    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts };
     if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
 }
 
@@ -189,6 +193,7 @@ struct Flattener<'a> {
     pyramids: HashMap<u32, u32>,
     texels: images::Texels,
     largest_buffer: usize,
+    parts: Parts,
     refusals: Vec<Refusal>,
 }
 

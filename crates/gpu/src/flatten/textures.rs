@@ -7,7 +7,8 @@
 //! | 2, count, and for each operation 4 words: code, target, slots of operands, argument | a program |
 //!
 //! Slots of operands are bytes of a word. Codes are those of [`Code`] in the order of the constants
-//! below. Their arguments are numbers or offsets: of a spectrum, a direction, a mapping, or of one of
+//! below. Their arguments are numbers or offsets: of a spectrum, a direction, a mapping, or of one
+//! of these:
 //!
 //! | words | operation |
 //! |---|---|
@@ -102,6 +103,11 @@ impl Flattener<'_> {
     /// The code of an operation, and its argument.
     fn code(&mut self, code: Code, span: Span) -> [u32; 2] {
         let textures = self.scene.textures();
+        self.parts.images |= matches!(code, Code::FloatImage(_) | Code::SpectrumImage(_));
+        self.parts.noise |= matches!(
+            code,
+            Code::Dots(_) | Code::Fbm(_) | Code::Wrinkled(_) | Code::Windy(_) | Code::Marble(_)
+        );
         match code {
             Code::Number(number) => [CODE_NUMBER, number.to_bits()],
             Code::Spectrum(index) => [CODE_SPECTRUM, self.spectrum(&textures.spectra()[index as usize])],

@@ -1,6 +1,7 @@
 //! Every shader is valid WGSL. Needs no GPU.
 
-use alhazen_gpu::{Algorithm, shaders};
+use alhazen_gpu::Algorithm;
+use alhazen_gpu::shaders::{self, Parts};
 use spectrum::RgbColorSpace;
 use wgpu::naga::front::wgsl;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -36,8 +37,11 @@ fn traversal_is_valid() {
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
-        let source = shaders::pixels(&algorithm);
-        validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+        for bits in 0..16 {
+            let [holes, images, noise, coats] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
+            let source = shaders::pixels(&algorithm, Parts { holes, images, noise, coats });
+            validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+        }
     }
 }
 
