@@ -171,3 +171,49 @@ fn what_is_not_in_the_subset_is_an_error() {
         assert!(translated(source).is_err(), "{source}");
     }
 }
+
+#[test]
+fn pairs_of_arrays_are_taken_apart() {
+    assert_body(
+        "fn f<R: Real>(x: R) -> R {
+            let mut sums = [R::zero(); 2];
+            for (i, (sum, y)) in sums.iter_mut().zip([x, x * x]).enumerate() {
+                *sum += y * R::splat(i as f32);
+            }
+            sums[0] + sums[1]
+        }",
+        &[
+            "var sums = vec2f(0.0f, 0.0f);",
+            "{",
+            "sums[0] += x * f32(0);",
+            "}",
+            "{",
+            "let y = x * x;",
+            "sums[1] += y * f32(1);",
+            "}",
+            "return sums.x + sums.y;",
+        ],
+    );
+}
+
+#[test]
+fn arguments_of_types_are_inferred() {
+    assert_body(
+        "struct One<R> { y: R }
+        struct Pair<B, R> { b: B, x: R }
+        struct Holder<'a, B, R> { pair: &'a Pair<B, R> }
+        fn f<R: Real>(x: R) -> R {
+            let h = Holder { pair: &Pair { b: One { y: x }, x } };
+            h.pair.x
+        }",
+        &["let h = Holder_One(Pair_One(One(x), x));", "return h.pair.x;"],
+    );
+}
+
+#[test]
+fn integers_have_limits() {
+    assert_body(
+        "fn f(n: u32) -> i32 { n.div_ceil(2).min(i32::MAX as u32) as i32 }",
+        &["return i32(min(n / 2 + u32(n % 2 != 0), u32(2147483647i)));"],
+    );
+}
