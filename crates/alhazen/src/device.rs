@@ -42,8 +42,13 @@ pub(crate) fn integrator(
         let message = format!("the engine for GPUs does not have integrator `{}`", desc.integrator.name());
         refused.push(Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span));
     }
-    let Some(algorithm) = algorithm else { return Err(refused) };
     let sampler = integrators::sampler(desc);
+    if !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_)) {
+        let message = "the engine for GPUs has the samplers `zsobol` and `independent` only";
+        let warning = Diagnostic::warning("not-on-gpu", message, desc.sampler.origin.span);
+        refused.push(warning.with_help("`--set sampler=zsobol` selects the first one"));
+    }
+    let Some(algorithm) = algorithm.filter(|_| refused.is_empty()) else { return Err(refused) };
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
     let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);
