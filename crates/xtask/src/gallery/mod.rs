@@ -53,15 +53,15 @@ pub fn check(root: &Path) -> Result<(), String> {
 /// Makes the scenes of formulas that pages draw.
 fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>) -> Result<(), String> {
     let commands: Vec<String> = pages.flat_map(Page::commands).collect();
-    let names: BTreeSet<&str> = commands
-        .iter()
-        .flat_map(|line| line.split_whitespace())
-        .filter_map(|word| word.strip_prefix("target/scenes/")?.split('/').next())
-        .collect();
-    if names.is_empty() {
-        return Ok(());
-    }
-    super::scenes::run(root, &Vec::from_iter(names))
+    let names = made_scenes(&commands);
+    // No names at all would be all scenes.
+    if names.is_empty() { Ok(()) } else { super::scenes::run(root, &Vec::from_iter(names)) }
+}
+
+/// The names of the scenes in `target/scenes` that commands draw.
+fn made_scenes(commands: &[String]) -> BTreeSet<&str> {
+    let words = commands.iter().flat_map(|line| line.split_whitespace());
+    words.filter_map(|word| word.strip_prefix("target/scenes/")?.split('/').next()).collect()
 }
 
 /// The texts in the order of their names.
@@ -71,4 +71,18 @@ fn pages(root: &Path) -> Result<Vec<Page>, String> {
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
     paths.iter().map(|path| Page::read(path)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_of_formulas_are_known_by_their_folder() {
+        let commands =
+            ["alhazen render scenes/a.pbrt", "alhazen render target/scenes/car/car-street.pbrt --spp 4"];
+        let commands = commands.map(str::to_owned);
+        assert_eq!(Vec::from_iter(made_scenes(&commands)), ["car"]);
+        assert!(made_scenes(&commands[..1]).is_empty());
+    }
 }

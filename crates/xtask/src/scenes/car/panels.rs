@@ -214,7 +214,7 @@ impl Rim {
                 for &other in neighbours.get(&point).into_iter().flatten() {
                     let step = cage.points[other as usize] - cage.points[source as usize];
                     let way = self.inward[&source].normalize_or_zero();
-                    // The distance from the border itself, if the source is the nearest of its points.
+                    // The distance from the border, if the source is nearest.
                     let (reached, distance) = (step.length(), step.dot(way).max(0.0));
                     let known = nearest.get(&other).map(|&(source, _)| {
                         (cage.points[other as usize] - cage.points[source as usize]).length()
