@@ -82,12 +82,15 @@ impl Flattener<'_> {
         let at = self.texels.words.len() as u32;
         match image.pixels() {
             Pixels::U8(codes, _) => {
-                let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
+                let word =
+                    |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
                 self.texels.words.extend(codes.chunks(4).map(word));
             }
             Pixels::F16(halves) => {
                 let bits = |half: Option<&half::f16>| half.map_or(0, |half| u32::from(half.to_bits()));
-                self.texels.words.extend(halves.chunks(2).map(|pair| bits(pair.first()) | bits(pair.get(1)) << 16));
+                self.texels
+                    .words
+                    .extend(halves.chunks(2).map(|pair| bits(pair.first()) | bits(pair.get(1)) << 16));
             }
             Pixels::F32(floats) => self.texels.words.extend(floats.iter().map(|x| x.to_bits())),
         }

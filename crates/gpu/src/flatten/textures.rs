@@ -26,11 +26,11 @@
 
 use description::Span;
 use image::TextureFilter;
+use math::Transform;
 use math::Vec2;
 use scene::texture::{
     Code, FloatTextureId, Fractal, ImageLookup, Mapping2d, Operation, SpectrumTextureId, SpectrumType,
 };
-use math::Transform;
 use spectrum::RgbColorSpace;
 
 use super::Flattener;

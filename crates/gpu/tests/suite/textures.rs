@@ -20,7 +20,8 @@ fn noise<const N: usize>(size: [u32; 2], names: [&str; N]) -> Image {
 
 /// An image as a file.
 fn file(image: &Image, name: &str) -> Vec<u8> {
-    image::encode(image, Format::from_name(name).expect("a format"), &WriteOptions::default()).expect("an image that can be written")
+    image::encode(image, Format::from_name(name).expect("a format"), &WriteOptions::default())
+        .expect("an image that can be written")
 }
 
 /// A picture of a wall of textures, the statements of which are given.
@@ -42,7 +43,10 @@ fn wall(textures: &[String]) -> Case {
     let assets = MemoryAssets::default()
         .with("wall.pbrt", text)
         .with("codes.png", file(&rgb.to_u8(ColorEncoding::Srgb), "codes.png"))
-        .with("opacity.png", file(&noise([16, 8], ["R", "G", "B", "A"]).to_u8(ColorEncoding::Srgb), "opacity.png"))
+        .with(
+            "opacity.png",
+            file(&noise([16, 8], ["R", "G", "B", "A"]).to_u8(ColorEncoding::Srgb), "opacity.png"),
+        )
         .with("halves.exr", file(&rgb.to_f16(), "halves.exr"))
         .with("floats.pfm", file(&noise([16, 16], ["R", "G", "B"]), "floats.pfm"));
     Case::sized(Path::new("wall.pbrt"), &assets, [384, 256])
@@ -90,7 +94,9 @@ fn mappings_have_the_picture_of_the_cpu() {
         "\"dots\" \"rgb inside\" [ 0.9 0.5 0.1 ] \"rgb outside\" [ 0.1 0.2 0.3 ]",
         "\"bilerp\" \"rgb v00\" [ 0.9 0.5 0.1 ] \"rgb v11\" [ 0.1 0.2 0.3 ]",
     ];
-    let all = kinds.iter().flat_map(|kind| mappings.iter().map(move |mapping| format!("\"spectrum\" {kind} {mapping}")));
+    let all = kinds
+        .iter()
+        .flat_map(|kind| mappings.iter().map(move |mapping| format!("\"spectrum\" {kind} {mapping}")));
     compare("mappings", &all.collect::<Vec<_>>());
 }
 

@@ -164,7 +164,8 @@ impl<T: Copy> Cage<T> {
                 refined.face([face[k], next, first_middle + i as u32, last], self.tags[i]);
             }
         }
-        for (i, half) in edges.iter().enumerate().filter(|(_, edge)| edge.sharpness > 1.0 && edge.faces == 2) {
+        for (i, half) in edges.iter().enumerate().filter(|(_, edge)| edge.sharpness > 1.0 && edge.faces == 2)
+        {
             for end in half.ends {
                 let rest = if half.sharpness >= SHARP { SHARP } else { half.sharpness - 1.0 };
                 refined.crease(end, (count + i) as u32, rest);

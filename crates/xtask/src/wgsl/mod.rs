@@ -64,10 +64,7 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/sampling/src/sampler/independent.rs", &["Independent::at_1d", "Independent::at_2d"]),
     ("crates/sampling/src/sampler/randomize.rs", &[]),
     ("crates/sampling/src/low_discrepancy/sobol.rs", &[]),
-    (
-        "crates/sampling/src/sampler/zsobol.rs",
-        &["ZSobol::at_1d", "ZSobol::at_2d", "permuted", "hash_above"],
-    ),
+    ("crates/sampling/src/sampler/zsobol.rs", &["ZSobol::at_1d", "ZSobol::at_2d", "permuted", "hash_above"]),
     ("crates/sampling/src/warp/disk.rs", &["sample_uniform_disk_polar", "sample_uniform_disk_concentric"]),
     ("crates/sampling/src/warp/interval.rs", &["sample_linear", "linear_pdf", "sample_tent"]),
     (

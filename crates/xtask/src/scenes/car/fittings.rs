@@ -115,7 +115,8 @@ pub fn wipers(body: &Surface) -> Mesh {
         let mut points = Vec::new();
         for i in 0..=24 {
             let t = i as f32 / 24.0;
-            let (x, y) = (from + t * (to - from), 0.668 - 0.10 * (from + t * (to - from)).powi(2) - 0.045 * t);
+            let (x, y) =
+                (from + t * (to - from), 0.668 - 0.10 * (from + t * (to - from)).powi(2) - 0.045 * t);
             if let Some([p, n]) = body.project(screen, 2, 1.0, Vec2::new(x, y)) {
                 points.push((p + n * 0.012, 0.0055));
             }
@@ -132,7 +133,15 @@ pub fn badges(body: &Surface, sides: u32) -> Mesh {
     let mut mesh = Mesh::default();
     let mut disc = Mesh::default();
     disc.lathe(
-        &[[0.0, 0.036], [0.004, 0.0355], [0.006, 0.033], [0.005, 0.030], [0.003, 0.029], [0.0045, 0.015], [0.005, 0.0003]],
+        &[
+            [0.0, 0.036],
+            [0.004, 0.0355],
+            [0.006, 0.033],
+            [0.005, 0.030],
+            [0.003, 0.029],
+            [0.0045, 0.015],
+            [0.005, 0.0003],
+        ],
         sides,
     );
     let any = |p: Panel| matches!(p, Panel::Bonnet | Panel::Boot | Panel::FrontBumper | Panel::RearBumper);

@@ -104,7 +104,11 @@ fn panels(car: &mut Car, surface: &Surface, fine: u32) -> io::Result<()> {
     let is_lined = |panel: Panel| !panel.is_clear() && panel != Panel::Grille;
     let coarse = Surface::new(body::cage().subdivided(fine.max(2) - 1));
     car.part("lining", "lining", &coarse.sheet(is_lined, 0.022))?;
-    car.part("headlamp-bowl", "bowl", &surface.panel(|p| p == Panel::Headlamp, Edge { gap: 0.004, bend: 0.0, flange: 0.05, depth: 0.07 }))?;
+    car.part(
+        "headlamp-bowl",
+        "bowl",
+        &surface.panel(|p| p == Panel::Headlamp, Edge { gap: 0.004, bend: 0.0, flange: 0.05, depth: 0.07 }),
+    )?;
     car.part("taillamp-bowl", "bowl", &surface.sheet(|p| p == Panel::TailLamp, 0.03))
 }
 
@@ -120,7 +124,8 @@ fn objects(car: &mut Car, sides: u32, fine: u32) -> io::Result<()> {
     car.part("well", "lining", &fittings::well(sides))?;
     car.text += "ObjectEnd\nObjectBegin \"projector\"\n";
     car.part("projector", "chrome", &fittings::projector(sides / 2))?;
-    car.text += "NamedMaterial \"crystal\" Translate -0.012 0 0 Shape \"sphere\" \"float radius\" 0.03\nObjectEnd\n";
+    car.text +=
+        "NamedMaterial \"crystal\" Translate -0.012 0 0 Shape \"sphere\" \"float radius\" 0.03\nObjectEnd\n";
     Ok(())
 }
 

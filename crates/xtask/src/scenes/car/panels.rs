@@ -219,7 +219,10 @@ impl Rim {
                     let known = nearest.get(&other).map(|&(source, _)| {
                         (cage.points[other as usize] - cage.points[source as usize]).length()
                     });
-                    if distance < reach && reached < 2.0 * reach + 0.02 && known.is_none_or(|known| reached < known) {
+                    if distance < reach
+                        && reached < 2.0 * reach + 0.02
+                        && known.is_none_or(|known| reached < known)
+                    {
                         nearest.insert(other, (source, distance));
                         next.push(other);
                     }

@@ -121,9 +121,12 @@ fn house(
             let (left, right) = (BAY * bay as f32, BAY * (bay + 1) as f32);
             let half = if shop { 1.05 } else { 0.58 };
             let (a, b) = (0.5 * (left + right) - half, 0.5 * (left + right) + half);
-            for [y0, y1, z0, z1] in
-                [[left, right, low, sill], [left, right, top, high], [left, a, sill, top], [b, right, sill, top]]
-            {
+            for [y0, y1, z0, z1] in [
+                [left, right, low, sill],
+                [left, right, top, high],
+                [left, a, sill, top],
+                [b, right, sill, top],
+            ] {
                 quad(wall, [at(y0, z0, 0.0), at(y1, z0, 0.0), at(y1, z1, 0.0), at(y0, z1, 0.0)]);
             }
             for [[y0, z0], [y1, z1]] in
@@ -138,7 +141,15 @@ fn house(
                 let (z0, z1) = (sill + 0.05, top - 0.05);
                 quad(panes, [at(y0, z0, DEEP), at(y1, z0, DEEP), at(y1, z1, DEEP), at(y0, z1, DEEP)]);
             }
-            quad(wall, [at(a, sill, DEEP + 0.01), at(b, sill, DEEP + 0.01), at(b, top, DEEP + 0.01), at(a, top, DEEP + 0.01)]);
+            quad(
+                wall,
+                [
+                    at(a, sill, DEEP + 0.01),
+                    at(b, sill, DEEP + 0.01),
+                    at(b, top, DEEP + 0.01),
+                    at(a, top, DEEP + 0.01),
+                ],
+            );
         }
     }
     // A cornice, the ends, and the roof.
@@ -152,7 +163,15 @@ fn house(
     for y in [0.0, length] {
         quad(wall, [at(y, 0.0, 0.0), at(y, 0.0, 11.0), at(y, height, 11.0), at(y, height, 0.0)]);
     }
-    quad(wall, [at(0.0, height, 0.0), at(length, height, 0.0), at(length, height + 3.0, 5.5), at(0.0, height + 3.0, 5.5)]);
+    quad(
+        wall,
+        [
+            at(0.0, height, 0.0),
+            at(length, height, 0.0),
+            at(length, height + 3.0, 5.5),
+            at(0.0, height + 3.0, 5.5),
+        ],
+    );
 }
 
 /// The pavement with its kerb of stones.
@@ -200,10 +219,12 @@ const LAMPS: [f32; 5] = [-50.0, -35.0, -20.0, -7.0, 8.0];
 fn posts() -> Mesh {
     let mut mesh = Mesh::default();
     for y in LAMPS {
-        let points =
-            [(0.0, 0.09), (0.9, 0.085), (1.0, 0.055), (4.35, 0.04), (4.42, 0.07), (4.5, 0.08)];
+        let points = [(0.0, 0.09), (0.9, 0.085), (1.0, 0.055), (4.35, 0.04), (4.42, 0.07), (4.5, 0.08)];
         mesh.tube(&points.map(|(z, r)| (Vec3::new(KERB - 0.5, y, STEP + z), r)), 24);
-        mesh.tube(&[(4.62, 0.13), (4.72, 0.10), (4.78, 0.02)].map(|(z, r)| (Vec3::new(KERB - 0.5, y, STEP + z), r)), 24);
+        mesh.tube(
+            &[(4.62, 0.13), (4.72, 0.10), (4.78, 0.02)].map(|(z, r)| (Vec3::new(KERB - 0.5, y, STEP + z), r)),
+            24,
+        );
     }
     mesh
 }

@@ -235,6 +235,8 @@ mod tests {
         assert!(radii(&rim).all(|radius| radius < 0.255));
         let tyre = tyre(64, 64);
         assert!(rim.positions.iter().all(|p| p.x.abs() < 0.122) && tyre.positions.len() == 64 * 64);
-        assert!(radii(&disc(64)).all(|radius| radius < 0.2) && radii(&caliper(2)).all(|radius| radius < 0.215));
+        assert!(
+            radii(&disc(64)).all(|radius| radius < 0.2) && radii(&caliper(2)).all(|radius| radius < 0.215)
+        );
     }
 }
