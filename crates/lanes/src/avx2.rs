@@ -101,6 +101,9 @@ real! {
     to_int(a) = _mm256_cvttps_epi32(a);
     -> Self, if there is an instruction:
     gather(table, indices) = _mm256_i32gather_ps::<4>(table, indices);
+    -> [Self; 4], by shuffles:
+    gather_rows::<K>(table, indices) = gather_rows::<K>(table, &indices);
+    transpose(columns) = transpose(columns);
 }
 
 int! {
@@ -144,6 +147,50 @@ mask! {
 }
 
 // SAFETY of what follows: only operations of the vectors above call it.
+
+/// `K` floats from each index on, in columns, and after them others.
+#[inline(always)]
+unsafe fn gather_rows<const K: usize>(table: *const f32, indices: &[u32; 16]) -> [__m256; 4] {
+    unsafe {
+        // Half i of vector j has the row of lane 4 i + j.
+        let mut rows = [_mm256_setzero_ps(); 4];
+        let mut j = 0;
+        while j < 4 {
+            let low = _mm256_castps128_ps256(row::<K>(table.add(indices[j] as usize)));
+            rows[j] = _mm256_insertf128_ps::<1>(low, row::<K>(table.add(indices[4 + j] as usize)));
+            j += 1;
+        }
+        transpose(rows)
+    }
+}
+
+/// The first `K` of four floats; no others are read.
+#[inline(always)]
+pub unsafe fn row<const K: usize>(from: *const f32) -> __m128 {
+    unsafe {
+        match K {
+            4 => _mm_loadu_ps(from),
+            3 => _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0)),
+            2 => _mm_castpd_ps(_mm_load_sd(from.cast())),
+            _ => _mm_load_ss(from),
+        }
+    }
+}
+
+/// Transposes the matrices of four by four floats, whose rows are four lanes of each vector.
+#[inline(always)]
+unsafe fn transpose([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
+    unsafe {
+        let low = [_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d)];
+        let high = [_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d)];
+        [
+            _mm256_shuffle_ps::<0x44>(low[0], low[1]),
+            _mm256_shuffle_ps::<0xee>(low[0], low[1]),
+            _mm256_shuffle_ps::<0x44>(high[0], high[1]),
+            _mm256_shuffle_ps::<0xee>(high[0], high[1]),
+        ]
+    }
+}
 
 /// A bit for each lane.
 #[inline(always)]

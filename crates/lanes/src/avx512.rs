@@ -1,7 +1,7 @@
 //! Sixteen floats at once, and the vectors of AVX2 with twice the registers. Comparisons of the
 //! latter stay vectors: bits from mask registers take longer.
 
-use crate::avx2::{self, F32x4, F32x8};
+use crate::avx2::{self, F32x4, F32x8, row};
 use std::arch::x86_64::*;
 
 instruction_set! {
@@ -72,6 +72,9 @@ real! {
     to_int(a) = _mm512_cvttps_epi32(a);
     -> Self, if there is an instruction:
     gather(table, indices) = _mm512_i32gather_ps::<4>(indices, table);
+    -> [Self; 4], by shuffles:
+    gather_rows::<K>(table, indices) = gather_rows::<K>(table, &indices);
+    transpose(columns) = transpose(columns);
     -> (), if there is an instruction:
     scatter(value, mask, table, indices) = _mm512_mask_i32scatter_ps::<4>(table, mask, indices, value);
 }
@@ -117,6 +120,44 @@ mask! {
     BitAnd::bitand(a, b) = a & b;
     BitOr::bitor(a, b) = a | b;
     BitXor::bitxor(a, b) = a ^ b;
+}
+
+/// `K` floats from each index on, in columns, and after them others.
+#[inline(always)]
+unsafe fn gather_rows<const K: usize>(table: *const f32, indices: &[u32; 16]) -> [__m512; 4] {
+    // SAFETY: only an operation of the vectors above calls it.
+    unsafe {
+        // Quarter i of vector j has the row of lane 4 i + j.
+        let mut rows = [_mm512_setzero_ps(); 4];
+        let mut j = 0;
+        while j < 4 {
+            let first = _mm512_castps128_ps512(row::<K>(table.add(indices[j] as usize)));
+            let second = row::<K>(table.add(indices[4 + j] as usize));
+            let third = row::<K>(table.add(indices[8 + j] as usize));
+            let fourth = row::<K>(table.add(indices[12 + j] as usize));
+            let low = _mm512_mask_broadcast_f32x4(first, 0x00f0, second);
+            let most = _mm512_mask_broadcast_f32x4(low, 0x0f00, third);
+            rows[j] = _mm512_mask_broadcast_f32x4(most, 0xf000, fourth);
+            j += 1;
+        }
+        transpose(rows)
+    }
+}
+
+/// Transposes the matrices of four by four floats, whose rows are four lanes of each vector.
+#[inline(always)]
+unsafe fn transpose([a, b, c, d]: [__m512; 4]) -> [__m512; 4] {
+    // SAFETY: as above.
+    unsafe {
+        let low = [_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d)];
+        let high = [_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d)];
+        [
+            _mm512_shuffle_ps::<0x44>(low[0], low[1]),
+            _mm512_shuffle_ps::<0xee>(low[0], low[1]),
+            _mm512_shuffle_ps::<0x44>(high[0], high[1]),
+            _mm512_shuffle_ps::<0xee>(high[0], high[1]),
+        ]
+    }
 }
 
 /// The halves of the products, of which an instruction makes every second.

@@ -37,6 +37,7 @@ mod real;
 mod scalar;
 mod simd;
 mod single;
+mod slices;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 mod wide;

@@ -5,6 +5,7 @@
 //! operation combines lanes, except for the explicit tests of a [`Mask`], and all have the same
 //! bits on every instruction set, so that the number of lanes never changes a result.
 
+use crate::Each;
 use std::fmt::Debug;
 use std::ops::{
     Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
@@ -63,6 +64,28 @@ pub trait Real:
         Self::from_fn(|lane| table[indices[lane] as usize])
     }
 
+    /// `K` ≤ 4 numbers of a table from each of these indices on: the first ones, the second ones,
+    /// and so on. Takes little longer than to gather one.
+    ///
+    /// # Panics
+    /// If any of the numbers lies outside of the table.
+    #[inline(always)]
+    fn gather_rows<const K: usize>(table: &[f32], indices: Self::Int) -> [Self; K] {
+        let indices = indices.to_array();
+        let mut columns = [[0.0; MAX_LANES]; K];
+        for lane in 0..Self::LANES {
+            let row = &table[indices[lane] as usize..][..K];
+            for (column, &number) in columns.iter_mut().zip(row) {
+                column[lane] = number;
+            }
+        }
+        let mut rows = [Self::zero(); K];
+        for (row, column) in rows.iter_mut().zip(&columns) {
+            *row = Self::load(column);
+        }
+        rows
+    }
+
     /// Writes the lanes where the mask is true to places of a table. Of lanes with the same index
     /// the last one counts.
     ///
@@ -98,6 +121,19 @@ pub trait Real:
         to.resize(len + Self::LANES, 0.0);
         let count = self.compress(mask, &mut to[len..]);
         to.truncate(len + count);
+    }
+
+    /// Writes four numbers of each lane where the mask is true, the first ones of `columns`, the
+    /// second ones, and so on, one lane after another to the start of a slice, which must have
+    /// place for four numbers of every lane; gives the number of lanes written. Places after them
+    /// may be overwritten.
+    #[inline(always)]
+    fn compress_four(columns: [Self; 4], mask: Self::Mask, to: &mut [f32]) -> usize {
+        let columns = columns.each(Self::to_array);
+        compress_rows(mask.bits(), Self::LANES, to, |lane| {
+            let [a, b, c, d] = &columns;
+            [a[lane], b[lane], c[lane], d[lane]]
+        })
     }
 
     /// |`self`|.
@@ -243,6 +279,22 @@ pub trait Int:
         Self::from_fn(|lane| table[indices[lane] as usize])
     }
 
+    /// As [`Real::gather_rows`].
+    ///
+    /// # Panics
+    /// If any of the integers lies outside of the table.
+    #[inline(always)]
+    fn gather_rows<const K: usize>(table: &[u32], indices: Self) -> [Self; K] {
+        // SAFETY: an integer has the size and alignment of a float, which may have any bits.
+        let floats = unsafe { std::slice::from_raw_parts(table.as_ptr().cast(), table.len()) };
+        let columns = Self::Real::gather_rows::<K>(floats, indices);
+        let mut rows = [Self::splat(0); K];
+        for (row, column) in rows.iter_mut().zip(columns) {
+            *row = column.to_bits();
+        }
+        rows
+    }
+
     /// Four bytes from each of these indices on, the first one lowest; those beyond the end of the
     /// table are 0.
     ///
@@ -384,6 +436,23 @@ pub trait Mask:
     fn all(self) -> bool {
         (!self).bits() == 0
     }
+}
+
+/// See [`Real::compress_four`], of rows for lanes.
+#[inline(always)]
+pub(crate) fn compress_rows(
+    mask: u32,
+    lanes: usize,
+    to: &mut [f32],
+    row: impl Fn(usize) -> [f32; 4],
+) -> usize {
+    let (to, _) = to[..4 * lanes].as_chunks_mut::<4>();
+    let mut count = 0;
+    for lane in 0..lanes {
+        to[count] = row(lane);
+        count += (mask >> lane & 1) as usize;
+    }
+    count
 }
 
 /// Four bytes from each index on, those beyond the end of the table 0.

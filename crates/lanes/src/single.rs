@@ -23,6 +23,11 @@ impl Real for f32 {
         to[0] = self;
     }
 
+    #[inline(always)]
+    fn gather_rows<const K: usize>(table: &[f32], index: u32) -> [Self; K] {
+        *table[index as usize..].first_chunk().expect("an index inside of the table")
+    }
+
     #[inline]
     fn call<C: Callee<Self>>(callee: C) -> C::Output {
         callee.run()

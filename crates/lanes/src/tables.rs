@@ -1,8 +1,5 @@
 //! Macros that implement an instruction set from a table of intrinsics.
 
-#[cfg(target_arch = "x86_64")]
-use crate::{Int, MAX_LANES, Mask};
-
 /// Defines a vector as a newtype over a register. Each operation is an expression of registers;
 /// `load` and `store` have pointers.
 macro_rules! vector {
@@ -109,7 +106,8 @@ macro_rules! instruction_set {
 
 /// Makes a vector of `vector!` a [`Real`](crate::Real), which has the arithmetic of that table.
 /// Masks and integers are those that `mask!` and `int!` define. `gather` has a pointer, and indices
-/// that lie inside of the table; `scatter` likewise.
+/// that lie inside of the table; `scatter` likewise; `gather_rows` has an array of indices. Each
+/// four lanes of `transpose` are the rows of a matrix that is the transpose of theirs.
 macro_rules! real {
     (
         $real:ident, $int:ident, $mask:ident: $n:literal;
@@ -118,7 +116,12 @@ macro_rules! real {
         $($operation:ident($a:ident) = $result:expr;)*
         -> Mask: $($comparison:ident($left:ident, $right:ident) = $compared:expr;)*
         -> Int: $($conversion:ident($from:ident) = $converted:expr;)*
-        $(-> Self, if there is an instruction: gather($table:ident, $indices:ident) = $gather:expr;)?
+        $(
+            -> Self, if there is an instruction: gather($table:ident, $indices:ident) = $gather:expr;
+            -> [Self; 4], by shuffles:
+            gather_rows::<$k:ident>($rows:ident, $first:ident) = $gather_rows:expr;
+            transpose($columns:ident) = $transpose:expr;
+        )?
         $(
             -> (), if there is an instruction:
             scatter($written:ident, $lanes:ident, $places:ident, $at:ident) = $scatter:expr;
@@ -139,12 +142,12 @@ macro_rules! real {
 
             #[inline(always)]
             fn load(from: &[f32]) -> Self {
-                unsafe { $crate::Vector::load($crate::tables::lanes(from)) }
+                unsafe { $crate::Vector::load($crate::slices::lanes(from)) }
             }
 
             #[inline(always)]
             fn store(self, to: &mut [f32]) {
-                *$crate::tables::lanes_mut(to) = $crate::Vector::<$n>::store(self);
+                *$crate::slices::lanes_mut(to) = $crate::Vector::<$n>::store(self);
             }
 
             #[inline(always)]
@@ -173,19 +176,53 @@ macro_rules! real {
             $(
                 #[inline(always)]
                 fn gather(table: &[f32], indices: $int) -> Self {
-                    if !$crate::tables::are_inside(table.len(), indices) {
+                    if !$crate::slices::are_inside(table.len(), indices) {
                         let indices = $crate::Int::to_array(indices);
-                        return $crate::Real::load(&$crate::tables::gather_each::<_, $n>(table, &indices));
+                        return $crate::Real::load(&$crate::slices::gather_each::<_, $n>(table, &indices));
                     }
                     let ($table, $indices) = (table.as_ptr(), indices.0);
                     unsafe { Self($gather) }
+                }
+
+                #[inline(always)]
+                fn gather_rows<const $k: usize>(table: &[f32], indices: $int) -> [Self; $k] {
+                    let starts = (table.len() + 1).saturating_sub($k);
+                    if !$crate::slices::are_inside(starts, indices) {
+                        let indices = $crate::Int::to_array(indices);
+                        let columns = $crate::slices::gather_rows_each::<$k>(table, &indices[..$n]);
+                        let mut rows = [$crate::Real::zero(); $k];
+                        for (row, column) in rows.iter_mut().zip(&columns) {
+                            *row = $crate::Real::load(column);
+                        }
+                        return rows;
+                    }
+                    let $first = $crate::Int::to_array(indices);
+                    let $rows = table.as_ptr();
+                    let columns = unsafe { $gather_rows };
+                    let mut rows = [$crate::Real::zero(); $k];
+                    for (row, column) in rows.iter_mut().zip(columns) {
+                        *row = Self(column);
+                    }
+                    rows
+                }
+
+                #[inline(always)]
+                fn compress_four([a, b, c, d]: [Self; 4], mask: $mask, to: &mut [f32]) -> usize {
+                    let $columns = [a.0, b.0, c.0, d.0];
+                    let [a, b, c, d] = unsafe { $transpose };
+                    let rows = [Self(a), Self(b), Self(c), Self(d)];
+                    let rows = $crate::Each::each(rows, $crate::Vector::<$n>::store);
+                    $crate::real::compress_rows($crate::Mask::bits(mask), $n, to, |lane| {
+                        let (row, first) = (&rows[lane % 4], lane / 4 * 4);
+                        [row[first], row[first + 1], row[first + 2], row[first + 3]]
+                    })
                 }
             )?
 
             $(
                 #[inline(always)]
                 fn scatter(self, mask: $mask, table: &mut [f32], indices: $int) {
-                    assert!($crate::tables::are_inside(table.len(), indices), "a place for each lane");
+                    assert!($crate::slices::are_inside(table.len(), indices), "a place for each lane");
                     let ($written, $lanes, $places, $at) = (self.0, mask.0, table.as_mut_ptr(), indices.0);
                     unsafe { $scatter }
                 }
@@ -333,13 +370,13 @@ macro_rules! int {
 
             #[inline(always)]
             fn load(from: &[u32]) -> Self {
-                let $from = $crate::tables::lanes::<_, $n>(from).as_ptr();
+                let $from = $crate::slices::lanes::<_, $n>(from).as_ptr();
                 unsafe { Self($load) }
             }
 
             #[inline(always)]
             fn store(self, to: &mut [u32]) {
-                let ($to, $value) = ($crate::tables::lanes_mut::<_, $n>(to).as_mut_ptr(), self.0);
+                let ($to, $value) = ($crate::slices::lanes_mut::<_, $n>(to).as_mut_ptr(), self.0);
                 unsafe { $store }
             }
 
@@ -352,9 +389,9 @@ macro_rules! int {
             $(
                 #[inline(always)]
                 fn gather(table: &[u32], indices: Self) -> Self {
-                    if !$crate::tables::are_inside(table.len(), indices) {
+                    if !$crate::slices::are_inside(table.len(), indices) {
                         let indices = $crate::Int::to_array(indices);
-                        return $crate::Int::load(&$crate::tables::gather_each::<_, $n>(table, &indices));
+                        return $crate::Int::load(&$crate::slices::gather_each::<_, $n>(table, &indices));
                     }
                     let ($table, $indices) = (table.as_ptr(), indices.0);
                     unsafe { Self($gather) }
@@ -363,9 +400,9 @@ macro_rules! int {
                 #[inline(always)]
                 fn gather_bytes(table: &[u8], indices: Self) -> Self {
                     // The instruction reads four bytes.
-                    if !$crate::tables::are_inside(table.len().saturating_sub(3), indices) {
+                    if !$crate::slices::are_inside(table.len().saturating_sub(3), indices) {
                         let indices = $crate::Int::to_array(indices);
-                        return $crate::Int::load(&$crate::tables::gather_bytes(table, &indices[..$n]));
+                        return $crate::Int::load(&$crate::slices::gather_bytes(table, &indices[..$n]));
                     }
                     let ($bytes, $byte) = (table.as_ptr(), indices.0);
                     unsafe { Self($gather_bytes) }
@@ -374,9 +411,9 @@ macro_rules! int {
                 #[inline(always)]
                 fn gather_halves(table: &[u16], indices: Self) -> Self {
                     // The instruction reads two numbers, of which the second one is not used.
-                    if !$crate::tables::are_inside(table.len().saturating_sub(1), indices) {
+                    if !$crate::slices::are_inside(table.len().saturating_sub(1), indices) {
                         let indices = $crate::Int::to_array(indices);
-                        let halves = $crate::tables::gather_each::<_, $n>(table, &indices);
+                        let halves = $crate::slices::gather_each::<_, $n>(table, &indices);
                         return $crate::Int::from_fn(|lane| halves[lane].into());
                     }
                     let ($halves, $half) = (table.as_ptr(), indices.0);
@@ -394,7 +431,7 @@ macro_rules! int {
             $(
                 #[inline(always)]
                 fn scatter(self, mask: $mask, table: &mut [u32], indices: Self) {
-                    assert!($crate::tables::are_inside(table.len(), indices), "a place for each lane");
+                    assert!($crate::slices::are_inside(table.len(), indices), "a place for each lane");
                     let ($written, $lanes, $places, $at) = (self.0, mask.0, table.as_mut_ptr(), indices.0);
                     unsafe { $scatter }
                 }
@@ -537,40 +574,4 @@ macro_rules! bitwise {
             }
         }
     };
-}
-
-/// The first `N` elements of a slice.
-#[inline(always)]
-pub fn lanes<T, const N: usize>(from: &[T]) -> &[T; N] {
-    from.first_chunk().expect("an element for each lane")
-}
-
-/// The first `N` elements of a slice.
-#[inline(always)]
-pub fn lanes_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
-    to.first_chunk_mut().expect("an element for each lane")
-}
-
-/// Whether all indices lie in a table of that length, and below 2³¹: the instructions take them as
-/// signed integers.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub fn are_inside(length: usize, indices: impl Int) -> bool {
-    indices.lt(Int::splat(length.min(1 << 31) as u32)).all()
-}
-
-/// The elements at the first `N` indices, read one by one.
-#[cfg(target_arch = "x86_64")]
-#[cold]
-#[inline(never)]
-pub fn gather_each<T: Copy, const N: usize>(table: &[T], indices: &[u32]) -> [T; N] {
-    std::array::from_fn(|lane| table[indices[lane] as usize])
-}
-
-/// Four bytes from each index on, read one by one.
-#[cfg(target_arch = "x86_64")]
-#[cold]
-#[inline(never)]
-pub fn gather_bytes(table: &[u8], indices: &[u32]) -> [u32; MAX_LANES] {
-    crate::real::gather_bytes(table, indices)
 }

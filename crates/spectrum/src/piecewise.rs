@@ -4,7 +4,7 @@
 //! Text: numbers separated by white space, alternately wavelength and value, wavelengths in
 //! nanometres and strictly increasing; `#` starts a comment to the end of the line.
 
-use lanes::{Each, Int, Real};
+use lanes::{Int, Real};
 use std::fmt;
 
 use crate::dense::DenselySampled;
@@ -71,9 +71,9 @@ impl std::error::Error for ParseError {}
 #[derive(Clone, Debug, PartialEq)]
 pub struct PiecewiseLinear {
     lambdas: Box<[f32]>,
-    values: Box<[f32]>,
-    /// From each value to the next one, per nanometre; 0 for the last.
-    slopes: Box<[f32]>,
+    /// The same wavelengths, each with its value, and the slope from there to the next one, per
+    /// nanometre; 0 for the last.
+    knots: Box<[[f32; 3]]>,
     guide: Option<Guide>,
 }
 
@@ -125,10 +125,11 @@ impl PiecewiseLinear {
         if let Some(w) = pairs.windows(2).find(|w| w[1].0 <= w[0].0) {
             return Err(SpectrumError::NotIncreasing { previous: w[0].0, lambda: w[1].0 });
         }
-        let (lambdas, values): (Vec<f32>, Vec<f32>) = pairs.iter().copied().unzip();
+        let lambdas: Box<[f32]> = pairs.iter().map(|&(lambda, _)| lambda).collect();
         let slope = |w: &[(f32, f32)]| (w[1].1 - w[0].1) / (w[1].0 - w[0].0);
-        let slopes = pairs.windows(2).map(slope).chain([0.0]).collect();
-        Ok(Self { guide: Guide::new(&lambdas), lambdas: lambdas.into(), values: values.into(), slopes })
+        let slopes = pairs.windows(2).map(slope).chain([0.0]);
+        let knots = pairs.iter().zip(slopes).map(|(&(lambda, value), slope)| [lambda, value, slope]);
+        Ok(Self { guide: Guide::new(&lambdas), knots: knots.collect(), lambdas })
     }
 
     /// From numbers, wavelength and value in turn.
@@ -180,8 +181,8 @@ impl PiecewiseLinear {
     #[inline(always)]
     pub fn at<R: Real>(&self, lambda: R) -> R {
         let below = self.interval(lambda);
-        let [start, value, slope] =
-            [&self.lambdas, &self.values, &self.slopes].each(|numbers| R::gather(numbers, below));
+        let first = below.wrapping_mul(R::Int::splat(3));
+        let [start, value, slope] = R::gather_rows(self.knots.as_flattened(), first);
         let last = R::splat(self.lambdas[self.lambdas.len() - 1]);
         let inside = lambda.ge(start) & lambda.le(last);
         R::select(inside, value + (lambda - start) * slope, R::zero())
@@ -223,17 +224,20 @@ impl PiecewiseLinear {
 
     /// The largest of the given values.
     pub fn max_value(&self) -> f32 {
-        self.values.iter().copied().fold(f32::NEG_INFINITY, f32::max)
+        self.knots.iter().fold(f32::NEG_INFINITY, |max, &[_, value, _]| max.max(value))
     }
 
     /// The pairs of wavelength and value.
     pub fn pairs(&self) -> impl Iterator<Item = (f32, f32)> + '_ {
-        self.lambdas.iter().copied().zip(self.values.iter().copied())
+        self.knots.iter().map(|&[lambda, value, _]| (lambda, value))
     }
 
     /// The same spectrum times `factor`.
     pub fn scaled(mut self, factor: f32) -> Self {
-        self.values.iter_mut().chain(&mut self.slopes).for_each(|v| *v *= factor);
+        for [_, value, slope] in &mut self.knots {
+            *value *= factor;
+            *slope *= factor;
+        }
         self
     }
 

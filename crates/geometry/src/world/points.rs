@@ -179,8 +179,7 @@ const NO_PATCH: Patch = Patch {
 fn triangles<R: Real>(mesh: &TriangleMesh, triangle: R::Int) -> PatchLanes<R> {
     let (indices, three) = (mesh.all_indices(), R::Int::splat(3));
     let first = triangle.wrapping_mul(three);
-    let [second, third] = [1, 2].each(|i: u32| first.wrapping_add(R::Int::splat(i)));
-    let corners = [first, second, third].each(|place| R::Int::gather(indices, place));
+    let corners = R::Int::gather_rows::<3>(indices, first);
     let [a, b, c] = vertices(mesh.positions(), corners);
     let uv = match mesh.uvs() {
         Some(uvs) => {
@@ -215,15 +214,13 @@ fn vertices<R: Real>(vectors: &[Vec3], corners: [R::Int; 3]) -> [Vector3<R>; 3] 
 /// The vectors whose first coordinates are at some places.
 #[inline(always)]
 fn vector<R: Real>(numbers: &[f32], x: R::Int) -> Vector3<R> {
-    let (y, z) = (x.wrapping_add(R::Int::splat(1)), x.wrapping_add(R::Int::splat(2)));
-    Vec3::new(R::gather(numbers, x), R::gather(numbers, y), R::gather(numbers, z))
+    Vec3::from_array(R::gather_rows::<3>(numbers, x))
 }
 
 /// The same of two coordinates.
 #[inline(always)]
 fn pair<R: Real>(numbers: &[f32], x: R::Int) -> Vec2<R> {
-    let y = x.wrapping_add(R::Int::splat(1));
-    Vec2::new(R::gather(numbers, x), R::gather(numbers, y))
+    Vec2::from_array(R::gather_rows::<2>(numbers, x))
 }
 
 /// The coordinates of vectors, one after another.
@@ -303,13 +300,17 @@ impl PatchTable {
         if self.has_normals {
             normals = Some([vector(numbers, at(19)), vector(numbers, at(22)), vector(numbers, at(25))]);
         }
+        let [x, y, z, right_x] = R::gather_rows(numbers, place);
+        let [right_y, right_z, up_x, up_y] = R::gather_rows(numbers, at(4));
+        let [up_z, u0, v0, u1] = R::gather_rows(numbers, at(8));
+        let [v1, u2, v2, sign] = R::gather_rows(numbers, at(12));
         PatchLanes {
-            corner: vector(numbers, place),
-            sides: [vector(numbers, at(3)), vector(numbers, at(6))],
+            corner: Vec3::new(x, y, z),
+            sides: [Vec3::new(right_x, right_y, right_z), Vec3::new(up_x, up_y, up_z)],
             twist,
             normals,
-            uv: [pair(numbers, at(9)), pair(numbers, at(11)), pair(numbers, at(13))],
-            sign: R::gather(numbers, at(15)),
+            uv: [Vec2::new(u0, v0), Vec2::new(u1, v1), Vec2::new(u2, v2)],
+            sign,
         }
     }
 }

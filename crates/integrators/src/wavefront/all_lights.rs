@@ -55,7 +55,7 @@ impl AtVertices for AllLights {
         if !lit.any() {
             return;
         }
-        let mut sum = shade.paths.l.spectrum::<R>(rows);
+        let mut sum = shade.paths.l.get::<R>(rows);
         for id in 0..shade.pass.pixels.scene.lights().len() as u32 {
             let u = draw_2d::<R>(&shade.pass, &mut vertices.address);
             let sampling = (&shade.pass, direct, &mut *shade.light_samples);
@@ -81,7 +81,7 @@ impl AtVertices for AllLights {
         if *casts_shadows {
             vertices.address.dimension.scatter(lit, &mut shade.paths.dimension, rows.indices);
         } else {
-            shade.paths.l.set(rows, lit, sum.0);
+            shade.paths.l.set(rows, lit, sum);
         }
     }
 }

@@ -6,7 +6,7 @@ use scene::light::LightSampleContext;
 use scene::material::Material;
 
 use super::WaveIntegrator;
-use super::batch::Batch;
+use super::batch::{Batch, BatchColumns};
 use super::columns::Rows;
 use super::numbers::draw_2d;
 use super::pass::Pass;
@@ -21,27 +21,29 @@ impl WaveIntegrator for AmbientOcclusion {
     fn shade(&self, batch: &mut Batch) {
         let scene = batch.pass.pixels.scene;
         let (mut turns, mut rows) = (Vec::new(), Vec::new());
-        for (turn, (&row, &geometry)) in batch.segments.rows.iter().zip(&batch.hits.geometry).enumerate() {
+        for (turn, (&row, &geometry)) in
+            batch.columns.segments.rows.iter().zip(&batch.columns.hits.geometry).enumerate()
+        {
             let Some(entry) = scene.geometries().get(geometry as usize) else { continue };
             if let Material::Interface | Material::Mix(_) =
                 scene.materials()[entry.material.0 as usize].material
             {
-                batch.queues.scalar.push((row, turn as u32));
+                batch.columns.queues.scalar.push((row, turn as u32));
             } else {
                 turns.push(turn as u32);
                 rows.push(row);
             }
         }
-        scene.world().points(&batch.hits, &turns, &mut batch.points);
+        scene.world().points(&batch.columns.hits, &turns, &mut batch.columns.points);
         batch.pass.instruction_set.dispatch(Occlude {
             pass: batch.pass,
             algorithm: self,
-            points: &batch.points,
+            points: &batch.columns.points,
             turns: &turns,
             rows: &rows,
-            segments: &batch.segments,
-            paths: &batch.paths,
-            queues: &mut batch.queues,
+            segments: &batch.columns.segments,
+            paths: &batch.columns.paths,
+            queues: &mut batch.columns.queues,
         });
         batch.shade_others(|batch, place, hit| self.shade_path(batch, place, hit));
     }
@@ -90,7 +92,7 @@ impl Kernel for Occlude<'_, '_> {
 impl AmbientOcclusion {
     /// Continues one path from its hit.
     fn shade_path(&self, batch: &mut Batch, (path, turn): (u32, u32), hit: &Hit) {
-        let Batch { pass, paths, segments, sampler, queues, .. } = batch;
+        let Batch { pass, sampler, columns: BatchColumns { paths, segments, queues, .. }, .. } = batch;
         let (scene, row) = (pass.pixels.scene, path as usize);
         let mut state = segments.state(turn as usize);
         let ray = state.ray.ray;

@@ -10,8 +10,8 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 /// Scenes with more lights sample all of them one by one, so that the table stays small.
 const MAX_LIGHTS: usize = 1 << 16;
 
-/// Numbers of a row: corner, sides, normal, scale of the emission, and 1 for triangles.
-const NUMBERS: usize = 14;
+/// Numbers of a row: corner, sides, normal, scale of the emission, 1 for triangles, and two zeros.
+const NUMBERS: usize = 16;
 
 /// The triangles and rectangles among the lights of a scene.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +53,7 @@ impl AreaLights {
         for v in [shape.corner, shape.sides[0], shape.sides[1], shape.n] {
             self.numbers.extend(v.to_array());
         }
-        self.numbers.extend([scale, if shape.is_triangle { 1.0 } else { 0.0 }]);
+        self.numbers.extend([scale, if shape.is_triangle { 1.0 } else { 0.0 }, 0.0, 0.0]);
         self.emission.push(area.emission.0);
         Some(())
     }
@@ -95,8 +95,8 @@ impl AreaLights {
             }
         } else {
             let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
-            for (column, lanes) in numbers.iter_mut().enumerate() {
-                *lanes = R::gather(&self.numbers, first.wrapping_add(R::Int::splat(column as u32)));
+            for (four, lanes) in numbers.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                *lanes = R::gather_rows(&self.numbers, first.wrapping_add(R::Int::splat(4 * four as u32)));
             }
         }
         let vector = |first: usize| Vec3::new(numbers[first], numbers[first + 1], numbers[first + 2]);

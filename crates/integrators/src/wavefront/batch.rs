@@ -7,7 +7,7 @@ use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
 use scene::material::{Material, MaterialId, MaterialModel};
 use scene::{Interfaces, SurfaceInteraction};
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::SampledWavelengths;
 
 use super::begin::Begin;
 use super::emission::{Emit, Escape, LightHit};
@@ -30,15 +30,23 @@ use crate::transport::pixel_samples::PixelSamples;
 pub struct Batch<'a> {
     pub(super) pass: Pass<'a>,
     pub(super) sampler: Sampler,
-    pub(super) paths: Paths,
-    pub(super) queues: Queues,
+    /// Counts the rays.
+    pub(super) stats: RayStats,
+    pub(super) columns: &'a mut BatchColumns,
+}
+
+/// The columns of a batch. Those of the next batch take their memory.
+#[derive(Default)]
+pub(super) struct BatchColumns {
+    pub paths: Paths,
+    pub queues: Queues,
     /// The paths whose rays are traced, in the order of their hits.
-    pub(super) segments: Segments,
-    pub(super) hits: HitColumns,
+    pub segments: Segments,
+    pub hits: HitColumns,
     /// Surface points of some of the hits.
-    pub(super) points: PointColumns,
+    pub points: PointColumns,
     /// Hits to be shaded in lanes.
-    pub(super) lanes: Groups,
+    lanes: Groups,
     /// The turns of paths that have left the scene.
     escaped: Vec<u32>,
     /// Hits whose group depends on more than their geometry.
@@ -46,9 +54,7 @@ pub struct Batch<'a> {
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
     occluded: Vec<bool>,
-    pub(super) light_samples: Samples,
-    /// Counts the rays.
-    pub(super) stats: RayStats,
+    light_samples: Samples,
 }
 
 /// A vertex of one path.
@@ -61,30 +67,15 @@ pub(super) struct Vertex<'a> {
 }
 
 impl<'a> Batch<'a> {
-    pub(super) fn new(pass: Pass<'a>) -> Self {
-        Self {
-            pass,
-            sampler: pass.pixels.sampler.clone(),
-            paths: Paths::default(),
-            queues: Queues::default(),
-            segments: Segments::default(),
-            hits: HitColumns::default(),
-            points: PointColumns::default(),
-            lanes: Groups::default(),
-            escaped: Vec::new(),
-            left: Vec::new(),
-            lit: Vec::new(),
-            occluded: Vec::new(),
-            light_samples: Samples::default(),
-            stats: RayStats::default(),
-        }
+    pub(super) fn new(pass: Pass<'a>, columns: &'a mut BatchColumns) -> Self {
+        Self { pass, sampler: pass.pixels.sampler.clone(), stats: RayStats::default(), columns }
     }
 
     /// Starts a path for each pixel, whose camera ray may have differentials.
     pub(super) fn begin(&mut self, tiles: &[FilmTile], with_differentials: bool) {
         let instruction_set = self.pass.instruction_set;
         let with_weights = !self.pass.pixels.view.camera.is_unweighted();
-        let Self { pass, paths, segments, queues, .. } = self;
+        let Self { pass, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
         paths.start(tiles.iter().map(FilmTile::bounds), with_weights);
         segments.start_from_camera(paths.len(), with_differentials);
         queues.next.start(paths.len(), with_differentials);
@@ -103,8 +94,8 @@ impl<'a> Batch<'a> {
 
     /// Finds the nearest hit of each path's ray.
     pub(super) fn extend(&mut self) {
-        let rays = self.segments.rays();
-        self.pass.pixels.scene.hit_batch(rays, &mut self.hits, &mut self.stats);
+        let rays = self.columns.segments.rays();
+        self.pass.pixels.scene.hit_batch(rays, &mut self.columns.hits, &mut self.stats);
     }
 
     /// Sorts the hits into those to be shaded in lanes, grouped by material, and those to be shaded
@@ -112,45 +103,47 @@ impl<'a> Batch<'a> {
     /// shine in lanes. Paths of `max_depth` scattering events end where no more than this happens.
     pub(super) fn classify(&mut self, max_depth: u32, direct: &DirectLighting) {
         let scene = self.pass.pixels.scene;
-        self.lanes.clear(scene.materials().len());
-        self.lit.clear();
-        self.escaped.clear();
-        let mut left = std::mem::take(&mut self.left);
+        self.columns.lanes.clear(scene.materials().len());
+        self.columns.lit.clear();
+        self.columns.escaped.clear();
+        let mut left = std::mem::take(&mut self.columns.left);
         self.pass.instruction_set.dispatch(Grouping {
             materials: self.pass.materials,
-            segments: &self.segments,
-            geometries: &self.hits.geometry,
+            segments: &self.columns.segments,
+            geometries: &self.columns.hits.geometry,
             max_depth,
-            groups: &mut self.lanes,
-            escaped: &mut self.escaped,
+            groups: &mut self.columns.lanes,
+            escaped: &mut self.columns.escaped,
             left: &mut left,
         });
         for turn in left.drain(..) {
-            let (row, geometry) = (self.segments.rows[turn as usize], self.hits.geometry[turn as usize]);
+            let (row, geometry) =
+                (self.columns.segments.rows[turn as usize], self.columns.hits.geometry[turn as usize]);
             let entry = &scene.geometries()[geometry as usize];
             let light = match entry.first_light {
-                Some(first) => self.pass.area_lights.light_of(first, &self.hits, turn),
+                Some(first) => self.pass.area_lights.light_of(first, &self.columns.hits, turn),
                 None => None,
             };
             if let Some(LightId(light)) = light {
-                self.lit.push(LightHit { row, turn, light });
+                self.columns.lit.push(LightHit { row, turn, light });
             }
             let is_emitted = entry.first_light.is_none() || light.is_some();
-            let is_last = self.segments.depth[turn as usize] == max_depth;
+            let is_last = self.columns.segments.depth[turn as usize] == max_depth;
             if is_emitted
                 && is_last
                 && scene.materials()[entry.material.0 as usize].material.stops(scene.textures())
             {
                 continue;
             }
-            let shading = self.pass.materials.shading(entry.material, self.segments.has_differentials(turn));
+            let shading =
+                self.pass.materials.shading(entry.material, self.columns.segments.has_differentials(turn));
             if is_emitted && !is_last && shading != Shading::Scalar {
-                self.lanes.push(entry.material, turn, row);
+                self.columns.lanes.push(entry.material, turn, row);
             } else {
-                self.queues.scalar.push((row, turn));
+                self.columns.queues.scalar.push((row, turn));
             }
         }
-        self.left = left;
+        self.columns.left = left;
         self.emit(direct);
         self.escape(direct);
     }
@@ -160,17 +153,17 @@ impl<'a> Batch<'a> {
         self.pass.instruction_set.dispatch(Emit {
             pass: self.pass,
             direct,
-            hits: &self.hits,
-            found: &self.lit,
-            segments: &self.segments,
-            paths: &mut self.paths,
+            hits: &self.columns.hits,
+            found: &self.columns.lit,
+            segments: &self.columns.segments,
+            paths: &mut self.columns.paths,
         });
     }
 
     /// Adds the light from infinity to the paths that have left the scene.
     fn escape(&mut self, direct: &DirectLighting) {
         let &PixelSamples { scene, .. } = self.pass.pixels;
-        let Self { escaped: queue, segments, paths, .. } = self;
+        let BatchColumns { escaped: queue, segments, paths, .. } = &mut *self.columns;
         if Escape::is_enough(scene) {
             self.pass.instruction_set.dispatch(Escape { scene, direct, queue, segments, paths });
             return;
@@ -186,9 +179,9 @@ impl<'a> Batch<'a> {
     /// Shades the hits that are shaded in lanes.
     pub(super) fn shade_in_lanes<A: AtVertices>(&mut self, algorithm: &A) {
         let scene = self.pass.pixels.scene;
-        let lanes = std::mem::take(&mut self.lanes);
+        let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {
-            scene.world().points(&self.hits, turns, &mut self.points);
+            scene.world().points(&self.columns.hits, turns, &mut self.columns.points);
             match &scene.materials()[id.0 as usize].material {
                 Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::DiffuseTransmission(material) => {
@@ -211,7 +204,7 @@ impl<'a> Batch<'a> {
                 }
             }
         }
-        self.lanes = lanes;
+        self.columns.lanes = lanes;
     }
 
     fn dispatch<M: MaterialModel, A: AtVertices>(
@@ -227,24 +220,24 @@ impl<'a> Batch<'a> {
             algorithm,
             material,
             with_footprint,
-            points: &self.points,
+            points: &self.columns.points,
             turns,
             rows,
-            segments: &self.segments,
-            paths: &mut self.paths,
-            queues: &mut self.queues,
-            light_samples: &mut self.light_samples,
+            segments: &self.columns.segments,
+            paths: &mut self.columns.paths,
+            queues: &mut self.columns.queues,
+            light_samples: &mut self.columns.light_samples,
         });
     }
 
     /// Calls `shade` with each path whose hit is not shaded in lanes, its turn, and the hit.
     pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, (u32, u32), &Hit)) {
-        let mut scalar = std::mem::take(&mut self.queues.scalar);
+        let mut scalar = std::mem::take(&mut self.columns.queues.scalar);
         for (path, turn) in scalar.drain(..) {
-            let hit = self.hits.get(turn as usize).expect("invariant: paths without hit have ended");
+            let hit = self.columns.hits.get(turn as usize).expect("invariant: paths without hit have ended");
             shade(self, (path, turn), &hit);
         }
-        self.queues.scalar = scalar;
+        self.columns.queues.scalar = scalar;
     }
 
     /// The vertex of a path at a hit, to which the batch's sampler has gone on. Adds emission.
@@ -255,7 +248,7 @@ impl<'a> Batch<'a> {
         hit: &Hit,
         direct: &DirectLighting,
     ) -> Option<Vertex<'a>> {
-        let Self { pass, paths, segments, sampler, queues, .. } = self;
+        let Self { pass, sampler, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
         let &PixelSamples { scene, view, index, .. } = pass.pixels;
         let row = path as usize;
         let mut state = segments.state(turn as usize);
@@ -277,13 +270,13 @@ impl<'a> Batch<'a> {
 
     /// Gives the paths that have no next ray their last waiting one.
     pub(super) fn go_on_with_waiting(&mut self) {
-        let Queues { next, waiting, .. } = &mut self.queues;
+        let Queues { next, waiting, .. } = &mut self.columns.queues;
         if waiting.is_empty() {
             return;
         }
-        let mut goes_on = vec![false; self.paths.len()];
+        let mut goes_on = vec![false; self.columns.paths.len()];
         next.rows.iter().for_each(|&row| goes_on[row as usize] = true);
-        for &row in self.segments.rows.iter().filter(|&&row| !goes_on[row as usize]) {
+        for &row in self.columns.segments.rows.iter().filter(|&&row| !goes_on[row as usize]) {
             if let Some(state) = waiting.get_mut(row as usize).and_then(Vec::pop) {
                 next.push(row, &state);
             }
@@ -292,20 +285,22 @@ impl<'a> Batch<'a> {
 
     /// Goes on with the paths that have a next ray.
     pub(super) fn go_on(&mut self) {
-        self.segments.rows.clear();
-        std::mem::swap(&mut self.segments, &mut self.queues.next);
+        let BatchColumns { segments, queues, .. } = &mut *self.columns;
+        segments.rows.clear();
+        std::mem::swap(segments, &mut queues.next);
     }
 
     /// Traces the shadow rays.
     pub(super) fn connect(&mut self) {
-        for (queue, interfaces) in self.queues.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
-            self.occluded.clear();
-            self.occluded.resize(queue.paths.len(), false);
+        let BatchColumns { queues, paths, occluded, .. } = &mut *self.columns;
+        for (queue, interfaces) in queues.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
+            occluded.clear();
+            occluded.resize(queue.paths.len(), false);
             let scene = self.pass.pixels.scene;
-            scene.occluded_batch(queue.rays.columns(), interfaces, &mut self.occluded, &mut self.stats);
-            for (shadow, (&path, occluded)) in queue.paths.iter().zip(&self.occluded).enumerate() {
+            scene.occluded_batch(queue.rays.columns(), interfaces, occluded, &mut self.stats);
+            for (shadow, (&path, occluded)) in queue.paths.iter().zip(&*occluded).enumerate() {
                 if !occluded {
-                    self.paths.add_light(path as usize, SampledSpectrum(queue.l.row(shadow)));
+                    paths.add_light(path as usize, queue.l.row(shadow));
                 }
             }
             queue.clear();
@@ -314,11 +309,11 @@ impl<'a> Batch<'a> {
 
     /// Adds the radiance of all paths to the film.
     pub(super) fn finish(&mut self, tiles: &mut [FilmTile]) -> Result<(), Cancelled> {
-        self.paths.weigh();
+        self.columns.paths.weigh();
         let mut first = 0;
         for tile in tiles {
             let (pixels, with_first_hits) = (tile.bounds().area(), tile.wants_first_hit());
-            let finish = Finish { paths: &self.paths, first, tile };
+            let finish = Finish { paths: &self.columns.paths, first, tile };
             if with_first_hits {
                 finish_with_first_hits(&self.pass, &mut self.sampler, &mut self.stats, finish)?;
             } else {

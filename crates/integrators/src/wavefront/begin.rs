@@ -34,8 +34,7 @@ impl Begin<'_, '_> {
     #[inline(always)]
     fn begin<R: Real>(&mut self, first: usize) {
         let pixels = self.pass.pixels;
-        let [x, y] = &self.paths.pixel;
-        let pixel = [R::Int::load(&x[first..]), R::Int::load(&y[first..])];
+        let pixel = self.paths.pixels(first);
         let mut address = Address { pixel, index: pixels.index, dimension: R::Int::splat(0) };
         let numbers = CameraNumbers::<R>::draw(&self.pass, &mut address);
         let lambda = ShutterSample::wavelengths(pixels.view, numbers.wavelength);
@@ -44,8 +43,7 @@ impl Begin<'_, '_> {
         let (paths, segments) = (&mut *self.paths, &mut *self.segments);
         address.dimension.store(&mut paths.dimension[first..]);
         sample.filter_weight.store(&mut paths.filter_weight[first..]);
-        let ([a, b, c, d], [p, q, r, s]) = (*lambda.lambda(), lambda.pdf().0);
-        paths.wavelengths.store(first, [a, b, c, d, p, q, r, s]);
+        paths.set_wavelengths(first, &lambda);
         let camera = &pixels.view.camera;
         let (ray, weight) = if self.with_differentials {
             let (ray, mut differentials, weight) = camera.ray_and_neighbours(&sample);

@@ -2,7 +2,6 @@
 
 use lanes::{Int, Mask, Real};
 use math::{Vec3, Vector3};
-use spectrum::{N, SampledSpectrum};
 
 /// Rows of columns, one for each lane.
 #[derive(Clone, Copy)]
@@ -48,10 +47,10 @@ pub(super) fn fill<T: Clone>(column: &mut Vec<T>, count: usize, value: T) {
     column.resize(count, value);
 }
 
-/// Makes place for `count` numbers, whatever they are.
-pub(super) fn grow(column: &mut Column, count: usize) {
+/// Makes place for `count` elements, whatever they are.
+pub(super) fn grow<T: Clone + Default>(column: &mut Vec<T>, count: usize) {
     if column.len() < count {
-        column.resize(count, 0.0);
+        column.resize(count, T::default());
     }
 }
 
@@ -65,32 +64,9 @@ impl<const C: usize> Default for Columns<C> {
 }
 
 impl<const C: usize> Columns<C> {
-    /// Appends a row.
-    pub fn push(&mut self, row: [f32; C]) {
-        self.0.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
-    }
-
-    /// Removes all rows.
-    pub fn clear(&mut self) {
-        self.0.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Changes to `count` rows, all with the same number in all columns.
-    pub fn fill(&mut self, count: usize, value: f32) {
-        self.0.iter_mut().for_each(|column| fill(column, count, value));
-    }
-
     /// Makes place for `count` rows, of any numbers.
     pub fn grow(&mut self, count: usize) {
         self.0.iter_mut().for_each(|column| grow(column, count));
-    }
-
-    /// Appends the lanes of a mask.
-    #[inline(always)]
-    pub fn append<R: Real>(&mut self, mask: R::Mask, values: [R; C]) {
-        for (column, value) in self.0.iter_mut().zip(values) {
-            value.append(mask, column);
-        }
     }
 
     /// A row.
@@ -101,16 +77,6 @@ impl<const C: usize> Columns<C> {
     /// Changes a row.
     pub fn set_row(&mut self, row: usize, values: [f32; C]) {
         self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
-    }
-
-    /// Successive rows in lanes.
-    #[inline(always)]
-    pub fn load<R: Real>(&self, first: usize) -> [R; C] {
-        let mut values = [R::zero(); C];
-        for (value, column) in values.iter_mut().zip(&self.0) {
-            *value = R::load(&column[first..]);
-        }
-        values
     }
 
     /// Changes successive rows.
@@ -138,14 +104,6 @@ impl<const C: usize> Columns<C> {
         }
         values
     }
-
-    /// Changes the rows of a mask's lanes.
-    #[inline(always)]
-    pub fn set<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, values: [R; C]) {
-        for (column, value) in self.0.iter_mut().zip(values) {
-            value.scatter(mask, column, rows.indices);
-        }
-    }
 }
 
 impl Columns<3> {
@@ -159,13 +117,5 @@ impl Columns<3> {
     #[inline(always)]
     pub fn vector<R: Real>(&self, rows: Rows<R>) -> Vector3<R> {
         Vec3::from_array(self.get(rows))
-    }
-}
-
-impl Columns<N> {
-    /// Spectra in lanes.
-    #[inline(always)]
-    pub fn spectrum<R: Real>(&self, rows: Rows<R>) -> SampledSpectrum<R> {
-        SampledSpectrum(self.get(rows))
     }
 }

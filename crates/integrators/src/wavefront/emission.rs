@@ -6,7 +6,7 @@ use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Vec2, Vector3};
 use scene::Scene;
 use scene::light::{ImageInfiniteLight, Light, LightId};
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::SampledSpectrum;
 
 use super::columns::Rows;
 use super::pass::Pass;
@@ -65,8 +65,7 @@ impl Emit<'_, '_> {
             (self.pass, self.segments, &mut *self.paths);
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
         let (shapes, scale) = area_lights.shapes::<R>(table_rows);
-        let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
-        let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+        let lambda = paths.lambda_lanes(rows);
         let wo = -segments.direction.vector(turns);
         let l = area_lights.radiance(pixels.scene, (table_rows, scale), (shapes.n, wo), &lambda, active);
         let is_lit = active & !l.is_black();
@@ -80,9 +79,9 @@ impl Emit<'_, '_> {
             let other = pmf * shapes.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
         }
-        let beta = segments.beta.spectrum::<R>(turns);
-        let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + beta * (l * weight);
-        paths.l.set(rows, is_lit, sum.0);
+        let beta = segments.beta.get::<R>(turns);
+        let sum: SampledSpectrum<R> = paths.l.get(rows) + beta * (l * weight);
+        paths.l.set(rows, is_lit, sum);
     }
 }
 
@@ -119,8 +118,7 @@ impl Kernel for Escape<'_, '_> {
             let turns = Rows::<R>::first(queue);
             let indices = R::Int::gather(&segments.rows, turns.indices);
             let rows = Rows { indices, active: turns.active };
-            let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
-            let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+            let lambda = paths.lambda_lanes(rows);
             let w = segments.direction.vector(turns);
             let mut l = SampledSpectrum::splat(R::zero());
             for &id in scene.infinite_lights() {
@@ -134,8 +132,8 @@ impl Kernel for Escape<'_, '_> {
                     _ => unreachable!("invariant: other lights are not infinite"),
                 }
             }
-            let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + segments.beta.spectrum::<R>(turns) * l;
-            paths.l.set(rows, rows.active, sum.0);
+            let sum: SampledSpectrum<R> = paths.l.get(rows) + segments.beta.get::<R>(turns) * l;
+            paths.l.set(rows, rows.active, sum);
         }
     }
 }

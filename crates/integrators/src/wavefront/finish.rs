@@ -3,7 +3,6 @@
 use film::FilmTile;
 use lanes::{Kernel, Real};
 use sampling::Sampler;
-use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::pass::Pass;
 use super::paths::Paths;
@@ -28,9 +27,8 @@ impl Kernel for Finish<'_, '_> {
         let pixels = tile.bounds().area();
         for pixel in (0..pixels).step_by(R::LANES) {
             let row = first + pixel;
-            let l = SampledSpectrum(paths.l.load::<R>(row));
-            let [a, b, c, d, pdf @ ..] = paths.wavelengths.load::<R>(row);
-            let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+            let l = paths.l.load::<R>(row);
+            let lambda = paths.wavelengths(row);
             let weight = R::load(&paths.filter_weight[row..]);
             tile.add_lanes(pixel, R::LANES.min(pixels - pixel), &l, &lambda, weight);
         }
@@ -46,7 +44,7 @@ pub(super) fn finish_with_first_hits(
 ) -> Result<(), Cancelled> {
     let pixels = pass.pixels;
     for row in first..first + tile.bounds().area() {
-        let pixel = paths.pixel.each_ref().map(|column| column[row] as i32);
+        let pixel = paths.pixel(row);
         let lambda = paths.lambda(row);
         let mut sample: PixelSample = pixels.begin(None, pixel, sampler);
         sample.lambda = lambda;
@@ -54,7 +52,7 @@ pub(super) fn finish_with_first_hits(
         let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
         let first_hit = pixels.first_hit(tile, &sample, &lambda, &mut tracer);
         tracer.finish()?;
-        let l = SampledSpectrum(paths.l.row(row));
+        let l = paths.l.row(row);
         let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
         let radiance = film::Sample::new(&l, &lambda, paths.filter_weight[row]);
         tile.add(pixel, &film::Sample { alpha, first_hit, ..radiance });

@@ -35,7 +35,10 @@ mod queues;
 mod ray_casting;
 mod segments;
 mod shade;
+mod spectra;
 mod whitted;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
@@ -45,7 +48,7 @@ use sampling::Sampler;
 use scene::{Scene, View};
 
 use self::area_lights::AreaLights;
-use self::batch::Batch;
+use self::batch::{Batch, BatchColumns};
 use self::materials::LaneMaterials;
 use self::pass::Pass;
 use crate::camera_paths::record;
@@ -69,13 +72,14 @@ pub trait WaveIntegrator: RayIntegrator {
 }
 
 /// Runs a [`WaveIntegrator`] for each sample of each pixel.
-#[derive(Clone, Debug)]
 pub struct Wavefront<A> {
     algorithm: A,
     sampler: Sampler,
     materials: LaneMaterials,
     area_lights: AreaLights,
     instruction_set: InstructionSet,
+    /// The columns of batches that have ended.
+    spare: Mutex<Vec<BatchColumns>>,
 }
 
 impl<A: WaveIntegrator> Wavefront<A> {
@@ -87,6 +91,7 @@ impl<A: WaveIntegrator> Wavefront<A> {
             materials: LaneMaterials::default(),
             area_lights: AreaLights::default(),
             instruction_set: InstructionSet::detect(),
+            spare: Mutex::default(),
         }
     }
 
@@ -95,12 +100,16 @@ impl<A: WaveIntegrator> Wavefront<A> {
         Self { instruction_set, ..self }
     }
 
+    fn spare(&self) -> MutexGuard<'_, Vec<BatchColumns>> {
+        self.spare.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Traces one path for each pixel of the tiles. After a cancellation nothing is added to them.
     fn trace(&self, batch: &mut Batch, mut tiles: Vec<FilmTile>) -> Result<(), Cancelled> {
         let control = batch.pass.control;
         let PixelSamples { scene, view, .. } = batch.pass.pixels;
         batch.begin(&tiles, A::READS_TEXTURES && scene.needs_footprints(view));
-        while !batch.segments.rows.is_empty() {
+        while !batch.columns.segments.rows.is_empty() {
             control.check()?;
             batch.extend();
             self.algorithm.shade(batch);
@@ -145,13 +154,17 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
             instruction_set: self.instruction_set,
         };
         let this = &*self;
-        let run = |batch: &mut Batch, tiles: Vec<FilmTile>| {
-            let done = this.trace(batch, tiles);
-            let stats = std::mem::take(&mut batch.stats);
+        let run = |tiles: Vec<FilmTile>| -> Result<RayStats, Cancelled> {
+            let mut columns = this.spare().pop().unwrap_or_default();
+            let mut batch = Batch::new(pass, &mut columns);
+            let done = this.trace(&mut batch, tiles);
+            let stats = batch.stats;
             control.count(&stats);
-            done.map(|()| stats)
+            done?;
+            this.spare().push(columns);
+            Ok(stats)
         };
-        let batches = tiles.into_par_iter().chunks(batch_tiles).map_init(|| Batch::new(pass), run);
+        let batches = tiles.into_par_iter().chunks(batch_tiles).map(run);
         Ok(batches.try_reduce(RayStats::default, |mut sum, stats| {
             sum += stats;
             Ok(sum)

@@ -9,7 +9,7 @@ use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
 
 use super::WaveIntegrator;
-use super::batch::{Batch, Vertex};
+use super::batch::{Batch, BatchColumns, Vertex};
 use super::lights::{self, LightLanes};
 use super::numbers::{VertexNumbers, draw_1d};
 use super::queues::Shadow;
@@ -36,7 +36,7 @@ impl Path {
         if state.depth == self.settings.max_depth {
             return;
         }
-        let Batch { pass, paths, sampler, queues, .. } = batch;
+        let Batch { pass, sampler, columns: BatchColumns { paths, queues, .. }, .. } = batch;
         let (scene, path, row) = (pass.pixels.scene, place.0, place.0 as usize);
         state.depth += 1;
         bsdf.regularize(self.settings.regularize && paths.rough_before[row]);

@@ -4,9 +4,10 @@ use lanes::{Int, MAX_LANES, Real};
 use math::Bounds2i;
 use sampling::Sampler;
 use sampling::sampler::Address;
-use spectrum::{N, SampledSpectrum, SampledWavelengths};
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::columns::{Column, Columns, Rows, fill, grow};
+use super::columns::{Column, Rows, fill, grow};
+use super::spectra::Spectra;
 
 /// What the paths of a batch have from their start to their end; a path is a row. Columns are
 /// longer, so that a vector can begin at any row.
@@ -14,7 +15,7 @@ use super::columns::{Column, Columns, Rows, fill, grow};
 pub(super) struct Paths {
     count: usize,
     /// Column and row of the pixel.
-    pub pixel: [Vec<u32>; 2],
+    pixels: Vec<[u32; 2]>,
     /// Weight of the sample in the pixel.
     pub filter_weight: Column,
     /// The share of the light along its camera ray that reaches the film; empty where all of it
@@ -23,9 +24,9 @@ pub(super) struct Paths {
     /// The sampler's next dimension.
     pub dimension: Vec<u32>,
     /// Wavelengths, and their densities.
-    pub wavelengths: Columns<{ 2 * N }>,
+    wavelengths: [Spectra; 2],
     /// The light so far.
-    pub l: Columns<N>,
+    pub l: Spectra,
     /// Whether a rough surface scattered it before.
     pub rough_before: Vec<bool>,
 }
@@ -39,24 +40,20 @@ impl Paths {
     /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
     /// wavelengths and weights yet.
     pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_weights: bool) {
-        let [x, y] = &mut self.pixel;
-        x.clear();
-        y.clear();
+        self.pixels.clear();
         for Bounds2i { min, max } in pixels {
-            for row in min[1]..max[1] {
-                x.extend((min[0]..max[0]).map(|x| x as u32));
-                y.resize(x.len(), row as u32);
+            for y in min[1]..max[1] {
+                self.pixels.extend((min[0]..max[0]).map(|x| [x as u32, y as u32]));
             }
         }
-        self.count = x.len();
+        self.count = self.pixels.len();
         // Lanes load and store whole vectors.
         let rows = self.count + MAX_LANES;
-        x.resize(rows, 0);
-        y.resize(rows, 0);
+        self.pixels.resize(rows, [0; 2]);
         grow(&mut self.filter_weight, rows);
         fill(&mut self.camera_weight, if with_weights { rows } else { 0 }, 0.0);
         self.dimension.resize(rows, 0);
-        self.wavelengths.grow(rows);
+        self.wavelengths.iter_mut().for_each(|numbers| numbers.grow(rows));
         self.l.fill(rows, 0.0);
         fill(&mut self.rough_before, rows, false);
     }
@@ -64,53 +61,74 @@ impl Paths {
     /// The next address of the sampler of each path, at the sample of an index.
     #[inline(always)]
     pub fn address<R: Real>(&self, rows: Rows<R>, index: u32) -> Address<R::Int> {
-        let [x, y] = &self.pixel;
         Address {
-            pixel: [R::Int::gather(x, rows.indices), R::Int::gather(y, rows.indices)],
+            pixel: R::Int::gather_rows(self.pixels.as_flattened(), rows.indices.shl(1)),
             index,
             dimension: R::Int::gather(&self.dimension, rows.indices),
         }
     }
 
+    /// The pixel of a path.
+    pub fn pixel(&self, row: usize) -> [i32; 2] {
+        self.pixels[row].map(|x| x as i32)
+    }
+
+    /// The pixels of successive paths.
+    #[inline(always)]
+    pub fn pixels<I: Int>(&self, first: usize) -> [I; 2] {
+        I::gather_rows(self.pixels[first..].as_flattened(), I::from_fn(|lane| 2 * lane as u32))
+    }
+
     /// Lets a sampler go on with a path, at the sample of an index.
     pub fn resume(&self, sampler: &mut Sampler, row: usize, index: u32) {
-        let pixel = self.pixel.each_ref().map(|column| column[row] as i32);
-        sampler.start_pixel_sample(pixel, index, self.dimension[row]);
+        sampler.start_pixel_sample(self.pixel(row), index, self.dimension[row]);
     }
 
     /// The wavelengths of paths in lanes.
     #[inline(always)]
     pub fn lambda_lanes<R: Real>(&self, rows: Rows<R>) -> SampledWavelengths<R> {
-        let [a, b, c, d, pdf @ ..] = self.wavelengths.get(rows);
-        SampledWavelengths::new([a, b, c, d], pdf)
+        let [lambda, pdf] = &self.wavelengths;
+        SampledWavelengths::new(lambda.get(rows).0, pdf.get(rows).0)
+    }
+
+    /// The wavelengths of successive paths.
+    #[inline(always)]
+    pub fn wavelengths<R: Real>(&self, first: usize) -> SampledWavelengths<R> {
+        let [lambda, pdf] = &self.wavelengths;
+        SampledWavelengths::new(lambda.load(first).0, pdf.load(first).0)
+    }
+
+    /// Changes the wavelengths of successive paths.
+    #[inline(always)]
+    pub fn set_wavelengths<R: Real>(&mut self, first: usize, wavelengths: &SampledWavelengths<R>) {
+        let [lambda, pdf] = &mut self.wavelengths;
+        lambda.store(first, SampledSpectrum(*wavelengths.lambda()));
+        pdf.store(first, wavelengths.pdf());
     }
 
     /// The wavelengths of a path.
     pub fn lambda(&self, row: usize) -> SampledWavelengths {
-        let values = self.wavelengths.row(row);
-        let [lambda, pdf] = [0, N].map(|first| std::array::from_fn(|i| values[first + i]));
-        SampledWavelengths::new(lambda, pdf)
+        let [lambda, pdf] = &self.wavelengths;
+        SampledWavelengths::new(lambda.row(row).0, pdf.row(row).0)
     }
 
     /// Changes the wavelengths of a path.
-    pub fn set_lambda(&mut self, row: usize, lambda: &SampledWavelengths) {
-        let (values, pdf) = (lambda.lambda(), lambda.pdf());
-        let values = std::array::from_fn(|i| if i < N { values[i] } else { pdf[i - N] });
-        self.wavelengths.set_row(row, values);
+    pub fn set_lambda(&mut self, row: usize, wavelengths: &SampledWavelengths) {
+        let [lambda, pdf] = &mut self.wavelengths;
+        lambda.set_row(row, SampledSpectrum(*wavelengths.lambda()));
+        pdf.set_row(row, wavelengths.pdf());
     }
 
     /// Adds light to a path.
     #[inline]
     pub fn add_light(&mut self, row: usize, l: SampledSpectrum) {
-        let sum = SampledSpectrum(self.l.row(row)) + l;
-        self.l.set_row(row, sum.0);
+        self.l.set_row(row, self.l.row(row) + l);
     }
 
     /// Multiplies the light of the paths by the share of it that reaches the film.
     pub fn weigh(&mut self) {
         for (row, &weight) in self.camera_weight.iter().enumerate().take(self.count) {
-            let l = SampledSpectrum(self.l.row(row)) * weight;
-            self.l.set_row(row, l.0);
+            self.l.set_row(row, self.l.row(row) * weight);
         }
     }
 }

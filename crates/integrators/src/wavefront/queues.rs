@@ -3,10 +3,11 @@
 use geometry::RayBuffer;
 use lanes::{Int, Mask, Real};
 use math::Ray;
-use spectrum::{N, SampledSpectrum};
+use spectrum::SampledSpectrum;
 
-use super::columns::{Columns, Rows};
+use super::columns::Rows;
 use super::segments::Segments;
+use super::spectra::Spectra;
 use crate::transport::path_state::PathState;
 
 /// The queues of a batch.
@@ -37,7 +38,7 @@ impl Queues {
 #[derive(Default)]
 pub(super) struct ShadowRays {
     pub paths: Vec<u32>,
-    pub l: Columns<N>,
+    pub l: Spectra,
     pub rays: RayBuffer,
 }
 
@@ -52,7 +53,7 @@ impl ShadowRays {
     /// Adds a ray.
     pub fn push(&mut self, path: u32, l: SampledSpectrum, ray: &Ray, t_max: f32) {
         self.paths.push(path);
-        self.l.push(l.0);
+        self.l.push(l);
         self.rays.push(ray, t_max);
     }
 
@@ -61,7 +62,7 @@ impl ShadowRays {
     pub fn append<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, shadow: &Shadow<R>) {
         if mask.any() {
             rows.indices.append(mask, &mut self.paths);
-            self.l.append(mask, shadow.l.0);
+            self.l.append(mask, shadow.l);
             self.rays.append(&shadow.ray, shadow.t_max, mask);
         }
     }

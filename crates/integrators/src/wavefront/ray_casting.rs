@@ -2,7 +2,7 @@
 
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
-use super::batch::{Batch, Vertex};
+use super::batch::{Batch, BatchColumns, Vertex};
 use crate::RayCasting;
 use crate::transport::direct::connect_all;
 
@@ -14,7 +14,7 @@ impl WaveIntegrator for RayCasting {
         batch.shade_others(|batch, place, hit| {
             let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
             let Vertex { state, lambda, surface, bsdf } = vertex;
-            let Batch { pass, paths, sampler, .. } = batch;
+            let Batch { pass, sampler, columns: BatchColumns { paths, .. }, .. } = batch;
             connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
                 paths.add_light(place.0 as usize, state.beta * light.l);
             });

@@ -9,9 +9,10 @@ use geometry::RayColumns;
 use lanes::{Int, MAX_LANES, Real};
 use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
-use spectrum::{N, SampledSpectrum};
+use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Columns, Rows, fill, grow};
+use super::spectra::Spectra;
 use crate::transport::path_state::{Origin, PathState};
 
 /// The paths of a wave, of which each has a ray. Columns are longer, so that a vector can begin at
@@ -31,7 +32,7 @@ pub(super) struct Segments {
     /// 1 for paths that have differentials, else 0; empty where nothing needs them.
     pub are_differentials: Vec<u32>,
     /// Path throughput.
-    pub beta: Columns<N>,
+    pub beta: Spectra,
     /// The product of η² over the refractions.
     pub eta_scale: Column,
     /// Scattering events so far.
@@ -106,7 +107,7 @@ impl Segments {
         PathState {
             medium: None,
             ray: RayDifferential { ray: self.ray(turn), differentials },
-            beta: SampledSpectrum(self.beta.row(turn)),
+            beta: self.beta.row(turn),
             depth: self.depth[turn],
             origin: (pdf > 0.0).then_some(Origin { context, pdf }),
             eta_scale: self.eta_scale[turn],
@@ -128,7 +129,7 @@ impl Segments {
         if let Some(differentials) = &differentials {
             self.differentials.set_row(turn, numbers_of(differentials));
         }
-        self.beta.set_row(turn, state.beta.0);
+        self.beta.set_row(turn, state.beta);
         self.depth[turn] = state.depth;
         self.eta_scale[turn] = state.eta_scale;
         self.pdf[turn] = 0.0;
@@ -146,7 +147,7 @@ impl Segments {
         let Segment { ray, beta, eta_scale, depth, vertex, pdf } = segment;
         self.origin.compress(turn, mask, ray.o.to_array());
         self.direction.compress(turn, mask, ray.d.to_array());
-        self.beta.compress(turn, mask, beta.0);
+        self.beta.compress(turn, mask, *beta);
         let vectors = [vertex.p.p, vertex.p.error, vertex.n, vertex.ns];
         for (columns, v) in self.vertex.iter_mut().zip(vectors) {
             columns.compress(turn, mask, v.to_array());

@@ -124,7 +124,7 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
             wo: -segments.direction.vector(turns).normalize(),
             time: R::gather(&segments.time, turns.indices),
             lambda: paths.lambda_lanes(rows),
-            beta: segments.beta.spectrum(turns),
+            beta: segments.beta.get(turns),
             address: paths.address(rows, self.pass.pixels.index),
         }
     }

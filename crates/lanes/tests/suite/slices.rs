@@ -23,6 +23,89 @@ impl Kernel for Gather<'_> {
     }
 }
 
+/// Reads some numbers from each index on.
+#[derive(Clone, Copy)]
+struct GatherRows<'a, const K: usize> {
+    reals: &'a [f32],
+    ints: &'a [u32],
+    indices: [u32; MAX_LANES],
+}
+
+impl<const K: usize> Kernel for GatherRows<'_, K> {
+    type Output = Vec<([f32; K], [u32; K])>;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let indices = R::Int::load(&self.indices);
+        let reals = R::gather_rows::<K>(self.reals, indices).map(R::to_array);
+        let ints = R::Int::gather_rows::<K>(self.ints, indices).map(R::Int::to_array);
+        let row = |lane: usize| (reals.map(|column| column[lane]), ints.map(|column| column[lane]));
+        (0..R::LANES).map(row).collect()
+    }
+}
+
+#[test]
+fn rows_of_numbers_are_read() {
+    rows_are_read::<1>();
+    rows_are_read::<2>();
+    rows_are_read::<3>();
+    rows_are_read::<4>();
+}
+
+fn rows_are_read<const K: usize>() {
+    for round in 0..1000 {
+        let length = K as u32 + hash(round) % 40;
+        let ints: Vec<u32> = (0..length).map(hash).collect();
+        let reals: Vec<f32> = ints.iter().map(|&int| int as f32).collect();
+        let starts = length + 1 - K as u32;
+        let indices = std::array::from_fn(|lane| hash(16 * round + lane as u32) % starts);
+        for set in available() {
+            let gather = GatherRows::<K> { reals: &reals, ints: &ints, indices };
+            for (lane, (reals, found)) in set.dispatch(gather).into_iter().enumerate() {
+                let expected = &ints[indices[lane] as usize..][..K];
+                assert_eq!(found, expected, "{set:?}");
+                assert_eq!(reals, found.map(|int| int as f32), "{set:?}");
+            }
+            let outside = GatherRows { indices: [starts; MAX_LANES], ..gather };
+            assert!(catch_unwind(AssertUnwindSafe(|| set.dispatch(outside))).is_err());
+            let outside = GatherRows { reals: &[0.0; 100], ..outside };
+            assert!(catch_unwind(AssertUnwindSafe(|| set.dispatch(outside))).is_err());
+        }
+    }
+}
+
+/// Writes four numbers of some lanes.
+#[derive(Clone, Copy)]
+struct CompressFour {
+    mask: u32,
+}
+
+impl Kernel for CompressFour {
+    type Output = (usize, Vec<f32>);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let columns = [0, 1, 2, 3].each(|i| R::from_fn(|lane| (4 * lane + i) as f32));
+        let mut rows = vec![0.0; 4 * R::LANES];
+        let mask = R::Mask::from_bits(self.mask & (u32::MAX >> (32 - R::LANES)));
+        let count = R::compress_four(columns, mask, &mut rows);
+        rows.truncate(4 * count);
+        (R::LANES, rows)
+    }
+}
+
+#[test]
+fn rows_of_four_numbers_are_written_one_after_another() {
+    for mask in (0..16).map(|bit| 1 << bit).chain((0..1000).map(hash)).chain([0, u32::MAX]) {
+        for set in available() {
+            let (lanes, rows) = set.dispatch(CompressFour { mask });
+            let is_kept = |i: &usize| mask >> (i / 4) & 1 == 1;
+            let expected: Vec<f32> = (0..4 * lanes).filter(is_kept).map(|i| i as f32).collect();
+            assert_eq!(rows, expected, "{set:?}");
+        }
+    }
+}
+
 /// Reads tables of small integers.
 #[derive(Clone, Copy)]
 struct GatherSmall<'a> {

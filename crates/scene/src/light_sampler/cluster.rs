@@ -56,16 +56,19 @@ impl<R: Real> Cluster<R> {
     #[inline(always)]
     pub fn gather(table: &[f32], rows: R::Int) -> Self {
         let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
-        let number = |i: u32| R::gather(table, first.wrapping_add(R::Int::splat(i)));
+        let four = |i: u32| R::gather_rows(table, first.wrapping_add(R::Int::splat(i)));
+        let [x, y, z, radius2] = four(0);
+        let [wx, wy, wz, phi] = four(4);
+        let [cos_theta_o, sin_theta_o, cos_theta_e, two_sided] = four(8);
         Self {
-            centroid: Vec3::new(number(0), number(1), number(2)),
-            radius2: number(3),
-            w: Vec3::new(number(4), number(5), number(6)),
-            phi: number(7),
-            cos_theta_o: number(8),
-            sin_theta_o: number(9),
-            cos_theta_e: number(10),
-            two_sided: number(11).gt(R::zero()),
+            centroid: Vec3::new(x, y, z),
+            radius2,
+            w: Vec3::new(wx, wy, wz),
+            phi,
+            cos_theta_o,
+            sin_theta_o,
+            cos_theta_e,
+            two_sided: two_sided.gt(R::zero()),
         }
     }
 
