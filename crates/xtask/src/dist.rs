@@ -5,13 +5,15 @@
 //!
 //! The program has the window of `alhazen view`. Libraries of a graphics driver can be loaded by a
 //! dynamically linked program only, so on Linux it needs a glibc as new as that of the machine that
-//! built it. With `--static` it has no window, and runs on any distribution.
+//! built it. With `--static` it has no window, and runs on any distribution. With `--profile` it is
+//! optimized by a profile (`profile.rs`), which takes three times as long to build.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::command::{cargo, succeed, target};
+use super::profile;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "elvish", "powershell"];
@@ -21,18 +23,28 @@ const DOCUMENTS: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
 /// Builds for this machine, or for another target, into `target/dist`.
 pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let host = host(root)?;
-    let (is_static, arguments) = match arguments {
-        ["--static", rest @ ..] => (true, rest),
-        _ => (false, arguments),
-    };
-    let triple = match arguments {
+    let (options, targets): (Vec<&str>, Vec<&str>) =
+        arguments.iter().partition(|argument| argument.starts_with("--"));
+    let is_static = options.contains(&"--static");
+    let has_profile = options.contains(&"--profile");
+    let triple = match targets[..] {
         [] => host.as_str(),
         [triple] => triple,
-        _ => return Err("expected --static or a target, such as aarch64-unknown-linux-gnu".into()),
+        _ => return Err("expected one target, such as aarch64-unknown-linux-gnu".into()),
     };
-    let program = build(root, triple, is_static)?;
+    if let Some(unknown) = options.iter().find(|option| !["--static", "--profile"].contains(option)) {
+        return Err(format!("expected --static or --profile, not {unknown}"));
+    }
+    if has_profile && triple != host {
+        return Err(format!("a profile of {triple} needs a machine of its own"));
+    }
+    let flags = match has_profile {
+        true => profile::flags(root, &host, |flags| build(root, &host, is_static, flags))?,
+        false => String::new(),
+    };
+    let program = build(root, triple, is_static, &flags)?;
     // Pages and completions are the same everywhere, and only a program of this machine runs.
-    let own = if triple == host { program.clone() } else { build(root, &host, is_static)? };
+    let own = if triple == host { program.clone() } else { build(root, &host, is_static, "")? };
     let dist = target(root).join("dist");
     let name = format!("alhazen-{VERSION}-{triple}{}", if is_static { "-static" } else { "" });
     let folder = dist.join(&name);
@@ -56,8 +68,8 @@ fn host(root: &Path) -> Result<String, String> {
     host.map(str::to_owned).ok_or_else(|| "cargo does not say what it builds for".into())
 }
 
-/// Builds the program for a target, and returns its path.
-fn build(root: &Path, triple: &str, is_static: bool) -> Result<PathBuf, String> {
+/// Builds the program for a target, with more flags for the compiler, and returns its path.
+fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<PathBuf, String> {
     let mut command = cargo(root);
     let features = if is_static { "usd" } else { "gpu,usd,view" };
     command.args([
@@ -70,11 +82,17 @@ fn build(root: &Path, triple: &str, is_static: bool) -> Result<PathBuf, String> 
         "--target",
         triple,
     ]);
+    let mut all = flags.to_owned();
     if is_static && triple.contains("linux-gnu") {
+        all += " -C target-feature=+crt-static";
+    }
+    if !all.is_empty() {
         // This replaces the flags of `.cargo/config.toml`.
-        let processor = if triple.starts_with("x86_64") { "-C target-cpu=x86-64-v3 " } else { "" };
+        if triple.starts_with("x86_64") {
+            all += " -C target-cpu=x86-64-v3";
+        }
         let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
-        command.env(variable, format!("{processor}-C target-feature=+crt-static"));
+        command.env(variable, all);
     }
     succeed(&mut command)?;
     let suffix = if triple.contains("windows") { ".exe" } else { "" };

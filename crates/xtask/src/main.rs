@@ -4,6 +4,7 @@ mod bench;
 mod command;
 mod dist;
 mod gallery;
+mod profile;
 mod python;
 mod rgb_table;
 mod scenes;
@@ -24,7 +25,7 @@ usage: cargo xtask TASK
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
   wheel      build the Python package, into target/wheels
-  dist [--static] [TARGET]
+  dist [--static] [--profile] [TARGET]
              archives of the program, and on Debian a package, into target/dist;
              with --static without a window, for any Linux
   gallery [NAME…]
