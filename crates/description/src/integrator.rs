@@ -122,12 +122,32 @@ impl IntegratorDesc {
     }
 }
 
+choices! {
+    /// Where the light of mirror reflections is from.
+    pub enum ReflectionsDesc {
+        /// Traced rays.
+        #[default]
+        Traced = "traced",
+        /// A picture of the surroundings of the reflecting object from its place.
+        Environment = "environment",
+        /// Traced rays nearby, that picture far away.
+        Hybrid = "hybrid",
+    }
+}
+
 settings! {
     /// Settings of Whitted's ray tracing.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WhittedDesc {
         /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
+        /// Where the light of mirror reflections is from.
+        reflections: ReflectionsDesc = ReflectionsDesc::Traced => ["reflections"];
+        /// With `hybrid`, the distance from which on the picture is used; from half of it on it is
+        /// blended in. If absent, a quarter of the scene's radius.
+        reflection_distance: Option<f32> = None => ["reflectiondistance": above(0.0).unit("scene units")];
+        /// Resolution of the picture of an object's surroundings along an edge.
+        reflection_resolution: u32 = 256 => ["reflectionresolution": from(2.0, 4096.0).unit("pixels")];
     }
 }
 

@@ -48,8 +48,8 @@ pub use filter::FilterDesc;
 pub use integrator::{
     AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
     LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, RadiosityDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc, VcmDesc,
-    WhittedDesc,
+    PhotonMappingShow, RadiosityDesc, RandomWalkDesc, ReflectionsDesc, SimplePathDesc, SimpleVolPathDesc,
+    SppmDesc, VcmDesc, WhittedDesc,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{

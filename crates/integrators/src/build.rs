@@ -3,7 +3,7 @@
 use description::schema::Settings;
 use description::{
     BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, MaterialKind,
-    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc, Spanned,
+    MltTechnique, PathDesc, Randomization, ReflectionsDesc, SamplerKind, SceneDesc, Spanned,
 };
 use film::Layer;
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
@@ -166,7 +166,10 @@ impl Builder<'_> {
         let color_space = color_space(self.desc.film.color_space);
         match self.desc.integrator.value.clone() {
             IntegratorDesc::RayCasting => self.waves_in_media(RayCasting, sampler),
-            IntegratorDesc::Whitted(desc) => self.waves_in_media(Whitted(desc), sampler),
+            IntegratorDesc::Whitted(desc) if desc.reflections != ReflectionsDesc::Traced => {
+                pixels(Whitted::new(desc), sampler)
+            }
+            IntegratorDesc::Whitted(desc) => self.waves_in_media(Whitted::new(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
                 self.waves(AmbientOcclusion::new(desc, color_space), sampler)
             }

@@ -84,6 +84,20 @@ impl World {
         &self.tables.instances[id.0 as usize].motion
     }
 
+    /// A box around what was hit: the outermost instance or, outside of instances, the geometry.
+    /// Curves have that of the whole world.
+    pub fn bounds_around(&self, hit: &Hit) -> Bounds3 {
+        if let Some(id) = hit.instance.ids().first() {
+            let instance = &self.tables.instances[id.0 as usize];
+            return instance.motion.motion_bounds(&self.tables.groups[instance.group as usize].bounds());
+        }
+        let geometry = self.geometry(hit.geometry);
+        let primitives = 0..geometry.len() as u32;
+        let bounds = |primitive| geometry.shape(primitive).and_then(|shape| shape.bounds());
+        let bounds = primitives.filter_map(bounds).reduce(|a, b| a.union(b));
+        bounds.unwrap_or_else(|| self.bounds())
+    }
+
     /// The nearest hit at 0 < t < `t_max` that `filter` accepts. The filter sees candidates in no
     /// particular order, and must give the same answer for the same candidate.
     pub fn intersect(

@@ -7,23 +7,77 @@
 //! grows as 2^depth in glass.
 //!
 //! With a `max_depth` of 1, mirrors are black. Source: [Whitted 1980].
+//!
+//! The light of reflections may be looked up instead of traced, as film studios do: in a picture of
+//! what surrounds the reflecting object (`transport/surroundings.rs`), which costs no rays; or in a
+//! hybrid, where rays are traced and what they find is blended into the picture with its distance,
+//! from half of a given distance to the whole: L = (1 − w) L_traced + w L_picture. So an object
+//! shows itself and what is near, and the picture stands for what is far away [Christensen 2006].
+//! The picture of a hybrid has nothing that is nearer than half of the distance.
 
-use description::WhittedDesc;
-use math::RayDifferential;
+use std::sync::Arc;
+
+use description::{ReflectionsDesc, WhittedDesc};
+use geometry::Hit;
+use math::{RayDifferential, Vector3};
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf, Directions, TransportMode};
-use scene::SurfaceInteraction;
 use scene::medium::MediumId;
+use scene::{Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::{pass_through, throughput};
 use crate::transport::single_scattering::Scattering;
-use crate::{RayIntegrator, Tracer};
+use crate::transport::surroundings::{Surroundings, picture};
+use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Whitted(pub WhittedDesc);
+#[derive(Clone, Debug, Default)]
+pub struct Whitted {
+    settings: WhittedDesc,
+    surroundings: Arc<Surroundings>,
+}
+
+impl Whitted {
+    /// With these settings.
+    pub fn new(settings: WhittedDesc) -> Self {
+        Self { settings, surroundings: Arc::default() }
+    }
+
+    /// Maximum number of scattering events of a path.
+    pub(crate) fn max_depth(&self) -> u32 {
+        self.settings.max_depth
+    }
+
+    /// The light that the object which was hit reflects from direction `w`, of the picture of its
+    /// surroundings.
+    fn surroundings(
+        &self,
+        hit: &Hit,
+        (w, lambda): (Vector3, &SampledWavelengths),
+        tracer: &mut Tracer,
+    ) -> SampledSpectrum {
+        self.surroundings.radiance(hit, (w, lambda), || {
+            let traced = Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
+            let beyond = match self.settings.reflections {
+                ReflectionsDesc::Hybrid => 0.5 * self.distance(tracer),
+                _ => 0.0,
+            };
+            picture(hit, &traced, (self.settings.reflection_resolution, beyond), tracer)
+        })
+    }
+
+    /// From where on reflected rays of a hybrid see the picture alone.
+    fn distance(&self, tracer: &Tracer) -> f32 {
+        self.settings.reflection_distance.unwrap_or_else(|| 0.25 * tracer.scene.sphere().radius)
+    }
+
+    /// The share of the picture in the light of a reflected ray that travels a distance.
+    fn share_of_picture(&self, t: f32, tracer: &Tracer) -> f32 {
+        (2.0 * t / self.distance(tracer) - 1.0).clamp(0.0, 1.0)
+    }
+}
 
 /// A ray to be traced: a node of the tree.
 pub(crate) struct Node {
@@ -34,6 +88,8 @@ pub(crate) struct Node {
     pub beta: SampledSpectrum,
     /// Scattering events so far.
     pub depth: u32,
+    /// The hit at which it was reflected, if it blends into a picture of the surroundings.
+    pub reflected_at: Option<Hit>,
 }
 
 impl Node {
@@ -56,12 +112,18 @@ impl Node {
                 medium: surface.medium_towards(sample.wi, self.medium),
                 beta: self.beta * throughput(surface, &sample),
                 depth: self.depth + 1,
+                reflected_at: None,
             })
         })
     }
 }
 
 impl RayIntegrator for Whitted {
+    fn prepare(&mut self, _: &Scene, _: &View, _: &Control) -> Result<(), Cancelled> {
+        self.surroundings = Arc::default();
+        Ok(())
+    }
+
     fn li(
         &self,
         tracer: &mut Tracer,
@@ -70,13 +132,24 @@ impl RayIntegrator for Whitted {
     ) -> SampledSpectrum {
         let mut l = SampledSpectrum::ZERO;
         let medium = tracer.view.medium;
-        let mut next = Some(Node { ray, medium, beta: SampledSpectrum::ONE, depth: 0 });
+        let mut next = Some(Node { ray, medium, beta: SampledSpectrum::ONE, depth: 0, reflected_at: None });
         let (mut rest, mut connections) = (Vec::new(), Vec::new());
         while let Some(mut node) = next.take().or_else(|| rest.pop()) {
-            let hit = tracer.intersect(&node.ray.ray);
+            let hit = tracer.surface(&node.ray.ray);
+            let t_max = hit.as_ref().map_or(f32::INFINITY, |(hit, _)| hit.t);
+            if let Some(at) = node.reflected_at.take() {
+                let share = self.share_of_picture(t_max, tracer);
+                if share > 0.0 {
+                    let w = node.ray.ray.d.normalize();
+                    l += node.beta * self.surroundings(&at, (w, lambda), tracer) * share;
+                    node.beta *= 1.0 - share;
+                }
+                if share == 1.0 {
+                    continue;
+                }
+            }
             if let Some(medium) = node.medium {
-                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
-                let is_last = node.depth == self.0.max_depth;
+                let is_last = node.depth == self.settings.max_depth;
                 let scattering = if is_last { Scattering::None } else { Scattering::Shadowed };
                 l += node.beta * tracer.single_scattering(medium, &node.ray.ray, t_max, scattering, lambda);
                 let Some(passed) = tracer.attenuation(medium, &node.ray.ray, t_max, &node.beta, lambda)
@@ -85,18 +158,18 @@ impl RayIntegrator for Whitted {
                 };
                 node.beta *= passed;
             }
-            let Node { ray, medium, beta, depth } = node;
-            let Some((mut surface, t)) = hit else {
+            let Node { ray, medium, beta, depth, .. } = node;
+            let Some((hit, mut surface)) = hit else {
                 l += beta * tracer.scene.escaped(&ray.ray, lambda);
                 continue;
             };
             l += beta * tracer.scene.emitted(&surface, surface.surface.wo, lambda);
             let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
                 let medium = surface.medium_towards(ray.ray.d, medium);
-                next = Some(Node { ray: pass_through(&ray, &surface, t), medium, ..node });
+                next = Some(Node { ray: pass_through(&ray, &surface, hit.t), medium, ..node });
                 continue;
             };
-            if depth == self.0.max_depth {
+            if depth == self.settings.max_depth {
                 continue;
             }
             let (scene, sampler) = (tracer.scene, &mut *tracer.sampler);
@@ -108,8 +181,18 @@ impl RayIntegrator for Whitted {
             }
             l += beta * sum;
             let [reflected, refracted] = node.children(&surface, &bsdf, tracer.sampler);
-            next = reflected;
             rest.extend(refracted);
+            next = match (self.settings.reflections, reflected) {
+                (ReflectionsDesc::Environment, Some(reflected)) => {
+                    let w = reflected.ray.ray.d.normalize();
+                    l += reflected.beta * self.surroundings(&hit, (w, lambda), tracer);
+                    None
+                }
+                (ReflectionsDesc::Hybrid, Some(reflected)) => {
+                    Some(Node { reflected_at: Some(hit), ..reflected })
+                }
+                (_, reflected) => reflected,
+            };
         }
         l
     }

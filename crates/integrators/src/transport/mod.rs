@@ -28,6 +28,7 @@ pub(crate) mod roulette;
 pub(crate) mod shutter_sample;
 pub(crate) mod single_scattering;
 pub(crate) mod subsurface;
+pub(crate) mod surroundings;
 mod tracer;
 mod visibility;
 

@@ -105,6 +105,14 @@ impl<'a> Tracer<'a> {
         found
     }
 
+    /// Traces rays that are not the sample's, with another sampler.
+    pub(crate) fn apart<T>(&mut self, sampler: &mut Sampler, trace: impl FnOnce(&mut Tracer) -> T) -> T {
+        let mut apart = Tracer::new(self.scene, self.view, self.control, sampler, &mut *self.stats);
+        let found = trace(&mut apart);
+        self.is_cancelled |= apart.is_cancelled;
+        found
+    }
+
     /// `Err` if rays of the sample were not traced because the render was cancelled: the estimate
     /// has to be discarded.
     pub fn finish(&self) -> Result<(), Cancelled> {
@@ -121,20 +129,28 @@ impl<'a> Tracer<'a> {
     /// The nearest surface that a ray hits, and its distance.
     #[inline]
     pub fn intersect(&mut self, ray: &Ray) -> Option<(SurfaceInteraction, f32)> {
+        let (hit, surface) = self.surface(ray)?;
+        Some((surface, hit.t))
+    }
+
+    /// The nearest surface that a ray hits, and the hit.
+    #[inline]
+    pub(crate) fn surface(&mut self, ray: &Ray) -> Option<(Hit, SurfaceInteraction)> {
         if !self.may_trace() {
             return None;
         }
-        if self.steps.is_some() {
-            let hit = self.scene.hit(ray, f32::INFINITY, self.stats);
-            self.take_step(|scene| {
-                let hit = hit.map(|hit| {
-                    let [object, _] = scene.names().object(&hit);
-                    (hit.t, object)
-                });
-                Step::Ray { ray: *ray, hit }
+        let scene = self.scene;
+        let hit = scene.hit(ray, f32::INFINITY, self.stats);
+        self.take_step(|scene| {
+            let hit = hit.as_ref().map(|hit| {
+                let [object, _] = scene.names().object(hit);
+                (hit.t, object)
             });
-        }
-        self.scene.intersect(ray, f32::INFINITY, self.stats)
+            Step::Ray { ray: *ray, hit }
+        });
+        let hit = hit?;
+        let surface = scene.interaction(&hit, scene.world().surface(ray, &hit));
+        Some((hit, surface))
     }
 
     /// The nearest hit of a ray.

@@ -9,7 +9,7 @@ use scene::Interfaces;
 
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
-use super::batch::{Batch, Vertex};
+use super::batch::{Batch, BatchColumns, Vertex};
 use crate::Whitted;
 use crate::camera_paths::Node;
 use crate::transport::direct::{Connection, connect_all};
@@ -18,7 +18,7 @@ use crate::transport::path_state::PathState;
 impl WaveIntegrator for Whitted {
     fn shade(&self, batch: &mut Batch) {
         let lights = AllLights::new(true);
-        batch.classify(self.0.max_depth, lights.direct());
+        batch.classify(self.max_depth(), lights.direct());
         batch.shade_in_lanes(&lights);
         batch.shade_others(|batch, place, hit| self.shade_path(batch, &lights, place, hit));
         batch.go_on_with_waiting();
@@ -30,16 +30,17 @@ impl Whitted {
     fn shade_path(&self, batch: &mut Batch, lights: &AllLights, place: (u32, u32), hit: &Hit) {
         let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
         let Vertex { state, lambda, surface, bsdf } = vertex;
-        let Batch { pass, paths, sampler, queues, .. } = batch;
+        let Batch { pass, sampler, columns: BatchColumns { paths, queues, .. }, .. } = batch;
         let (path, _) = place;
         let PathState { ray, beta, depth, .. } = state;
-        if depth < self.0.max_depth {
+        if depth < self.max_depth() {
             connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
                 let Connection { ray, t_max, interfaces, l, .. } = light;
                 let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
                 queue.push(path, beta * l, &ray, t_max);
             });
-            let children = Node { ray, medium: None, beta, depth }.children(&surface, &bsdf, sampler);
+            let children = Node { ray, medium: None, beta, depth, reflected_at: None }
+                .children(&surface, &bsdf, sampler);
             for Node { ray, beta, depth, .. } in children.into_iter().rev().flatten() {
                 queues.wait(path, PathState { beta, ..PathState::new(ray, depth) });
             }

@@ -26,7 +26,7 @@ fn supported_algorithms_build_without_warnings() {
     let light_sampler = LightSamplerDesc::Exhaustive;
     for integrator in [
         IntegratorDesc::RayCasting,
-        IntegratorDesc::Whitted(WhittedDesc { max_depth: 0 }),
+        IntegratorDesc::Whitted(WhittedDesc { max_depth: 0, ..Default::default() }),
         IntegratorDesc::AmbientOcclusion(AmbientOcclusionDesc { cos_sample: false, max_distance: 1.0 }),
         IntegratorDesc::RandomWalk(RandomWalkDesc { max_depth: 5 }),
         IntegratorDesc::SimplePath(SimplePathDesc { max_depth: 5, sample_lights: true, sample_bsdf: true }),

@@ -115,12 +115,17 @@ fn irradiance_of_point_and_distant_lights_is_exact() {
 fn whitted_counts_scattering_events_like_path_tracing() {
     let scene = under_delta_lights(|_| ());
     assert_eq!(
-        look(&mut Whitted(WhittedDesc { max_depth: 0 }), &scene, 10).mean,
+        look(&mut Whitted::new(WhittedDesc { max_depth: 0, ..Default::default() }), &scene, 10).mean,
         0.0,
         "direct light is scattered once"
     );
     let expected = f64::from(RHO) / PI * (0.25 + 0.5);
-    assert_mean(&look(&mut Whitted(WhittedDesc { max_depth: 1 }), &scene, 10), expected, 1, "Whitted");
+    assert_mean(
+        &look(&mut Whitted::new(WhittedDesc { max_depth: 1, ..Default::default() }), &scene, 10),
+        expected,
+        1,
+        "Whitted",
+    );
 }
 
 #[test]

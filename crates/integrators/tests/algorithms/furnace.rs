@@ -45,7 +45,13 @@ fn direct_light_algorithms_show_one_reflection_in_a_furnace() {
     let (o, d) = (v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7));
     assert_mean(&radiance(&mut RayCasting, &scene, o, d, 20_000), 1.5, 2, "ray casting");
     assert_mean(
-        &radiance(&mut Whitted(WhittedDesc { max_depth: 9 }), &scene, o, d, 20_000),
+        &radiance(
+            &mut Whitted::new(WhittedDesc { max_depth: 9, ..Default::default() }),
+            &scene,
+            o,
+            d,
+            20_000,
+        ),
         1.5,
         2,
         "Whitted",
@@ -97,6 +103,10 @@ fn objects_without_absorption_are_invisible_under_a_white_sky() {
 
 #[test]
 fn whitted_traces_all_rays_in_glass() {
-    let found = under_white_sky(sphere(1.0), &mut Whitted(WhittedDesc { max_depth: 12 }), glass);
+    let found = under_white_sky(
+        sphere(1.0),
+        &mut Whitted::new(WhittedDesc { max_depth: 12, ..Default::default() }),
+        glass,
+    );
     assert!((found.mean - 1.0).abs() < 2e-3 && found.variance() < 1e-4, "{found:?}");
 }

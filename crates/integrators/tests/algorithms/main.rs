@@ -17,6 +17,7 @@ mod mlt;
 mod openpbr;
 mod parts;
 mod photon_mapping;
+mod reflections;
 
 mod session;
 mod subsurface;

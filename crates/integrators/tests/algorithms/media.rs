@@ -62,7 +62,7 @@ fn emission_saturates_with_depth() {
     // The emission of a homogeneous medium is integrated, not sampled.
     assert_mean(&past_the_centre(&mut RayCasting, &scene, 10), expected, 1, "ray casting");
     assert_mean(
-        &past_the_centre(&mut Whitted(WhittedDesc { max_depth: 0 }), &scene, 10),
+        &past_the_centre(&mut Whitted::new(WhittedDesc { max_depth: 0, ..Default::default() }), &scene, 10),
         expected,
         1,
         "Whitted",
@@ -108,7 +108,7 @@ fn single_scattering_of_a_point_light_is_the_integral_along_the_ray() {
     };
     let expected = unshadowed(true);
     assert_mean(&past_the_centre(&mut vol_path(1), &scene, 40_000), expected, 3, "vol-path");
-    let whitted = &mut Whitted(WhittedDesc { max_depth: 1 });
+    let whitted = &mut Whitted::new(WhittedDesc { max_depth: 1, ..Default::default() });
     assert_mean(&past_the_centre(whitted, &scene, 40_000), expected, 3, "Whitted");
     // Ray casting takes all lights as if nothing were in between.
     assert_mean(&past_the_centre(&mut RayCasting, &scene, 40_000), unshadowed(false), 3, "ray casting");

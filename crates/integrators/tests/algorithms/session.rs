@@ -66,7 +66,7 @@ fn the_picture_does_not_depend_on_threads() {
     let integrators = [
         balls().integrator.value,
         IntegratorDesc::RayCasting,
-        IntegratorDesc::Whitted(WhittedDesc { max_depth: 5 }),
+        IntegratorDesc::Whitted(WhittedDesc { max_depth: 5, ..Default::default() }),
         IntegratorDesc::AmbientOcclusion(AmbientOcclusionDesc {
             cos_sample: true,
             max_distance: f32::INFINITY,

@@ -43,11 +43,24 @@ class integrator:
     def whitted(
         *,
         maxdepth: int | None = None,
+        reflections: Literal["traced", "environment", "hybrid"] | None = None,
+        reflectiondistance: float | None = None,
+        reflectionresolution: int | None = None,
     ) -> Settings:
         """Primary and shadow rays, mirror reflection and refraction.
 
         maxdepth: a whole number of 0 or more, by default 5. Maximum number of scattering events of
         a path.
+
+        reflections: one of traced, environment, hybrid, by default traced. Where the light of
+        mirror reflections is from.
+
+        reflectiondistance: a number above 0 scene units. With `hybrid`, the distance from which on
+        the picture is used; from half of it on it is blended in. If absent, a quarter of the
+        scene's radius.
+
+        reflectionresolution: a whole number from 2 to 4096 pixels, by default 256. Resolution of
+        the picture of an object's surroundings along an edge.
         """
         return _given("integrator", "whitted", dict(locals()))
 
