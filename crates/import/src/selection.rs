@@ -3,9 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
+use description::{SceneDesc, SourceMap};
+
 use crate::assets::AssetSource;
-use crate::log::{Fault, Result};
-use crate::number;
+use crate::log::{Fault, Log, Result};
+use crate::{Imported, number};
 
 /// A choice by its name or its number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +49,12 @@ impl Selection {
         }
     }
 
+    /// The extension of the file of a path, in lower case; empty without one.
+    pub fn extension(path: &Path, assets: &dyn AssetSource) -> String {
+        let (file, _) = Self::of(path, assets);
+        file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+    }
+
     fn parse(text: &str) -> Result<Self> {
         let mut selection = Self::default();
         for part in text.split(',') {
@@ -81,6 +89,25 @@ impl Selection {
         }
         Ok(selection)
     }
+}
+
+/// Reads a file as a scene: `fill` makes of its path and bytes what is selected. What went wrong is
+/// in the messages, and what was read before is in the scene.
+pub(crate) fn read(
+    path: &Path,
+    assets: &dyn AssetSource,
+    fill: impl FnOnce(&mut SceneDesc, (&Path, Vec<u8>), &Selection, &mut Log) -> Result<()>,
+) -> Imported {
+    let (mut desc, mut log) = (SceneDesc::default(), Log::default());
+    let (file, selection) = Selection::of(path, assets);
+    let filled = selection.and_then(|selection| {
+        let bytes = assets.read(&file).map_err(|error| {
+            Fault::new("unreadable-file", "", format!("cannot read `{}`: {error}", file.display()))
+        })?;
+        fill(&mut desc, (&file, bytes), &selection, &mut log)
+    });
+    log.keep(filled);
+    Imported { desc, sources: SourceMap::default(), diagnostics: log.finish() }
 }
 
 #[cfg(test)]

@@ -29,19 +29,19 @@ mod uri;
 
 use std::path::Path;
 
-use description::{SceneDesc, SourceMap};
+use description::SceneDesc;
 
 use crate::Imported;
 use crate::assets::AssetSource;
 use crate::log::Log;
-use crate::selection::{Choice, Selection};
+use crate::selection::{self, Choice, Selection};
 use crate::view;
 use accessor::Accessor;
 use animation::Animation;
 use buffer::Buffers;
 use camera::Camera;
 use document::Document;
-use json::{Fault, Place, Result};
+use json::{Place, Result};
 use light::Light;
 use material::Material;
 use node::Nodes;
@@ -53,35 +53,26 @@ use skin::Skin;
 
 /// Whether a path names a file of this format: by its extension, or by its first bytes.
 pub(crate) fn is_named_by(path: &Path, assets: &dyn AssetSource) -> bool {
-    let (file, _) = Selection::of(path, assets);
-    let extension = file.extension().map(|extension| extension.to_ascii_lowercase());
-    match extension.as_ref().and_then(|extension| extension.to_str()) {
-        Some("gltf" | "glb") => true,
-        Some("pbrt" | "gz") => false,
+    match Selection::extension(path, assets).as_str() {
+        "gltf" | "glb" => true,
+        "pbrt" | "gz" => false,
         _ if path == Path::new("-") => false,
-        _ => assets.read(&file).is_ok_and(|bytes| container::is_binary(&bytes)),
+        _ => assets.read(&Selection::of(path, assets).0).is_ok_and(|bytes| container::is_binary(&bytes)),
     }
 }
 
 /// Reads a file as a scene.
 pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
-    let (mut desc, mut log) = (SceneDesc::default(), Log::default());
-    let (file, selection) = Selection::of(path, assets);
-    let filled = selection.and_then(|selection| fill(&mut desc, &file, &selection, assets, &mut log));
-    log.keep(filled);
-    Imported { desc, sources: SourceMap::default(), diagnostics: log.finish() }
+    selection::read(path, assets, |desc, file, selection, log| fill(desc, file, selection, assets, log))
 }
 
 fn fill(
     desc: &mut SceneDesc,
-    path: &Path,
+    (path, bytes): (&Path, Vec<u8>),
     selection: &Selection,
     assets: &dyn AssetSource,
     log: &mut Log,
 ) -> Result<()> {
-    let bytes = assets.read(path).map_err(|error| {
-        Fault::new("unreadable-file", "", format!("cannot read `{}`: {error}", path.display()))
-    })?;
     let says_binary = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb"));
     let container::Container { root, bytes: binary } = container::read(&bytes, says_binary)?;
     drop(bytes);

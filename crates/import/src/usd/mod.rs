@@ -27,12 +27,12 @@ mod xform;
 
 use std::path::Path;
 
-use description::{SceneDesc, SourceMap};
+use description::SceneDesc;
 
 use crate::Imported;
 use crate::assets::AssetSource;
 use crate::log::{Fault, Log, Result};
-use crate::selection::Selection;
+use crate::selection::{self, Selection};
 use crate::view;
 use files::{Files, Resolver};
 use material::Materials;
@@ -44,24 +44,14 @@ const STACK: usize = 256 << 20;
 
 /// Whether a path names a file of this format, by its extension.
 pub(crate) fn is_named_by(path: &Path, assets: &dyn AssetSource) -> bool {
-    let (file, _) = Selection::of(path, assets);
-    let extension = file.extension().map(|extension| extension.to_ascii_lowercase());
-    let extension = extension.as_ref().and_then(|extension| extension.to_str());
-    matches!(extension, Some("usd" | "usda" | "usdc" | "usdz"))
+    matches!(Selection::extension(path, assets).as_str(), "usd" | "usda" | "usdc" | "usdz")
 }
 
 /// Reads a file as a scene.
 pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
-    let (mut desc, mut log) = (SceneDesc::default(), Log::default());
-    let (file, selection) = Selection::of(path, assets);
-    let filled = selection.and_then(|selection| {
-        assets.read(&file).map_err(|error| {
-            Fault::new("unreadable-file", "", format!("cannot read `{}`: {error}", file.display()))
-        })?;
-        guarded(&mut desc, &file, &selection, assets, &mut log)
-    });
-    log.keep(filled);
-    Imported { desc, sources: SourceMap::default(), diagnostics: log.finish() }
+    selection::read(path, assets, |desc, (path, _), selection, log| {
+        guarded(desc, path, selection, assets, log)
+    })
 }
 
 /// Reads in a thread of its own, for a stack that is large enough, while this one answers for its
