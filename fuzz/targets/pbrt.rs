@@ -1,0 +1,10 @@
+//! Any bytes as a scene of pbrt-v4.
+
+#![no_main]
+
+use alhazen_import::{MemoryAssets, import};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    import("a.pbrt", &MemoryAssets::default().with("a.pbrt", bytes));
+});
