@@ -125,6 +125,29 @@ fn deep_texts_do_not_overflow_the_stack() {
     assert!(imported.diagnostics[0].message.contains("brackets are nested more than 512 deep"));
 }
 
+/// The composition of such paths would not end.
+#[test]
+fn stray_braces_are_refused() {
+    for prims in [
+        "def Xform \"a}b\" {}",
+        "def \"a\" (references = </x}b>) {}",
+        "def \"a\" (inherits = </x}b>) {}",
+        "def \"a\" { rel material:binding = </x\n{ a = b }\n} c.d> }",
+    ] {
+        let imported = read(prims);
+        let message = &imported.diagnostics[0].message;
+        assert!(message.contains("a brace too many"), "{prims}: {message}");
+    }
+    for prims in [
+        "def \"a\" { string x = \"a}b\" (doc = \"c}\") }",
+        "def \"a\" (doc = '''it's {one}''' variants = { string v = \"x\" } prepend variantSets = \"v\") {
+            variantSet \"v\" = { \"x\" { def \"b\" (references = </a{v=x}c>) {} def \"c\" {} } } # }
+        }",
+    ] {
+        assert!(!read(prims).has_errors(), "{prims}: {:?}", read(prims).diagnostics);
+    }
+}
+
 #[test]
 fn circles_end() {
     for prims in [
