@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::value::{Chosen, Reference, arguments, motion, read};
 
 /// Builds a scene: each call is a statement of the pbrt-v4 format, with the names of its types and
-/// parameters. Arrays of numpy are taken as they are.
+/// parameters. Arrays of numpy are copied, so that they may be changed afterwards.
 ///
 ///     builder = alhazen.SceneBuilder()
 ///     builder.camera("perspective", fov=40, transform=alhazen.look_at((0, 1, 5), (0, 0, 0)))
