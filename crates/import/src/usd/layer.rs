@@ -114,3 +114,23 @@ pub(super) fn text_error(bytes: &[u8]) -> Option<(String, String)> {
     let place = parser.last_error_highlight().map(|place| format!("{}:{}", place.line, place.column));
     Some((place.unwrap_or_else(|| "1".to_owned()), format!("{error:#}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn braces_may_be_in_values_and_pair_in_paths() {
+        for good in [
+            "string x = \"a}b\" (doc = \"c}\")",
+            "doc = '''it's {one}''' { }",
+            "def \"b\" (references = @a}.usda@</a{v=x}{w=y}c>) { } # }",
+            "variantSet \"v\" = { \"x\" { } }",
+        ] {
+            assert_eq!(check_text(good.as_bytes()), Ok(()), "{good}");
+        }
+        for bad in ["</a}b>", "</a{v=x>", "</a{v={x}}>", "def \"a}b\" { }", "over 'a{' ( )", "\n</a}b"] {
+            assert!(check_text(bad.as_bytes()).is_err(), "{bad}");
+        }
+    }
+}

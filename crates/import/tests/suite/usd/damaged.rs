@@ -138,14 +138,6 @@ fn stray_braces_are_refused() {
         let message = &imported.diagnostics[0].message;
         assert!(message.contains("a brace too many"), "{prims}: {message}");
     }
-    for prims in [
-        "def \"a\" { string x = \"a}b\" (doc = \"c}\") }",
-        "def \"a\" (doc = '''it's {one}''' variants = { string v = \"x\" } prepend variantSets = \"v\") {
-            variantSet \"v\" = { \"x\" { def \"b\" (references = </a{v=x}c>) {} def \"c\" {} } } # }
-        }",
-    ] {
-        assert!(!read(prims).has_errors(), "{prims}: {:?}", read(prims).diagnostics);
-    }
 }
 
 #[test]
