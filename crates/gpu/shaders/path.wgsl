@@ -68,7 +68,7 @@ fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, s
 
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
-    let probability = SampledSpectrum_max_component((*path).beta * (*path).eta_scale);
+    let probability = 3 * SampledSpectrum_max_component((*path).beta * (*path).eta_scale);
     if ((*path).depth <= 1 || probability >= CERTAIN) {
         return true;
     }

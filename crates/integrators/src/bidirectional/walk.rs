@@ -417,7 +417,8 @@ impl<'a> Walk<'a> {
 
     /// Russian roulette.
     fn survive(&mut self, sampler: &mut Sampler) -> bool {
-        let Some(survival) = roulette::survival(self.depth, self.share, sampler) else { return false };
+        let survival = roulette::survival(self.depth, self.share.max_component(), sampler);
+        let Some(survival) = survival else { return false };
         self.beta /= survival;
         self.share /= survival;
         true

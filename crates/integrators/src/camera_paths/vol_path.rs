@@ -107,7 +107,7 @@ impl Path {
     /// Plays Russian roulette; `false` if the path has ended.
     fn survives(&mut self, sampler: &mut Sampler) -> bool {
         let carried = self.throughput.estimate(SampledSpectrum::splat(self.eta_scale), &self.heroes);
-        let survival = roulette::survival(self.depth, carried, sampler);
+        let survival = roulette::survival(self.depth, roulette::of_camera_path(carried), sampler);
         self.throughput.beta /= survival.unwrap_or(1.0);
         survival.is_some()
     }

@@ -1,10 +1,16 @@
 //! Russian roulette: paths of low throughput are ended at random, and survivors are weighted up.
 //!
-//! From the second scattering event on a path survives with the probability q = min(1, c_max),
-//! where c_max is the largest component of its throughput, which is then divided by q. The
-//! throughput is taken without the factors η² of refraction, so that paths through glass do not end
-//! early. [Pharr 2023 §13.4.4]
+//! From the second scattering event on a path survives with a probability q, by which its
+//! throughput is then divided. [Pharr 2023 §13.4.4] has q = min(1, c_max), where c_max is the
+//! largest component of the throughput, taken without the factors η² of refraction, so that paths
+//! through glass do not end early. Subpaths of bidirectional methods and light paths have this q,
+//! too, as each of their vertices costs connections.
+//!
+//! Camera paths have q = min(1, 3 c_max) ([`of_camera_path`]). Their vertices are cheap, and a path
+//! that ends by chance is no longer spread evenly by the sampler: `docs/performance.md` has
+//! figures.
 
+use lanes::Real;
 use sampling::Sampler;
 use spectrum::SampledSpectrum;
 
@@ -13,11 +19,17 @@ use spectrum::SampledSpectrum;
 /// number.
 pub(crate) const CERTAIN: f32 = 0.999;
 
-/// The survival probability of a path with `depth` scattering events and the throughput `carried`,
-/// to be divided by; `None` if it has ended. Takes a random number unless survival is certain.
+/// The survival probability of a camera path with the throughput `carried`; may be above one.
+#[inline(always)]
+pub(crate) fn of_camera_path<R: Real>(carried: SampledSpectrum<R>) -> R {
+    carried.max_component() * R::splat(3.0)
+}
+
+/// What the throughput of a path with `depth` scattering events is to be divided by: the survival
+/// probability, or one where that is larger; `None` if the path has ended. Takes a random number
+/// unless survival is certain.
 #[inline]
-pub(crate) fn survival(depth: u32, carried: SampledSpectrum, sampler: &mut Sampler) -> Option<f32> {
-    let probability = carried.max_component();
+pub(crate) fn survival(depth: u32, probability: f32, sampler: &mut Sampler) -> Option<f32> {
     if depth > 1 && probability < CERTAIN {
         (probability > 0.0 && sampler.get_1d() < probability).then_some(probability)
     } else {

@@ -18,7 +18,7 @@ use super::shade::{AtVertices, Shade, Vertices};
 use crate::Path;
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
-use crate::transport::roulette::CERTAIN;
+use crate::transport::roulette::{self, CERTAIN};
 
 impl WaveIntegrator for Path {
     fn shade(&self, batch: &mut Batch) {
@@ -139,7 +139,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         // The first scattering event is never the last by roulette.
         let depth = R::Int::gather(&self.segments.depth, turns.indices);
         let is_first = depth.eq(R::Int::splat(0));
-        let probability = (beta * eta_scale).max_component();
+        let probability = roulette::of_camera_path(beta * eta_scale);
         let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
         let draws = plays & probability.gt(R::zero());
         let mut survives = valid & !plays;
