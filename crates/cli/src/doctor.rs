@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+#[cfg(feature = "gpu")]
+use alhazen::device::Device;
 use alhazen::lanes::InstructionSet;
 use serde_json::{Map, Value, json};
 
@@ -16,6 +18,9 @@ use crate::threads::{available_threads, most_threads};
 /// Less free space than this is reported: a picture of many layers may not fit.
 const LITTLE_SPACE: u64 = 1 << 30;
 
+/// The program of Open Image Denoise.
+const DENOISER: &str = "oidnDenoise";
+
 /// Something that was looked for.
 struct Finding {
     name: &'static str,
@@ -29,7 +34,7 @@ struct Finding {
 
 /// Reports what was found.
 pub fn doctor(arguments: &Doctor) -> Result<(), Failure> {
-    let found = [build(), threads(), instruction_set(), memory(), folder(), gpu()];
+    let found = [build(), threads(), instruction_set(), memory(), folder(), gpu(), denoiser()];
     if arguments.json {
         let mut checks = Map::new();
         for Finding { name, note, mut values, .. } in found {
@@ -151,11 +156,48 @@ fn free_space(_: &Path) -> Option<u64> {
     None
 }
 
+#[cfg(feature = "gpu")]
+fn gpu() -> Finding {
+    let (text, note, name) = match Device::open("") {
+        Ok(device) if device.is_software() => {
+            let note = "it is no faster than the processor, which renders by default";
+            (format!("{}, in software", device.name()), Some(note), Some(device.name().to_owned()))
+        }
+        Ok(device) => {
+            let note = "--device gpu renders with it; what it cannot draw is left to the processor";
+            (device.name().to_owned(), Some(note), Some(device.name().to_owned()))
+        }
+        Err(error) => (error.to_string(), Some("all algorithms run on the processor"), None),
+    };
+    Finding { name: "GPU", text, note: note.map(str::to_owned), values: json!({ "name": name }) }
+}
+
+#[cfg(not(feature = "gpu"))]
 fn gpu() -> Finding {
     Finding {
         name: "GPU",
-        text: "not used: all algorithms run on the processor".into(),
-        note: None,
-        values: json!({ "used": false }),
+        text: "not used by this build".into(),
+        note: Some("all algorithms run on the processor; builds with the feature `gpu` use GPUs, too".into()),
+        values: json!({ "name": null }),
     }
+}
+
+/// Open Image Denoise, whose program removes noise from finished pictures.
+fn denoiser() -> Finding {
+    let file = format!("{DENOISER}{}", std::env::consts::EXE_SUFFIX);
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let program =
+        std::env::split_paths(&folders).map(|folder| folder.join(&file)).find(|path| path.is_file());
+    let (text, note) = match &program {
+        Some(path) => (
+            path.display().to_string(),
+            "it reads pictures that are written with --output in the format .pfm",
+        ),
+        None => (
+            format!("`{DENOISER}` is not in the search path"),
+            "nothing here needs it; more samples remove noise",
+        ),
+    };
+    let path = program.map(|path| path.display().to_string());
+    Finding { name: "denoiser", text, note: Some(note.into()), values: json!({ "path": path }) }
 }

@@ -2,6 +2,21 @@
 
 use crate::common::{Finished, Folder};
 
+#[cfg(unix)]
+#[test]
+fn it_finds_the_denoiser() {
+    let folder = Folder::new("doctor-denoiser");
+    let found = || {
+        let mut command = folder.command(&["doctor", "--json"]);
+        let finished: Finished =
+            command.env("PATH", folder.path()).output().expect("the program runs").into();
+        finished.expect(0).json()["checks"]["denoiser"]["path"].clone()
+    };
+    assert!(found().is_null());
+    folder.write("oidnDenoise", "");
+    assert_eq!(found().as_str(), folder.path().join("oidnDenoise").to_str());
+}
+
 #[test]
 fn it_finds_what_renders_use() {
     let folder = Folder::new("doctor");

@@ -148,13 +148,13 @@ fn samples_beyond_the_plan_are_reported() {
 fn noise_and_time_end_a_render() {
     let folder = room("resume-limits");
     let noisy = |more: &[&str]| {
-        let start = ["render", "room.pbrt", "-o", "a.exr", "--json", "--noise", "0.2"];
+        let start = ["render", "room.pbrt", "-o", "a.exr", "--json", "--noise", "0.15"];
         folder.alhazen(&[&start[..], more].concat()).expect(0).json()
     };
     let whole = noisy(&[]);
     assert_eq!(whole["ended_by"], "noise");
     let (noise, passes) = (whole["noise"].as_f64(), whole["passes"].as_u64());
-    assert!(noise.is_some_and(|noise| noise > 0.1 && noise <= 0.2), "{noise:?}");
+    assert!(noise.is_some_and(|noise| noise > 0.1 && noise <= 0.15), "{noise:?}");
     assert!(passes.is_some_and(|passes| passes > 16), "more than the scene plans: {passes:?}");
     let picture = bytes(&folder, "a.exr");
 
@@ -164,7 +164,7 @@ fn noise_and_time_end_a_render() {
     let again = folder.alhazen(&["resume", "a.film", "--json", "-o", "b.exr"]).expect(0).json();
     assert_eq!((&again["ended_by"], &again["passes"]), (&"time".into(), &1.into()), "the time was up before");
     let resumed =
-        folder.alhazen(&["resume", "a.film", "--noise", "0.2", "--json", "-o", "b.exr"]).expect(0).json();
+        folder.alhazen(&["resume", "a.film", "--noise", "0.15", "--json", "-o", "b.exr"]).expect(0).json();
     assert_eq!((&resumed["ended_by"], resumed["noise"].as_f64()), (&"noise".into(), noise));
     assert!(bytes(&folder, "b.exr") == picture);
 
