@@ -128,10 +128,10 @@ impl Case {
         let same = pairs.iter().filter(|pair| !apart(pair));
         let difference = same.map(|(a, b)| f64::from(a - b)).sum::<f64>() / pairs.len() as f64 / mean;
         println!("{name:20} mean {mean:.4}, {other:.1e} apart, the rest {difference:+.1e}");
-        // These scenes multiply rounding, by hashes of positions and by slopes of bumps. With the CPU
-        // alone, moving the camera by 1e-7 changes 5 % of the values of `textures` and 0.7 % of
-        // `noise`; by 1e-5, the rounding of the far water, 0.9 % of `bump-map`. Of `cornell-box` and
-        // `mirror-room` none changes.
+        // These scenes multiply rounding, by hashes of positions and by slopes of bumps. With the
+        // CPU alone, moving the camera by 1e-7 changes 5 % of the values of `textures` and 0.7 %
+        // of `noise`; by 1e-5, the rounding of the far water, 0.9 % of `bump-map`. Of
+        // `cornell-box` and `mirror-room` none changes.
         let share = match name {
             "textures" => 0.03,
             "bump-map" => 0.02,

@@ -41,7 +41,7 @@ fn check_braces(bytes: &[u8]) -> Result<(), String> {
         let token = &rest[..length];
         let is_wrong = match byte {
             b'<' => !has_braces_of_variants(token),
-            // A string is a name where a block or metadata follow, unless it is a value before them.
+            // A string is a name where a block or metadata follow, unless it is a value.
             b'"' | b'\'' => {
                 let after = rest[length..].trim_ascii_start().first();
                 let is_name = matches!(after, Some(b'{' | b'(')) && !b"=[(,:".contains(&before);
