@@ -6,6 +6,7 @@ mod car;
 mod forest;
 mod mesh;
 mod noise;
+mod planet;
 mod tree;
 
 use std::io;
@@ -14,7 +15,8 @@ use std::path::Path;
 /// Writes the files of a scene into a folder.
 type Make = fn(&Path) -> io::Result<()>;
 
-const SCENES: [(&str, Make); 2] = [("car", |folder| car::make(folder, 5)), ("forest", forest::make)];
+const SCENES: [(&str, Make); 3] =
+    [("car", |folder| car::make(folder, 5)), ("forest", forest::make), ("planet", planet::make)];
 
 /// Makes the scenes of these names, or all, in `target/scenes`.
 pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {

@@ -5,7 +5,7 @@ use super::tree::Tree;
 
 /// Every crate and its allowed dependencies, lower layers first: a crate depends only on earlier
 /// ones. Tests may use any crate of an earlier line.
-const EDGES: [(&str, &[&str]); 21] = [
+const EDGES: [(&str, &[&str]); 22] = [
     ("lanes", &[]),
     ("testkit", &["lanes"]),
     ("math", &["lanes"]),
@@ -14,6 +14,7 @@ const EDGES: [(&str, &[&str]); 21] = [
     ("image", &["lanes", "math", "spectrum"]),
     ("geometry", &["math", "lanes", "sampling"]),
     ("scattering", &["lanes", "math", "spectrum", "sampling"]),
+    ("planet", &["lanes", "math", "sampling"]),
     ("description", &["math", "spectrum", "image", "scattering"]),
     ("import", &["math", "spectrum", "image", "scattering", "description"]),
     ("export", &["math", "image", "scattering", "description"]),
@@ -68,11 +69,11 @@ const EDGES: [(&str, &[&str]); 21] = [
             "gpu",
         ],
     ),
-    ("view", &["alhazen"]),
+    ("view", &["alhazen", "planet"]),
     ("cli", &["alhazen", "view"]),
     ("python", &["alhazen"]),
     ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering"]),
-    ("xtask", &["lanes", "math", "sampling", "spectrum"]),
+    ("xtask", &["lanes", "math", "sampling", "spectrum", "planet"]),
 ];
 
 /// Lines that every crate's manifest has: the workspace's lints, licence and edition.

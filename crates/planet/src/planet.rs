@@ -1,0 +1,510 @@
+//! A planet that moves: gravity, collisions, rest.
+
+use math::{Point3, Vec3, Vector3};
+use rayon::prelude::*;
+
+use crate::bodies::{Bodies, State};
+use crate::contacts::Contact;
+use crate::grid::{Entry, Grid};
+use crate::land::{Land, MOON, core_radius};
+use crate::{Substance, Walker};
+
+/// Gravity at the surface of the core, in metres per second squared.
+const GRAVITY: f32 = 9.0;
+/// The pull of the moon at its surface.
+const PULL: f32 = 60.0;
+/// The time in which the moon goes around the planet, in seconds.
+const MONTH: f32 = 40.0;
+/// The largest speed in metres per second.
+const FASTEST: f32 = 14.0;
+/// Spheres within this distance of each other are in contact, as well as those that come closer
+/// within a step.
+const NEAR: f32 = 0.01;
+/// A resting sphere that is touched at this speed moves.
+const WAKE: f32 = 0.35;
+/// A sphere that has been slower than this for some steps rests.
+const STILL: f32 = 0.16;
+const STEPS_TO_REST: u8 = 20;
+/// Rounds of impulses, and of separation.
+const ROUNDS: usize = 4;
+const SEPARATIONS: usize = 2;
+/// As many bodies are done by a thread at once.
+const CHUNK: usize = 128;
+/// In place of a body: who walks.
+const NOBODY: u32 = u32::MAX;
+
+/// The energy of what is loose, relative to that of a ball of one metre.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of motion.
+    pub kinetic: f64,
+    /// Of height over the core's surface.
+    pub potential: f64,
+}
+
+/// A sphere that moves as it likes, and gives way to none.
+#[derive(Clone, Copy)]
+struct Mover {
+    center: Point3,
+    radius: f32,
+    velocity: Vector3,
+}
+
+/// A planet of spheres.
+#[derive(Clone, Debug)]
+pub struct Planet {
+    bodies: Bodies,
+    radius: f32,
+    /// Seconds since the beginning.
+    time: f32,
+    moon: Option<usize>,
+    /// Steps for which each body has been slow.
+    still: Vec<u8>,
+    /// The bodies that move, in order.
+    moving: Vec<u32>,
+    /// The place of each body among those that move.
+    place: Vec<u32>,
+    /// What lay where it does when the grid was made.
+    settled: Grid,
+    /// Whether a body has moved since.
+    is_stirred: Vec<bool>,
+    stirred: Vec<u32>,
+    stirred_grid: Grid,
+}
+
+impl Planet {
+    /// A planet of as many spheres, at least 64.
+    pub fn new(count: usize) -> Self {
+        let count = count.max(64);
+        let radius = core_radius(count);
+        let bodies = Bodies::new(Land::new(radius).spheres(count));
+        Self::of(bodies, radius, true)
+    }
+
+    /// A planet with a core of this radius, without a moon, on which loose balls of these centres
+    /// and radii move.
+    pub fn with_balls(radius: f32, balls: impl IntoIterator<Item = (Point3, f32)>) -> Self {
+        let core = (Substance::Ice, Vec3::ZERO, radius, State::Held);
+        let balls = balls.into_iter().map(|(center, radius)| (Substance::White, center, radius, State::Moving));
+        Self::of(Bodies::new(std::iter::once(core).chain(balls)), radius, false)
+    }
+
+    fn of(bodies: Bodies, radius: f32, has_moon: bool) -> Self {
+        let count = bodies.len();
+        // The moon is the largest sphere of its substance, which it is the first of.
+        let moon = has_moon.then(|| bodies.range(Substance::Silver).start);
+        let moving = (0..count as u32).filter(|&i| bodies.state[i as usize] == State::Moving).collect();
+        let mut planet = Self {
+            bodies,
+            radius,
+            time: 0.0,
+            moon,
+            still: vec![0; count],
+            moving,
+            place: vec![Contact::FIXED; count],
+            settled: Grid::default(),
+            is_stirred: vec![false; count],
+            stirred: Vec::new(),
+            stirred_grid: Grid::default(),
+        };
+        planet.settle();
+        planet
+    }
+
+    /// Its spheres.
+    pub fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// The radius of its core in metres.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// How many spheres move.
+    pub fn moving(&self) -> usize {
+        self.moving.len()
+    }
+
+    /// Upwards at a point.
+    pub fn up(&self, p: Point3) -> Vector3 {
+        p.normalize_or(Vec3::Z)
+    }
+
+    /// The acceleration of what is loose: towards the core, and towards the moon.
+    pub fn gravity(&self, p: Point3) -> Vector3 {
+        let ratio = self.radius * self.radius / p.length_squared().max(self.radius);
+        let down = -self.up(p) * (GRAVITY * ratio);
+        let Some(moon) = self.moon else { return down };
+        let (way, size) = (self.bodies.center[moon] - p, self.bodies.radius[moon]);
+        let ratio = size * size / way.length_squared().max(size * size);
+        down + way.normalize_or(Vec3::Z) * (PULL * ratio)
+    }
+
+    /// The energy of what is loose, without the moon's pull.
+    pub fn energy(&self) -> Energy {
+        let mut energy = Energy::default();
+        for (i, state) in self.bodies.state.iter().enumerate().filter(|(_, state)| **state != State::Held) {
+            let mass = f64::from(self.bodies.mass(i));
+            let height = f64::from(self.bodies.center[i].length());
+            let radius = f64::from(self.radius);
+            energy.potential += mass * f64::from(GRAVITY) * radius * (1.0 - radius / height);
+            if *state == State::Moving {
+                energy.kinetic += 0.5 * mass * f64::from(self.bodies.velocity[i].length_squared());
+            }
+        }
+        energy
+    }
+
+    /// The centre of a walker's body over land near the pole of the x axis.
+    pub(crate) fn landing(&self) -> Point3 {
+        let land = Land::new(self.radius);
+        let around = |i: u32| {
+            let (sin, cos) = lanes::sin_cos(0.61 * i as f32);
+            let out = 0.012 * i as f32;
+            Vec3::new(1.0, out * cos, out * sin).normalize()
+        };
+        let is_land = |direction: &Vec3| (0.5..2.0).contains(&land.height(*direction));
+        let direction = (0..400).map(around).find(is_land).unwrap_or(Vec3::X);
+        direction * (self.radius + land.height(direction).max(0.0) + 1.5)
+    }
+
+    /// Calls `visit` with centre and radius of the spheres within a distance of a point that do not
+    /// give way.
+    pub(crate) fn firm_around(&self, p: Point3, distance: f32, mut visit: impl FnMut(Point3, f32)) {
+        visit(Vec3::ZERO, self.radius);
+        if let Some(moon) = self.moon {
+            visit(self.bodies.center[moon], self.bodies.radius[moon]);
+        }
+        self.settled.around(p, distance, |entry| {
+            if self.bodies.state[entry.body as usize] == State::Held {
+                visit(entry.center, entry.radius);
+            }
+        });
+    }
+
+    /// Tears everything loose within a distance of a point, and throws it away from there with up
+    /// to a speed in metres per second.
+    pub fn blast(&mut self, p: Point3, distance: f32, speed: f32) {
+        let mut struck = Vec::new();
+        let mut strike = |entry: &Entry| struck.push(entry.body);
+        self.settled.around(p, distance, &mut strike);
+        self.stirred_grid.around(p, distance, &mut strike);
+        struck.sort_unstable();
+        struck.dedup();
+        let up = self.up(p);
+        for &body in &struck {
+            let i = body as usize;
+            let way = self.bodies.center[i] - p;
+            let share = (1.0 - way.length() / (distance + self.bodies.radius[i])).max(0.0);
+            let throw = (way.normalize_or(up) + up).normalize_or(up);
+            self.bodies.velocity[i] += throw * (speed * share);
+        }
+        self.wake(struck);
+    }
+
+    /// Moves everything by a time in seconds, at most a thirtieth.
+    pub fn step(&mut self, walker: Option<(&mut Walker, &crate::Input)>, dt: f32) {
+        self.time += dt;
+        let mut movers = Vec::new();
+        if let Some((walker, input)) = walker {
+            walker.step(self, input, dt);
+            let (center, radius, velocity) = (walker.center(), walker.radius(), walker.velocity());
+            movers.push(Mover { center, radius, velocity });
+        }
+        movers.extend(self.move_moon(dt));
+        self.wake_around(&movers);
+        self.fall(dt);
+        self.sort_stirred();
+        let (contacts, ranges) = self.contacts(&movers, dt);
+        let struck = self.collide(&contacts, &ranges, dt);
+        self.advance(dt);
+        self.separate(&contacts, &ranges);
+        self.wake(struck);
+        self.rest(&ranges);
+    }
+
+    /// The moon on its way, if there is one.
+    fn move_moon(&mut self, dt: f32) -> Option<Mover> {
+        let moon = self.moon?;
+        let (sin, cos) = lanes::sin_cos(std::f32::consts::TAU * (self.time / MONTH).fract());
+        let at = Vec3::new(0.45 * sin, 0.9 * sin, cos).normalize_or(Vec3::Z);
+        let before = self.bodies.center[moon];
+        let center = at * (MOON[0] * self.radius);
+        self.bodies.center[moon] = center;
+        Some(Mover { center, radius: self.bodies.radius[moon], velocity: (center - before) / dt })
+    }
+
+    /// Wakes what rests near what moves by itself, and what the moon lifts.
+    fn wake_around(&mut self, movers: &[Mover]) {
+        let mut woken = Vec::new();
+        for mover in movers {
+            self.settled.around(mover.center, mover.radius + NEAR, |entry| woken.push(entry.body));
+            self.stirred_grid.around(mover.center, mover.radius + NEAR, |entry| woken.push(entry.body));
+        }
+        if self.moon.is_some() {
+            let state = &self.bodies.state;
+            let is_lifted = |&i: &u32| {
+                let (state, p) = (state[i as usize], self.bodies.center[i as usize]);
+                state == State::Resting && self.gravity(p).dot(p) > 0.0
+            };
+            woken.par_extend((0..state.len() as u32).into_par_iter().with_min_len(4096).filter(is_lifted));
+        }
+        woken.retain(|&body| self.bodies.state[body as usize] == State::Resting);
+        self.wake(woken);
+    }
+
+    /// Gravity.
+    fn fall(&mut self, dt: f32) {
+        for &i in &self.moving {
+            let i = i as usize;
+            let velocity = self.bodies.velocity[i] + self.gravity(self.bodies.center[i]) * dt;
+            let speed = velocity.length();
+            self.bodies.velocity[i] = if speed > FASTEST { velocity * (FASTEST / speed) } else { velocity };
+        }
+    }
+
+    /// Puts all bodies that do not move into the grid of those that have settled.
+    fn settle(&mut self) {
+        self.is_stirred.fill(false);
+        self.stirred.clone_from(&self.moving);
+        self.moving.iter().for_each(|&i| self.is_stirred[i as usize] = true);
+        let is_settled = |i: &usize| !self.is_stirred[*i] && *i != 0 && Some(*i) != self.moon;
+        let entries: Vec<Entry> = (0..self.bodies.len()).filter(is_settled).map(|i| self.entry(i)).collect();
+        self.settled.rebuild(&entries);
+    }
+
+    /// Puts the others into a grid of their own.
+    fn sort_stirred(&mut self) {
+        let resting = self.stirred.len() - self.moving.len();
+        if resting > 2000.max(self.bodies.len() / 16) {
+            self.settle();
+        }
+        let entries: Vec<Entry> = self.stirred.iter().map(|&i| self.entry(i as usize)).collect();
+        self.stirred_grid.rebuild(&entries);
+    }
+
+    fn entry(&self, body: usize) -> Entry {
+        Entry { center: self.bodies.center[body], radius: self.bodies.radius[body], body: body as u32 }
+    }
+
+    /// The contacts of all bodies that move, one after another, and where those of each begin and
+    /// end.
+    fn contacts(&mut self, movers: &[Mover], dt: f32) -> (Vec<Contact>, Vec<[u32; 2]>) {
+        for (place, &body) in self.moving.iter().enumerate() {
+            self.place[body as usize] = place as u32;
+        }
+        let of_chunk = |bodies: &[u32]| {
+            let (mut contacts, mut ends) = (Vec::with_capacity(8 * CHUNK), Vec::with_capacity(CHUNK));
+            for &body in bodies {
+                self.add_contacts(body as usize, movers, dt, &mut contacts);
+                ends.push(contacts.len() as u32);
+            }
+            (contacts, ends)
+        };
+        let chunks: Vec<_> = self.moving.par_chunks(CHUNK).map(of_chunk).collect();
+        let (mut contacts, mut ranges) = (Vec::new(), Vec::with_capacity(self.moving.len()));
+        for (of_chunk, ends) in chunks {
+            let first = contacts.len() as u32;
+            let mut begin = first;
+            for end in ends {
+                ranges.push([begin, first + end]);
+                begin = first + end;
+            }
+            contacts.extend(of_chunk);
+        }
+        let count = |[begin, end]: [u32; 2]| (end - begin) as f32;
+        for &range in &ranges {
+            for contact in &mut contacts[range[0] as usize..range[1] as usize] {
+                let of_partner = ranges.get(contact.partner as usize).map_or(1.0, |&range| count(range));
+                contact.weight = 1.0 / count(range).max(of_partner);
+            }
+        }
+        (contacts, ranges)
+    }
+
+    /// Adds the contacts of a body that moves.
+    fn add_contacts(&self, body: usize, movers: &[Mover], dt: f32, contacts: &mut Vec<Contact>) {
+        let Bodies { center, radius, velocity, .. } = &self.bodies;
+        let (p, size, v) = (center[body], radius[body], velocity[body]);
+        let mass = self.bodies.mass(body);
+        let mut add = |other: u32, q: Point3, (radius, share): (f32, f32), w: Vector3| {
+            let way = p - q;
+            let distance = way.length();
+            let (reach, gap) = (size + radius, distance - size - radius);
+            // The same for both: which is the first decides where both centres are one.
+            let aside = if (body as u32) < other { Vec3::Z } else { -Vec3::Z };
+            let normal = if distance > 0.0 { way / distance } else { aside };
+            if gap > NEAR + dt * (v - w).length() {
+                return;
+            }
+            let partner = self.place.get(other as usize).copied().unwrap_or(Contact::FIXED);
+            contacts.push(Contact {
+                other,
+                partner,
+                normal,
+                gap,
+                share,
+                velocity: w,
+                center: q,
+                reach,
+                weight: 1.0,
+            });
+        };
+        add(0, Vec3::ZERO, (self.radius, 1.0), Vector3::ZERO);
+        for mover in movers {
+            add(NOBODY, mover.center, (mover.radius, 1.0), mover.velocity);
+        }
+        let distance = size + NEAR + dt * (v.length() + FASTEST).min(2.0 * v.length() + 1.0);
+        self.settled.around(p, distance, |entry| {
+            // Those that have moved since are in the other grid.
+            if !self.is_stirred[entry.body as usize] {
+                add(entry.body, entry.center, (entry.radius, 1.0), Vector3::ZERO);
+            }
+        });
+        self.stirred_grid.around(p, size + NEAR + dt * (v.length() + FASTEST), |entry| {
+            let other = entry.body as usize;
+            if other != body {
+                let moves = self.bodies.state[other] == State::Moving;
+                let share = if moves { self.share(mass, other) } else { 1.0 };
+                add(entry.body, entry.center, (entry.radius, share), velocity[other]);
+            }
+        });
+    }
+
+    /// The share of changes of a body of this mass, beside another one that moves.
+    fn share(&self, mass: f32, other: usize) -> f32 {
+        let others = self.bodies.mass(other);
+        others / (mass + others)
+    }
+
+    /// Changes velocities by impulses. Gives the bodies that are struck so hard that they move.
+    fn collide(&mut self, contacts: &[Contact], ranges: &[[u32; 2]], dt: f32) -> Vec<u32> {
+        let mut velocities: Vec<Vector3> =
+            self.moving.iter().map(|&i| self.bodies.velocity[i as usize]).collect();
+        let of = |range: [u32; 2]| &contacts[range[0] as usize..range[1] as usize];
+        let struck = |(place, &range): (usize, &[u32; 2])| {
+            let (v, bodies) = (velocities[place], &self.bodies);
+            let size = bodies.radius[self.moving[place] as usize];
+            let is_struck = move |contact: &&Contact| {
+                let speed = contact.approach(v, contact.velocity);
+                match bodies.state.get(contact.other as usize) {
+                    Some(State::Resting) => speed > WAKE,
+                    Some(State::Held) if contact.other > 0 => {
+                        let other = contact.other as usize;
+                        let ratio = size / bodies.radius[other];
+                        speed * ratio * ratio * ratio > bodies.substance(other).firmness()
+                    }
+                    _ => false,
+                }
+            };
+            of(range).iter().filter(is_struck).map(|contact| contact.other)
+        };
+        let struck = ranges.par_iter().enumerate().with_min_len(CHUNK).flat_map_iter(struck).collect();
+        for _ in 0..ROUNDS {
+            let change = |(place, &range): (usize, &[u32; 2])| {
+                let v = velocities[place];
+                of(range).iter().fold(v, |sum, contact| {
+                    let other = velocities.get(contact.partner as usize).copied().unwrap_or(contact.velocity);
+                    sum + contact.impulse(v, other, dt) * contact.weight
+                })
+            };
+            velocities = ranges.par_iter().enumerate().with_min_len(CHUNK).map(change).collect();
+        }
+        for (&body, velocity) in self.moving.iter().zip(velocities) {
+            self.bodies.velocity[body as usize] = velocity;
+        }
+        struck
+    }
+
+    fn advance(&mut self, dt: f32) {
+        for &i in &self.moving {
+            let i = i as usize;
+            self.bodies.center[i] += self.bodies.velocity[i] * dt;
+        }
+    }
+
+    /// Takes overlaps away, which velocities do not feel.
+    fn separate(&mut self, contacts: &[Contact], ranges: &[[u32; 2]]) {
+        let mut centers: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
+        for _ in 0..SEPARATIONS {
+            let change = |(place, &range): (usize, &[u32; 2])| {
+                let p = centers[place];
+                contacts[range[0] as usize..range[1] as usize].iter().fold(p, |sum, contact| {
+                    let other = centers.get(contact.partner as usize).copied().unwrap_or(contact.center);
+                    sum + contact.separation(p, other) * contact.weight
+                })
+            };
+            centers = ranges.par_iter().enumerate().with_min_len(CHUNK).map(change).collect();
+        }
+        for (&body, center) in self.moving.iter().zip(centers) {
+            self.bodies.center[body as usize] = center;
+        }
+    }
+
+    /// Lets bodies move, and what they carry: what touches them from above.
+    fn wake(&mut self, mut woken: Vec<u32>) {
+        let mut next = 0;
+        while next < woken.len() {
+            let i = woken[next] as usize;
+            next += 1;
+            if i == 0 || Some(i) == self.moon || self.bodies.state[i] == State::Moving {
+                continue;
+            }
+            let was_held = self.bodies.state[i] == State::Held;
+            self.bodies.state[i] = State::Moving;
+            self.still[i] = 0;
+            self.moving.push(i as u32);
+            if !self.is_stirred[i] {
+                self.is_stirred[i] = true;
+                self.stirred.push(i as u32);
+            }
+            let (p, size, bodies) = (self.bodies.center[i], self.bodies.radius[i], &self.bodies);
+            let height = p.length();
+            let mut carry = |entry: &Entry| {
+                let other = entry.body as usize;
+                let is_carried = match bodies.state[other] {
+                    State::Held => was_held && grows_on(bodies.substance(i), bodies.substance(other)),
+                    State::Resting => true,
+                    State::Moving => false,
+                };
+                if is_carried && bodies.center[other].length() > height {
+                    woken.push(entry.body);
+                }
+            };
+            self.settled.around(p, size + NEAR, &mut carry);
+            self.stirred_grid.around(p, size + NEAR, &mut carry);
+        }
+        self.moving.sort_unstable();
+    }
+
+    /// Lets bodies rest that have been slow for some time and touch something.
+    fn rest(&mut self, ranges: &[[u32; 2]]) {
+        let Bodies { velocity, state, .. } = &mut self.bodies;
+        // Those woken in this step come later, and have no contacts yet.
+        let touching: Vec<(usize, bool)> = {
+            let mut ranges = ranges.iter();
+            let with_contacts = self.moving.iter().map(|&i| {
+                let i = i as usize;
+                let is_old = self.place[i] != Contact::FIXED;
+                (i, is_old && ranges.next().is_some_and(|range| range[0] < range[1]))
+            });
+            with_contacts.collect()
+        };
+        for (i, touches) in touching {
+            let is_slow = touches && velocity[i].length_squared() < STILL * STILL;
+            self.still[i] = if is_slow { self.still[i] + 1 } else { 0 };
+            if self.still[i] >= STEPS_TO_REST {
+                (state[i], velocity[i]) = (State::Resting, Vector3::ZERO);
+            }
+            self.place[i] = Contact::FIXED;
+        }
+        self.moving.retain(|&i| state[i as usize] == State::Moving);
+    }
+}
+
+/// Whether a held sphere falls with another one that it touches from above.
+fn grows_on(below: Substance, above: Substance) -> bool {
+    let is_land = |substance| substance < Substance::Wood;
+    !(is_land(below) && is_land(above))
+}

@@ -1,0 +1,3 @@
+//! Tests of planets.
+
+mod motion;
