@@ -11,10 +11,13 @@ use crate::{Substance, Walker};
 
 /// Gravity at the surface of the core, in metres per second squared.
 const GRAVITY: f32 = 9.0;
-/// The pull of the moon at its surface.
-const PULL: f32 = 60.0;
+/// The pull of the moon where it is strongest: on the ground below it. Nearer to the moon it grows
+/// weaker, unlike Newton's, so that balls are lifted, but not kept.
+const PULL: f32 = 16.0;
+/// By how much farther or nearer the moon has no pull, as a share of its distance from the ground.
+const PULL_RANGE: f32 = 0.5;
 /// The time in which the moon goes around the planet, in seconds.
-const MONTH: f32 = 40.0;
+const MONTH: f32 = 30.0;
 /// The largest speed in metres per second.
 const FASTEST: f32 = 14.0;
 /// Spheres within this distance of each other are in contact, as well as those that come closer
@@ -26,8 +29,8 @@ const WAKE: f32 = 0.35;
 const STILL: f32 = 0.16;
 const STEPS_TO_REST: u8 = 20;
 /// Rounds of impulses, and of separation.
-const ROUNDS: usize = 4;
-const SEPARATIONS: usize = 2;
+const ROUNDS: usize = 6;
+const SEPARATIONS: usize = 3;
 /// As many bodies are done by a thread at once.
 const CHUNK: usize = 128;
 /// In place of a body: who walks.
@@ -136,9 +139,9 @@ impl Planet {
         let ratio = self.radius * self.radius / p.length_squared().max(self.radius);
         let down = -self.up(p) * (GRAVITY * ratio);
         let Some(moon) = self.moon else { return down };
-        let (way, size) = (self.bodies.center[moon] - p, self.bodies.radius[moon]);
-        let ratio = size * size / way.length_squared().max(size * size);
-        down + way.normalize_or(Vec3::Z) * (PULL * ratio)
+        let way = self.bodies.center[moon] - p;
+        let off = (way.length() / ((MOON[0] - 1.0) * self.radius) - 1.0) / PULL_RANGE;
+        down + way.normalize_or(Vec3::Z) * (PULL * (1.0 - off * off).max(0.0))
     }
 
     /// The energy of what is loose, without the moon's pull.
@@ -313,13 +316,6 @@ impl Planet {
             }
             contacts.extend(of_chunk);
         }
-        let count = |[begin, end]: [u32; 2]| (end - begin) as f32;
-        for &range in &ranges {
-            for contact in &mut contacts[range[0] as usize..range[1] as usize] {
-                let of_partner = ranges.get(contact.partner as usize).map_or(1.0, |&range| count(range));
-                contact.weight = 1.0 / count(range).max(of_partner);
-            }
-        }
         (contacts, ranges)
     }
 
@@ -348,7 +344,6 @@ impl Planet {
                 velocity: w,
                 center: q,
                 reach,
-                weight: 1.0,
             });
         };
         add(0, Vec3::ZERO, (self.radius, 1.0), Vector3::ZERO);
@@ -402,14 +397,11 @@ impl Planet {
         };
         let struck = ranges.par_iter().enumerate().with_min_len(CHUNK).flat_map_iter(struck).collect();
         for _ in 0..ROUNDS {
-            let change = |(place, &range): (usize, &[u32; 2])| {
-                let v = velocities[place];
-                of(range).iter().fold(v, |sum, contact| {
-                    let other = velocities.get(contact.partner as usize).copied().unwrap_or(contact.velocity);
-                    sum + contact.impulse(v, other, dt) * contact.weight
-                })
+            let change = |contact: &Contact, v: Vector3| {
+                let other = velocities.get(contact.partner as usize).copied().unwrap_or(contact.velocity);
+                contact.impulse(v, other, dt)
             };
-            velocities = ranges.par_iter().enumerate().with_min_len(CHUNK).map(change).collect();
+            velocities = relaxed(&velocities, contacts, ranges, change);
         }
         for (&body, velocity) in self.moving.iter().zip(velocities) {
             self.bodies.velocity[body as usize] = velocity;
@@ -428,14 +420,11 @@ impl Planet {
     fn separate(&mut self, contacts: &[Contact], ranges: &[[u32; 2]]) {
         let mut centers: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
         for _ in 0..SEPARATIONS {
-            let change = |(place, &range): (usize, &[u32; 2])| {
-                let p = centers[place];
-                contacts[range[0] as usize..range[1] as usize].iter().fold(p, |sum, contact| {
-                    let other = centers.get(contact.partner as usize).copied().unwrap_or(contact.center);
-                    sum + contact.separation(p, other) * contact.weight
-                })
+            let change = |contact: &Contact, p: Point3| {
+                let other = centers.get(contact.partner as usize).copied().unwrap_or(contact.center);
+                contact.separation(p, other)
             };
-            centers = ranges.par_iter().enumerate().with_min_len(CHUNK).map(change).collect();
+            centers = relaxed(&centers, contacts, ranges, change);
         }
         for (&body, center) in self.moving.iter().zip(centers) {
             self.bodies.center[body as usize] = center;
@@ -464,7 +453,7 @@ impl Planet {
             let mut carry = |entry: &Entry| {
                 let other = entry.body as usize;
                 let is_carried = match bodies.state[other] {
-                    State::Held => was_held && grows_on(bodies.substance(i), bodies.substance(other)),
+                    State::Held => was_held && grows(bodies.substance(other)),
                     State::Resting => true,
                     State::Moving => false,
                 };
@@ -503,8 +492,35 @@ impl Planet {
     }
 }
 
-/// Whether a held sphere falls with another one that it touches from above.
-fn grows_on(below: Substance, above: Substance) -> bool {
-    let is_land = |substance| substance < Substance::Wood;
-    !(is_land(below) && is_land(above))
+/// Changes a vector of each moving body by those of all its contacts at once. A contact counts by
+/// one over the larger number of contacts that change something, of the two bodies.
+fn relaxed(
+    vectors: &[Vec3],
+    contacts: &[Contact],
+    ranges: &[[u32; 2]],
+    change: impl Fn(&Contact, Vec3) -> Vec3 + Sync,
+) -> Vec<Vec3> {
+    let of = |range: &[u32; 2]| &contacts[range[0] as usize..range[1] as usize];
+    let bodies = || vectors.par_iter().zip(ranges).with_min_len(CHUNK);
+    let counts: Vec<u32> = bodies()
+        .map(|(&vector, range)| {
+            of(range).iter().filter(|contact| change(contact, vector) != Vec3::ZERO).count() as u32
+        })
+        .collect();
+    let changed = |(place, (&vector, range)): (usize, (&Vec3, &[u32; 2]))| {
+        if counts[place] == 0 {
+            return vector;
+        }
+        of(range).iter().fold(vector, |sum, contact| {
+            let of_partner = counts.get(contact.partner as usize).copied().unwrap_or(0);
+            sum + change(contact, vector) / counts[place].max(of_partner) as f32
+        })
+    };
+    let places = vectors.par_iter().zip(ranges).enumerate().with_min_len(CHUNK);
+    places.map(changed).collect()
+}
+
+/// Whether a held sphere falls when another one is torn off that it touches from above.
+fn grows(substance: Substance) -> bool {
+    substance >= Substance::Wood
 }
