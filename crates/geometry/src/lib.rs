@@ -19,6 +19,7 @@ mod shape;
 mod sphere_set;
 mod surface;
 mod tessellation;
+mod triples;
 mod watertight;
 mod world;
 

@@ -6,7 +6,9 @@
 
 use crate::placement::Placement;
 use crate::shape::{Sphere, first_root};
-use math::{Bounds3, DMat3, MACHINE_EPSILON, Point3, Ray, Transform};
+use crate::triples::{triples, vector};
+use lanes::{Int, Real};
+use math::{Bounds3, DMat3, MACHINE_EPSILON, Point3, Ray, Transform, Vector3};
 use std::fmt;
 use std::sync::Arc;
 
@@ -141,6 +143,34 @@ impl SphereSet {
     pub fn sphere(&self, sphere: usize) -> Sphere {
         let placement = Placement::rigid(self.turn, self.center(sphere).as_dvec3());
         Sphere::ball(placement, self.flips, self.radius(sphere))
+    }
+
+    /// The axes of all spheres, of unit length.
+    pub(crate) fn axes(&self) -> [Vector3; 3] {
+        [self.turn.x_axis, self.turn.y_axis, self.turn.z_axis].map(|axis| axis.as_vec3().into())
+    }
+
+    /// Whether normals point inwards.
+    pub(crate) fn flips(&self) -> bool {
+        self.flips
+    }
+
+    /// Centres and radii of spheres, one in each lane.
+    #[inline(always)]
+    pub(crate) fn gather<R: Real>(&self, sphere: R::Int) -> (Point3<R>, R) {
+        let center = vector(triples(&self.centers), sphere.wrapping_mul(R::Int::splat(3)));
+        let radius = match &*self.radii {
+            [radius] => R::splat(*radius),
+            radii => R::gather(radii, sphere),
+        };
+        (center, radius)
+    }
+
+    /// The same set with its spheres elsewhere; the axes stay. `None` if the number of centres
+    /// differs, or one is not finite.
+    pub fn moved(&self, centers: Arc<[Point3]>) -> Option<Self> {
+        let fits = centers.len() == self.len() && centers.iter().all(|center| center.is_finite());
+        fits.then(|| Self { centers, ..self.clone() })
     }
 
     /// The first hit on a sphere between two distances, the first ≥ 0.

@@ -23,6 +23,6 @@ pub use footprint::Footprint;
 pub use geometry::RayStats;
 pub use interaction::SurfaceInteraction;
 pub use names::Names;
-pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
+pub use scene::{GeometryEntry, InstanceEntry, Interfaces, MoveError, Scene};
 pub use traits::{Occurrence, SceneTraits};
 pub use view::{CompiledView, View, ViewOptions, world_from_render};

@@ -51,6 +51,13 @@ impl Bvh {
         &self.nodes
     }
 
+    /// The area of the boxes of all children, to which the number of boxes that a ray enters is
+    /// proportional.
+    pub fn area(&self) -> f64 {
+        let boxes = self.nodes.iter().flat_map(WideNode::boxes);
+        boxes.map(|(bounds, _)| f64::from(bounds.surface_area())).sum()
+    }
+
     /// The box around everything.
     pub fn bounds(&self) -> Bounds3 {
         self.bounds

@@ -21,6 +21,7 @@ mod query;
 mod ray_order;
 mod ray_packet;
 mod refit;
+mod sphere_points;
 mod spheres;
 mod stats;
 mod tables;

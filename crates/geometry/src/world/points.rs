@@ -6,10 +6,12 @@
 #![allow(unsafe_code)]
 
 use super::World;
-use super::columns::HitColumns;
+use super::columns::{HitColumns, RayColumns};
 use super::geometry::{Geometry, GeometryId};
+use super::sphere_points::{SphereHits, select};
 use crate::patch::{Patch, PatchLanes, PatchPoints};
 use crate::shape::{Shape, Triangle, TriangleMesh};
+use crate::triples::{triples, vector};
 use lanes::{Each, Int, MAX_LANES, Mask, Real, Simd, Task};
 use math::{Point3Error, Vec2, Vec3, Vector3};
 
@@ -73,18 +75,20 @@ impl PointColumns {
 }
 
 impl World {
-    /// The surface points of the hits at some places of a batch. Points of instances, of triangles
-    /// with shading tangents, and of shapes other than triangles and bilinear patches without
-    /// attributes are left out.
-    pub fn points(&self, hits: &HitColumns, places: &[u32], points: &mut PointColumns) {
+    /// The surface points of the hits of rays at some places of a batch. Points of instances, of
+    /// triangles with shading tangents, of spheres so small or far away that floats do not do, and
+    /// of shapes other than triangles, spheres of sets and bilinear patches without attributes are
+    /// left out.
+    pub fn points(&self, rays: RayColumns, hits: &HitColumns, places: &[u32], points: &mut PointColumns) {
         points.reset(places.len());
         // SAFETY: the processor has the instruction set of a world.
-        unsafe { self.tables.instruction_set.run(Points { world: self, hits, places, points }) }
+        unsafe { self.tables.instruction_set.run(Points { world: self, rays, hits, places, points }) }
     }
 }
 
 struct Points<'a> {
     world: &'a World,
+    rays: RayColumns<'a>,
     hits: &'a HitColumns,
     places: &'a [u32],
     points: &'a mut PointColumns,
@@ -102,7 +106,8 @@ impl Task for Points<'_> {
 impl Points<'_> {
     #[inline(always)]
     fn in_lanes<R: Real>(self) {
-        let Self { world, hits, places, points } = self;
+        let Self { world, rays, hits, places, points } = self;
+        let has_spheres = !world.tables.top().spheres.blocks.is_empty();
         let mut first = 0;
         while first < places.len() {
             let left = &places[first..];
@@ -120,8 +125,28 @@ impl Points<'_> {
                 Some(patches) => (patches.get(geometry, primitive), R::Mask::splat(true)),
                 None => world.patches(geometry, primitive, hits.in_top_group::<R>(places)),
             };
-            let (of_lanes, is_regular) = lanes.points(u, v);
-            points.set(first, &of_lanes, found & is_regular);
+            let (mut of_lanes, is_regular) = lanes.points(u, v);
+            let mut found = found & is_regular;
+            if has_spheres {
+                let is_in_top = hits.in_top_group::<R>(places);
+                let mut left = (is_in_top & !found).bits();
+                let geometries = geometry.to_array();
+                while left != 0 {
+                    let here = geometry.eq(R::Int::splat(geometries[left.trailing_zeros() as usize % MAX_LANES]))
+                        & R::Mask::from_bits(left);
+                    left &= !here.bits();
+                    let lane = here.bits().trailing_zeros() as usize % MAX_LANES;
+                    if let Geometry::Spheres(set) = world.geometry(GeometryId(geometries[lane])) {
+                        let sphere = R::Int::select(here, primitive, R::Int::splat(0));
+                        let [o, d] = [&rays.o, &rays.d].each(|of| gather(of, places));
+                        let of = SphereHits { sphere, o, d, t: R::gather(&hits.t, places) };
+                        let (of_spheres, are_found) = of.points(set);
+                        of_lanes = select(here & are_found, &of_spheres, &of_lanes);
+                        found = found | here & are_found;
+                    }
+                }
+            }
+            points.set(first, &of_lanes, found);
             first += R::LANES;
         }
     }
@@ -211,25 +236,20 @@ fn vertices<R: Real>(vectors: &[Vec3], corners: [R::Int; 3]) -> [Vector3<R>; 3] 
     [vector(numbers, a), vector(numbers, b), vector(numbers, c)]
 }
 
-/// The vectors whose first coordinates are at some places.
+/// The vectors of some places of columns.
 #[inline(always)]
-fn vector<R: Real>(numbers: &[f32], x: R::Int) -> Vector3<R> {
-    Vec3::from_array(R::gather_rows::<3>(numbers, x))
+fn gather<R: Real>(columns: &[&[f32]; 3], places: R::Int) -> Vector3<R> {
+    let [x, y, z] = *columns;
+    Vec3::new(R::gather(x, places), R::gather(y, places), R::gather(z, places))
 }
 
-/// The same of two coordinates.
+/// The pairs of numbers whose first ones are at some places.
 #[inline(always)]
 fn pair<R: Real>(numbers: &[f32], x: R::Int) -> Vec2<R> {
     Vec2::from_array(R::gather_rows::<2>(numbers, x))
 }
 
-/// The coordinates of vectors, one after another.
-#[inline(always)]
-fn triples(vectors: &[Vec3]) -> &[f32] {
-    // SAFETY: a vector is three floats, in order and without padding (`repr(C)`).
-    unsafe { std::slice::from_raw_parts(vectors.as_ptr().cast(), 3 * vectors.len()) }
-}
-
+/// The coordinates of points in the plane, one after another.
 #[inline(always)]
 fn pairs(vectors: &[Vec2]) -> &[f32] {
     // SAFETY: a vector is two floats, in order and without padding (`repr(C)`).

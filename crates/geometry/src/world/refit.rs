@@ -4,7 +4,9 @@ use super::World;
 use super::facets::Facets;
 use super::geometry::{Geometry, GeometryId};
 use super::instance::GroupId;
+use super::spheres::Spheres;
 use super::tables::Tables;
+use crate::bvh::BuildQuality;
 use rayon::prelude::*;
 use std::fmt;
 
@@ -71,6 +73,33 @@ impl World {
             Facets::new(&of_top.map(|(id, _)| id).collect::<Vec<_>>(), geometries)
         });
         Ok(())
+    }
+}
+
+/// Trees of spheres are built anew where the boxes of a refitted one have grown by this factor.
+const GROWTH: f64 = 1.2;
+
+impl World {
+    /// [`World::refit`], after which trees of spheres are built anew whose boxes have become so
+    /// large that rays would visit many of them in vain. Says whether one was.
+    pub fn refit_or_rebuild(
+        &mut self,
+        moved: impl IntoIterator<Item = (GeometryId, Geometry)>,
+        quality: BuildQuality,
+    ) -> Result<bool, RefitError> {
+        self.refit(moved)?;
+        let Tables { groups, geometries, group_of, .. } = &mut self.tables;
+        let mut has_rebuilt = false;
+        for (id, group) in (0..).map(GroupId).zip(groups.iter_mut()) {
+            if group.spheres.growth() <= GROWTH {
+                continue;
+            }
+            let members = (0..).map(GeometryId).zip(&*group_of).filter(|(_, of)| **of == id);
+            let members: Vec<GeometryId> = members.map(|(id, _)| id).collect();
+            group.spheres = Spheres::build(&members, geometries, quality);
+            has_rebuilt = true;
+        }
+        Ok(has_rebuilt)
     }
 }
 

@@ -19,12 +19,20 @@ use math::{Bounds3, MACHINE_EPSILON, Ray, Vec3};
 pub(super) struct Spheres {
     pub tree: Bvh,
     pub blocks: Vec<SphereBlock>,
+    /// The area of all boxes when the tree was built.
+    built_area: f64,
 }
 
 impl Spheres {
     pub fn build(members: &[GeometryId], geometries: &[Geometry], quality: BuildQuality) -> Self {
         let (tree, blocks) = Bvh::build(&Sets { members, geometries }, quality);
-        Self { tree, blocks }
+        let built_area = tree.area();
+        Self { tree, blocks, built_area }
+    }
+
+    /// The area of all boxes relative to that when the tree was built.
+    pub fn growth(&self) -> f64 {
+        if self.built_area > 0.0 { self.tree.area() / self.built_area } else { 1.0 }
     }
 
     /// Reloads blocks and boxes after spheres have moved or grown.

@@ -42,7 +42,7 @@ fn compare(world: &World, rng: &mut Rng) -> [u32; 2] {
     let places: Vec<u32> =
         (0..rays.len() as u32).rev().filter(|&place| hits.get(place as usize).is_some()).collect();
     let mut points = PointColumns::default();
-    world.points(&hits, &places, &mut points);
+    world.points(rays, &hits, &places, &mut points);
     let mut counts = [0; 2];
     for (i, &place) in places.iter().enumerate() {
         let hit = hits.get(place as usize).expect("a hit");

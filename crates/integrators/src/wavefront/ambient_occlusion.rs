@@ -34,7 +34,8 @@ impl WaveIntegrator for AmbientOcclusion {
                 rows.push(row);
             }
         }
-        scene.world().points(&batch.columns.hits, &turns, &mut batch.columns.points);
+        let BatchColumns { segments, hits, points, .. } = &mut *batch.columns;
+        scene.world().points(segments.rays(), hits, &turns, points);
         batch.pass.instruction_set.dispatch(Occlude {
             pass: batch.pass,
             algorithm: self,

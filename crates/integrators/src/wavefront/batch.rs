@@ -181,7 +181,8 @@ impl<'a> Batch<'a> {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {
-            scene.world().points(&self.columns.hits, turns, &mut self.columns.points);
+            let BatchColumns { segments, hits, points, .. } = &mut *self.columns;
+            scene.world().points(segments.rays(), hits, turns, points);
             match &scene.materials()[id.0 as usize].material {
                 Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::DiffuseTransmission(material) => {
