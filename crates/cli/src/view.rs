@@ -1,5 +1,6 @@
 //! `alhazen view`: a scene walked through in a window, or a camera path without one.
 
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -7,6 +8,7 @@ use std::time::{Duration, Instant};
 use alhazen::Overrides;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
+use view::planet::{Outing, PlanetReport, Spent};
 use view::{Renderer, Report, StepError, World};
 
 use crate::args::View;
@@ -35,7 +37,10 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         samples_per_pixel: arguments.spp,
         ..arguments.changes.overrides()
     };
-    let prepared = Prepared::new(&arguments.scene, &Files, overrides)?;
+    let Some(scene) = &arguments.scene else {
+        return planet(arguments, &overrides);
+    };
+    let prepared = Prepared::new(scene, &Files, overrides)?;
     let desc = (!arguments.headless).then(|| prepared.imported().desc.clone());
     let (world, compiled) = prepared.compile_as(|desc| {
         let world = World::new(desc)?;
@@ -47,16 +52,13 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
     if let Some(desc) = desc {
-        return window(arguments, world, desc);
+        return window(arguments, scene, world, desc);
     }
     let mut flight = world.flight();
     let mut renderer = Renderer::new(Arc::new(world), TARGET);
     let control = Control::default();
     let report = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
-    let report = report.map_err(|error| match error {
-        StepError::Problem(problem) => Failure::Input(problem),
-        StepError::Cancelled => Failure::Input("cancelled".into()),
-    })?;
+    let report = report.map_err(failure)?;
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
         let mut json = report.to_json();
@@ -68,22 +70,60 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// A walk over a planet, in a window or without one.
+fn planet(arguments: &View, overrides: &Overrides) -> Result<ExitCode, Failure> {
+    let spheres = arguments.planet.unwrap_or_default() as usize;
+    let overrides = Overrides { samples_per_pixel: None, ..overrides.clone() };
+    let outing = Outing::new(spheres, &overrides, arguments.spp.unwrap_or(1)).map_err(Failure::Usage)?;
+    if !arguments.headless {
+        return planet_window(arguments, outing);
+    }
+    let mut outing = outing;
+    let report = PlanetReport::of_walk(&mut outing, arguments.frames, &Control::default());
+    let report = report.map_err(failure)?;
+    if arguments.json { say(report.to_json())? } else { say(text_of_planet(&report))? }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn failure(error: StepError) -> Failure {
+    match error {
+        StepError::Problem(problem) => Failure::Input(problem),
+        StepError::Cancelled => Failure::Input("cancelled".into()),
+    }
+}
+
 #[cfg(feature = "view")]
-fn window(
-    arguments: &View,
-    world: World,
-    desc: alhazen::description::SceneDesc,
-) -> Result<ExitCode, Failure> {
-    let title = format!("{} · alhazen", arguments.scene.display());
-    view::window::open(&title, world, desc, arguments.display.settings(), TARGET).map_err(|error| {
-        Failure::Input(format!("{error}; --headless renders a camera path without a window"))
-    })?;
+fn planet_window(arguments: &View, outing: Outing) -> Result<ExitCode, Failure> {
+    view::window::open_planet(outing, arguments.display.settings()).map_err(without_window)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Without the feature this was refused before.
 #[cfg(not(feature = "view"))]
-fn window(_: &View, _: World, _: alhazen::description::SceneDesc) -> Result<ExitCode, Failure> {
+fn planet_window(_: &View, _: Outing) -> Result<ExitCode, Failure> {
+    Ok(ExitCode::FAILURE)
+}
+
+#[cfg(feature = "view")]
+fn without_window(error: String) -> Failure {
+    Failure::Input(format!("{error}; --headless renders a camera path without a window"))
+}
+
+#[cfg(feature = "view")]
+fn window(
+    arguments: &View,
+    scene: &Path,
+    world: World,
+    desc: alhazen::description::SceneDesc,
+) -> Result<ExitCode, Failure> {
+    let title = format!("{} · alhazen", scene.display());
+    view::window::open(&title, world, desc, arguments.display.settings(), TARGET).map_err(without_window)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Without the feature this was refused before.
+#[cfg(not(feature = "view"))]
+fn window(_: &View, _: &Path, _: World, _: alhazen::description::SceneDesc) -> Result<ExitCode, Failure> {
     Ok(ExitCode::FAILURE)
 }
 
@@ -106,6 +146,33 @@ fn text(report: &Report) -> String {
         report.fps(),
         ms(report.first_picture),
         ms(report.compiled_in),
+        report.rays_per_second() / 1e6,
+    )
+}
+
+fn text_of_planet(report: &PlanetReport) -> String {
+    let ms = |share: f64, part: fn(&Spent) -> Duration| {
+        format!("{:.1} ms", report.quantile(share, part).as_secs_f64() * 1e3)
+    };
+    let [width, height] = report.resolution;
+    format!(
+        "{}, {} frames of {width} × {height}, {} samples per pixel, of a planet of {} spheres, of which \
+         {} move\n  \
+         frame time       median {}, 95 % {}, at most {}: {:.1} frames per second\n  \
+         of which         {} simulate, {} move the spheres, {} render\n  \
+         rays             {:.2} million per second",
+        report.integrator,
+        report.frames.len(),
+        report.samples,
+        report.spheres,
+        report.median_moving(),
+        ms(0.5, Spent::sum),
+        ms(0.95, Spent::sum),
+        ms(1.0, Spent::sum),
+        report.fps(),
+        ms(0.5, |spent| spent.simulating),
+        ms(0.5, |spent| spent.moving),
+        ms(0.5, |spent| spent.rendering),
         report.rays_per_second() / 1e6,
     )
 }

@@ -75,6 +75,11 @@ impl Land {
         fbm(direction * self.radius * 0.11 + Vec3::splat(40.0), 2) + 0.12
     }
 
+    /// Whether the land in a direction is a meadow without trees.
+    pub fn is_open(&self, direction: Vec3) -> bool {
+        (0.4..1.6).contains(&self.height(direction)) && self.forest(direction) < -0.12
+    }
+
     /// All spheres: the core, the moon, and others, `count` in all.
     pub fn spheres(&self, count: usize) -> Vec<Sphere> {
         let [distance, size] = MOON.map(|radii| radii * self.radius);

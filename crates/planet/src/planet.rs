@@ -1,6 +1,6 @@
 //! A planet that moves: gravity, collisions, rest.
 
-use math::{Point3, Vec3, Vector3};
+use math::{Frame, Point3, Vec3, Vector3};
 use rayon::prelude::*;
 
 use crate::bodies::{Bodies, State};
@@ -159,16 +159,16 @@ impl Planet {
         energy
     }
 
-    /// The centre of a walker's body over land near the pole of the x axis.
+    /// The centre of a walker's body over a meadow in the sun, as far as there is one.
     pub(crate) fn landing(&self) -> Point3 {
         let land = Land::new(self.radius);
+        let frame = Frame::from_z(Vec3::new(0.62, -0.66, 0.42).normalize());
         let around = |i: u32| {
             let (sin, cos) = lanes::sin_cos(0.61 * i as f32);
-            let out = 0.012 * i as f32;
-            Vec3::new(1.0, out * cos, out * sin).normalize()
+            let out = 0.006 * i as f32;
+            frame.from_local(Vec3::new(out * cos, out * sin, 1.0)).normalize()
         };
-        let is_land = |direction: &Vec3| (0.5..2.0).contains(&land.height(*direction));
-        let direction = (0..400).map(around).find(is_land).unwrap_or(Vec3::X);
+        let direction = (0..400).map(around).find(|&d| land.is_open(d)).unwrap_or(around(0));
         direction * (self.radius + land.height(direction).max(0.0) + 1.5)
     }
 

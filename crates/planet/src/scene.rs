@@ -36,7 +36,8 @@ pub fn scene(planet: &Planet, viewpoint: &Viewpoint, name: &str) -> String {
     text = text.replace("NAME", name);
     let vector = |v: Vec3| format!("{} {} {}", v.x, v.y, v.z);
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "LookAt {}   {}   {}", vector(*eyes), vector(*eyes + *gaze), vector(*up));
+    // The format's camera has its right along up × forward, a mirrored one along forward × up.
+    let _ = writeln!(text, "Scale -1 1 1\nLookAt {}   {}   {}", vector(*eyes), vector(*eyes + *gaze), vector(*up));
     let _ = writeln!(text, "Camera \"perspective\" \"float fov\" {fov}\n\n{LIGHT}");
     for substance in Substance::ALL {
         let range = bodies.range(substance);
@@ -58,7 +59,7 @@ pub fn scene(planet: &Planet, viewpoint: &Viewpoint, name: &str) -> String {
 
 const SETTINGS: &str = r#"Film "rgb" "integer xresolution" 640 "integer yresolution" 480 "string filename" "NAME.png"
 Sampler "zsobol" "integer pixelsamples" 64
-Integrator "whitted" "integer maxdepth" 5
+Integrator "whitted" "integer maxdepth" 4
 "#;
 
 const LIGHT: &str = r#"WorldBegin

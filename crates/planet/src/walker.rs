@@ -40,7 +40,7 @@ pub struct Walker {
 }
 
 impl Walker {
-    /// Stands over the north pole's horizon, where the land is highest of some places.
+    /// Over a meadow, and about to land there.
     pub fn new(planet: &Planet) -> Self {
         let center = planet.landing();
         let forward = planet.up(center).cross(Vector3::X).normalize_or(Vector3::Y);

@@ -16,6 +16,7 @@ mod headless;
 pub mod knobs;
 pub mod lines;
 mod pace;
+pub mod planet;
 mod renderer;
 #[cfg(feature = "window")]
 pub mod window;

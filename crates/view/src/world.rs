@@ -8,9 +8,10 @@ use alhazen::description::schema::Settings;
 use alhazen::description::{CameraDesc, Diagnostic, SceneDesc};
 use alhazen::film::{Layer, pixel_bounds};
 use alhazen::integrators::Session;
-use alhazen::math::{Bounds2i, DVec3, Vec2};
+use alhazen::geometry::GeometryId;
+use alhazen::math::{Bounds2i, DVec3, Point3, Vec2};
 use alhazen::scene::camera::CameraSample;
-use alhazen::scene::{RayStats, Scene, View};
+use alhazen::scene::{MoveError, RayStats, Scene, View};
 use alhazen::{CompiledJob, Job, Overrides, draft};
 
 /// What is shown of a scene.
@@ -50,6 +51,15 @@ impl World {
     /// The compiled scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
+    }
+
+    /// Moves the spheres of some sets ([`Scene::move_spheres`]).
+    pub fn move_spheres(
+        &mut self,
+        moved: impl IntoIterator<Item = (GeometryId, Arc<[Point3]>)>,
+    ) -> Result<(), MoveError> {
+        // Renders that have not ended keep the scene as it was.
+        Arc::make_mut(&mut self.scene).move_spheres(moved)
     }
 
     /// What the scene's author shows of it.

@@ -219,7 +219,13 @@ pub struct TracePixel {
 pub struct View {
     /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
     /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
-    pub scene: PathBuf,
+    #[arg(required_unless_present = "planet")]
+    pub scene: Option<PathBuf>,
+    /// Instead of a scene, a small planet made of N spheres, which move: to be walked on, with
+    /// gravity, collisions, mirrors and glass. --spp are the samples per pixel of each frame then.
+    /// [N: 64 to 4000000]
+    #[arg(long, value_name = "N", conflicts_with = "scene", value_parser = clap::value_parser!(u32).range(64..=4_000_000))]
+    pub planet: Option<u32>,
     /// The algorithm to begin with, see the list below. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
@@ -232,8 +238,8 @@ pub struct View {
     /// How the light is shown to begin with.
     #[command(flatten)]
     pub display: DisplayOptions,
-    /// Open no window, but render a camera path, once around what the camera looks at, and report
-    /// the times of its frames.
+    /// Open no window, but render a camera path, once around what the camera looks at, or a walk
+    /// over the planet, and report the times of its frames.
     #[arg(long)]
     pub headless: bool,
     /// The number of frames of that path.

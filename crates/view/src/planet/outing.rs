@@ -1,0 +1,152 @@
+//! A planet, its walker, and the scene that is rendered of them.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use alhazen::Overrides;
+use alhazen::description::{CameraDesc, TransformDesc};
+use alhazen::geometry::GeometryId;
+use alhazen::import::{MemoryAssets, import};
+use alhazen::integrators::{Control, Limits};
+use alhazen::math::{DMat4, Point3, Vec3};
+use planet::{Input, Planet, Substance, Walker, scene};
+use rayon::prelude::*;
+
+use crate::renderer::StepError;
+use crate::world::summary;
+use crate::{Frame, Shot, World};
+
+/// The length of a step in seconds.
+pub const STEP: f32 = 1.0 / 60.0;
+
+/// What a blast throws: everything this near to where it is, in metres, at up to this speed.
+const BLAST: [f32; 2] = [2.5, 11.0];
+/// How far in front of the eyes it is.
+const BLAST_DISTANCE: f32 = 5.0;
+
+/// The times of a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spent {
+    /// Gravity, collisions and the walker.
+    pub simulating: Duration,
+    /// Moving the spheres of the scene, and refitting or building their tree.
+    pub moving: Duration,
+    /// Rendering and developing.
+    pub rendering: Duration,
+}
+
+impl Spent {
+    /// All of it.
+    pub fn sum(&self) -> Duration {
+        self.simulating + self.moving + self.rendering
+    }
+}
+
+/// A planet, its walker, and the scene that is rendered of them.
+pub struct Outing {
+    planet: Planet,
+    walker: Walker,
+    world: World,
+    shot: Shot,
+    /// The sets of spheres of the scene, with what they are made of.
+    sets: Vec<(GeometryId, Substance)>,
+}
+
+impl Outing {
+    /// On a planet of as many spheres, with changes to its scene. `samples` are those of a pixel in
+    /// each picture. The error says what in the changes is not valid.
+    pub fn new(spheres: usize, overrides: &Overrides, samples: u32) -> Result<Self, String> {
+        let planet = Planet::new(spheres);
+        let walker = Walker::new(&planet);
+        let name = "planet.pbrt";
+        let text = scene(&planet, &walker.viewpoint(&planet), "planet");
+        let mut imported = import(Path::new(name), &MemoryAssets::default().with(name, text));
+        overrides.apply(&mut imported.desc).map_err(|error| error.to_string())?;
+        let world = World::new(imported.desc).map_err(|errors| summary(&errors))?;
+        let shot = Shot { samples, ..world.shot() };
+        let occurs = |substance: &Substance| !planet.bodies().range(*substance).is_empty();
+        let ids = world.scene().sphere_sets().map(|(id, _)| id);
+        let sets = ids.zip(Substance::ALL.into_iter().filter(occurs)).collect();
+        Ok(Self { planet, walker, world, shot, sets })
+    }
+
+    /// The planet.
+    pub fn planet(&self) -> &Planet {
+        &self.planet
+    }
+
+    /// Who walks on it.
+    pub fn walker(&self) -> &Walker {
+        &self.walker
+    }
+
+    /// The scene.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// What is rendered of it.
+    pub fn shot(&self) -> &Shot {
+        &self.shot
+    }
+
+    /// Turns the walker to the right, and up, by angles in radians.
+    pub fn turn(&mut self, right: f32, up: f32) {
+        self.walker.turn(&self.planet, right, up);
+    }
+
+    /// Tears loose what the walker looks at from nearby.
+    pub fn blast(&mut self) {
+        let at = self.walker.eyes(&self.planet) + self.walker.gaze(&self.planet) * BLAST_DISTANCE;
+        self.planet.blast(at, BLAST[0], BLAST[1]);
+    }
+
+    /// Lets time pass, by some steps, and renders a picture.
+    pub fn frame(
+        &mut self,
+        input: &Input,
+        steps: u32,
+        control: &Control,
+    ) -> Result<(Frame, Spent), StepError> {
+        let begin = Instant::now();
+        for _ in 0..steps {
+            self.planet.step(Some((&mut self.walker, input)), STEP);
+        }
+        let simulating = begin.elapsed();
+        self.move_spheres()?;
+        let moving = begin.elapsed() - simulating;
+        self.shot.camera = self.camera();
+        let mut session = self.world.draft(&self.shot, 1)?;
+        session.run(0..self.shot.samples, &Limits::default(), control, &mut |_| ())?;
+        let mut frame = Frame::of(&session, 1, self.shot.layer);
+        let rendering = begin.elapsed() - simulating - moving;
+        let spent = Spent { simulating, moving, rendering };
+        frame.time = spent.sum();
+        Ok((frame, spent))
+    }
+
+    /// Moves the spheres of the scene to where those of the planet are.
+    fn move_spheres(&mut self) -> Result<(), StepError> {
+        let origin = self.world.scene().world_from_render().w_axis.truncate().as_vec3();
+        let (origin, bodies) = (Vec3::from(origin), self.planet.bodies());
+        let centers = |&(id, substance): &(GeometryId, Substance)| {
+            let centers = &bodies.center[bodies.range(substance)];
+            let centers: Arc<[Point3]> = centers.iter().map(|&center| center - origin).collect();
+            (id, centers)
+        };
+        let moved: Vec<_> = self.sets.par_iter().map(centers).collect();
+        self.world.move_spheres(moved).map_err(|error| StepError::Problem(error.to_string()))
+    }
+
+    /// The camera in the walker's eyes. Its right is forward × up.
+    fn camera(&self) -> CameraDesc {
+        let (up, gaze) = (self.walker.up(&self.planet), self.walker.gaze(&self.planet));
+        let right = gaze.cross(up).normalize_or(Vec3::X);
+        let axes = [right, right.cross(gaze), gaze].map(|axis| axis.as_dvec3().extend(0.0));
+        let eyes = self.walker.eyes(&self.planet).as_dvec3().extend(1.0);
+        let world_from_camera = DMat4::from_cols(axes[0], axes[1], axes[2], eyes);
+        let camera_from_world = TransformDesc::fixed(world_from_camera.inverse());
+        CameraDesc { camera_from_world, ..self.shot.camera.clone() }
+    }
+}
