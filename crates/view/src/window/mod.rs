@@ -3,6 +3,7 @@
 
 mod developer;
 mod panels;
+mod planet;
 mod stage;
 mod state;
 
@@ -13,6 +14,8 @@ use alhazen::image::DisplaySettings;
 use eframe::egui::{CentralPanel, Color32, Frame, Margin, Panel, ScrollArea, Ui, ViewportBuilder, Visuals};
 
 use crate::World;
+use crate::planet::Outing;
+use planet::PlanetWindow;
 use state::State;
 
 /// The width of a panel in points.
@@ -40,6 +43,22 @@ pub fn open(
         let repaint = context.egui_ctx.clone();
         let wake = move || repaint.request_repaint();
         Ok(Box::new(Window { state: State::new(world, desc, display, target, wake) }))
+    });
+    eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
+}
+
+/// Opens a window in which a planet is walked on, until it is closed. The error says why there is
+/// no window.
+pub fn open_planet(outing: Outing, display: DisplaySettings) -> Result<(), String> {
+    let options = eframe::NativeOptions {
+        viewport: ViewportBuilder::default().with_inner_size([1000.0, 750.0]).with_title("planet · alhazen"),
+        ..eframe::NativeOptions::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(move |context| {
+        context.egui_ctx.set_visuals(Visuals::dark());
+        let repaint = context.egui_ctx.clone();
+        let wake = move || repaint.request_repaint();
+        Ok(Box::new(PlanetWindow::new(outing, display, wake)))
     });
     eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
 }
