@@ -32,3 +32,19 @@ fn scenes_with_errors_are_reported_as_by_check() {
     let report = |arguments: &[&str]| folder.alhazen(arguments).expect(1).err;
     assert_eq!(report(&["view", "scene.pbrt", "--headless"]), report(&["scene", "check", "scene.pbrt"]));
 }
+
+#[test]
+fn a_walk_over_a_planet_is_reported() {
+    let folder = Folder::new("view");
+    let settings = ["--set", "film.xresolution=32", "--set", "film.yresolution=24"];
+    let arguments = ["view", "--planet", "500", "--headless", "--frames", "4"];
+    let arguments = [&arguments[..], &settings].concat();
+    let text = folder.alhazen(&arguments).expect(0).out;
+    assert!(text.starts_with("whitted, 4 frames of 32 × 24, 1 samples per pixel"), "{text}");
+    let json = folder.alhazen(&[&arguments[..], &["--json"]].concat()).expect(0).json();
+    assert_eq!((json["status"].as_str(), json["spheres"].as_u64()), (Some("done"), Some(500)));
+    assert!(json["moving"]["max"].as_u64().unwrap() > 20 && json["fps"].as_f64().unwrap() > 0.0);
+    folder.alhazen(&["view", "--headless"]).expect(2);
+    folder.alhazen(&["view", "scene.pbrt", "--planet", "500", "--headless"]).expect(2);
+    folder.alhazen(&["view", "--planet", "5", "--headless"]).expect(2);
+}

@@ -96,3 +96,52 @@ fn meshes_of_trees_and_what_has_no_point() {
     let [found, others] = compare(&builder.build(), rng);
     assert!(found > 500 && others > 100, "{found} {others}");
 }
+
+#[test]
+fn spheres_of_sets() {
+    let rng = &mut Rng::new(3, 0);
+    let mut builder = World::builder();
+    let turn = DMat4::from_axis_angle(direction(rng).as_dvec3().normalize(), 1.2);
+    for (size, reverse) in [(0.2, false), (0.1, true)] {
+        let centers = (0..200).map(|_| point_in(rng, 2.0)).collect();
+        let radii = (0..200).map(|_| size * (0.5 + rng.uniform_f32())).collect();
+        let transform = Transform::from_f64(turn).expect("an inverse");
+        builder.add_geometry(GroupId::TOP, SphereSet::new(centers, radii, &transform, reverse).expect("a set"));
+    }
+    let far = SphereSet::new([Vec3::X * 2.5].into(), [1e-6].into(), &Transform::IDENTITY, false);
+    let far = builder.add_geometry(GroupId::TOP, far.expect("a set"));
+    let world = builder.build();
+    let mut rays: RayBuffer =
+        (0..5003).map(|_| (Ray::new(point_in(rng, 3.0), direction(rng), 0.0), f32::INFINITY)).collect();
+    rays.push(&Ray::new(Vec3::new(2.5, 0.0, 30.0), -Vec3::Z, 0.0), f32::INFINITY);
+    let rays = rays.columns();
+    let mut hits = HitColumns::default();
+    world.intersect_batch(rays, &AcceptAll, &mut hits, &mut RayStats::default());
+    let is_hit = |place: &u32| hits.get(*place as usize).is_some();
+    let places: Vec<u32> = (0..rays.len() as u32).rev().filter(is_hit).collect();
+    let mut points = PointColumns::default();
+    world.points(rays, &hits, &places, &mut points);
+    assert!(places.len() > 1000);
+    for (i, &place) in places.iter().enumerate() {
+        let hit = hits.get(place as usize).expect("a hit");
+        let (point, found) = points.get::<f32>(i);
+        assert_eq!(found, hit.geometry != far, "{hit:?}");
+        if !found {
+            continue;
+        }
+        let surface = world.surface(&rays.ray(place as usize), &hit);
+        let near = |a: Vec3, b: Vec3, what: &str| {
+            assert!((a - b).length() <= 1e-3 * (1e-2 + b.length()), "{what} {a:?} and {b:?} of {hit:?}");
+        };
+        near(point.n, surface.n, "normals");
+        near(point.ns, surface.shading.n, "shading normals");
+        near(point.dpdu, surface.dpdu, "tangents");
+        near(point.dpdv, surface.dpdv, "other tangents");
+        // Along the surface the projection may move a point.
+        let off = (point.p.p - surface.p.p).dot(surface.n).abs();
+        assert!(off <= surface.n.abs().dot(point.p.error + surface.p.error), "{off} {hit:?}");
+        near(point.p.p, surface.p.p, "points");
+        let across = (point.uv - surface.uv).abs();
+        assert!(across.y < 1e-3 && (across.x < 1e-3 || across.x > 0.999), "{across:?} {hit:?}");
+    }
+}

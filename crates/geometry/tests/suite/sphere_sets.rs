@@ -264,3 +264,35 @@ fn instruction_sets_agree() {
     assert!(first.iter().flatten().count() > 1000);
     assert!(answers.all(|other| other == first));
 }
+
+#[test]
+fn spheres_that_have_moved_are_hit_as_in_a_new_world_and_by_brute_force() {
+    let rng = &mut Rng::new(77, 0);
+    let mut all = random_set(rng, 3000, [-2.0, -1.2], &Transform::IDENTITY);
+    let mut builder = World::builder();
+    let id = builder.add_geometry(GroupId::TOP, all.clone());
+    let mut world = builder.build();
+    // A little at first, so that the tree is refitted; then everywhere, so that it is built anew.
+    for (way, rebuilds) in [(0.01, false), (2.0, true)] {
+        let centers = (0..all.len()).map(|i| all.center(i) + point_in(rng, way)).collect();
+        all = all.moved(centers).expect("as many centres");
+        let has_rebuilt = world.refit_or_rebuild([(id, all.clone().into())], BuildQuality::Balanced);
+        assert_eq!(has_rebuilt, Ok(rebuilds), "{way}");
+        let mut builder = World::builder();
+        builder.add_geometry(GroupId::TOP, all.clone());
+        let new = builder.build();
+        let mut count = 0;
+        for _ in 0..500 {
+            let ray = Ray::new(point_in(rng, 3.0), direction(rng), 0.0);
+            let hit = |world: &World| {
+                let hit = world.intersect(&ray, f32::INFINITY, &AcceptAll, &mut RayStats::default());
+                hit.map(|hit| (hit.t, hit.primitive as usize))
+            };
+            assert_eq!(hit(&world), hit(&new));
+            assert_eq!(hit(&world), brute_force(&all, &ray, f32::INFINITY));
+            count += u32::from(hit(&world).is_some());
+        }
+        assert!(count > 50, "{count}");
+    }
+    assert!(all.moved([Vec3::ZERO].into()).is_none());
+}
