@@ -9,7 +9,7 @@ use crate::grid::{Entry, Grid};
 use crate::land::{Land, MOON, core_radius};
 use crate::{Substance, Walker};
 
-/// Gravity at the surface of the core, in metres per second squared.
+/// Gravity, in metres per second squared: the same at all heights, so that nothing escapes.
 const GRAVITY: f32 = 9.0;
 /// The pull of the moon where it is strongest: on the ground below it. Nearer to the moon it grows
 /// weaker, unlike Newton's, so that balls are lifted, but not kept.
@@ -29,8 +29,8 @@ const WAKE: f32 = 0.35;
 const STILL: f32 = 0.16;
 const STEPS_TO_REST: u8 = 20;
 /// Rounds of impulses, and of separation.
-const ROUNDS: usize = 6;
-const SEPARATIONS: usize = 3;
+const ROUNDS: usize = 8;
+const SEPARATIONS: usize = 8;
 /// As many bodies are done by a thread at once.
 const CHUNK: usize = 128;
 /// In place of a body: who walks.
@@ -136,8 +136,7 @@ impl Planet {
 
     /// The acceleration of what is loose: towards the core, and towards the moon.
     pub fn gravity(&self, p: Point3) -> Vector3 {
-        let ratio = self.radius * self.radius / p.length_squared().max(self.radius);
-        let down = -self.up(p) * (GRAVITY * ratio);
+        let down = -self.up(p) * GRAVITY;
         let Some(moon) = self.moon else { return down };
         let way = self.bodies.center[moon] - p;
         let off = (way.length() / ((MOON[0] - 1.0) * self.radius) - 1.0) / PULL_RANGE;
@@ -150,8 +149,7 @@ impl Planet {
         for (i, state) in self.bodies.state.iter().enumerate().filter(|(_, state)| **state != State::Held) {
             let mass = f64::from(self.bodies.mass(i));
             let height = f64::from(self.bodies.center[i].length());
-            let radius = f64::from(self.radius);
-            energy.potential += mass * f64::from(GRAVITY) * radius * (1.0 - radius / height);
+            energy.potential += mass * f64::from(GRAVITY) * (height - f64::from(self.radius));
             if *state == State::Moving {
                 energy.kinetic += 0.5 * mass * f64::from(self.bodies.velocity[i].length_squared());
             }
@@ -221,8 +219,10 @@ impl Planet {
         self.sort_stirred();
         let (contacts, ranges) = self.contacts(&movers, dt);
         let struck = self.collide(&contacts, &ranges, dt);
+        let before: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
         self.advance(dt);
         self.separate(&contacts, &ranges);
+        self.hold_back(&before, dt);
         self.wake(struck);
         self.rest(&ranges);
     }
@@ -428,6 +428,19 @@ impl Planet {
         }
         for (&body, center) in self.moving.iter().zip(centers) {
             self.bodies.center[body as usize] = center;
+        }
+    }
+
+    /// Takes speed from bodies that have not come as far as it says: those below others in a heap,
+    /// whose impulses the rounds have not balanced.
+    fn hold_back(&mut self, before: &[Point3], dt: f32) {
+        for (&body, before) in self.moving.iter().zip(before) {
+            let (center, velocity) =
+                (self.bodies.center[body as usize], &mut self.bodies.velocity[body as usize]);
+            let (moved, speed) = (center.distance(*before) / dt, velocity.length());
+            if moved < speed {
+                *velocity = *velocity * (moved / speed);
+            }
         }
     }
 
