@@ -33,7 +33,7 @@ fn the_same_steps_give_the_same_bits_for_any_number_of_threads() {
 /// Balls that fall in a heap on one place of a core.
 fn heap() -> Planet {
     let mut rng = Rng::from_sequence(5);
-    let balls = (0..400).map(|_| {
+    let balls = (0..150).map(|_| {
         let [x, y, z, r] = [0; 4].map(|_| rng.uniform_f32());
         (Vec3::new(5.0 * x - 2.5, 5.0 * y - 2.5, 11.5 + 9.0 * z), 0.1 + 0.15 * r)
     });
@@ -62,7 +62,7 @@ fn no_sphere_sinks_deep_into_another() {
     let mut planet = heap();
     for step in 0..900 {
         planet.step(None, STEP);
-        if step < 60 || step % 20 != 0 {
+        if step < 60 || step % 30 != 0 {
             continue;
         }
         // Of the smaller radius, while the heap falls and where it lies.
