@@ -81,7 +81,11 @@ fn planet(arguments: &View, overrides: &Overrides) -> Result<ExitCode, Failure> 
     let mut outing = outing;
     let report = PlanetReport::of_walk(&mut outing, arguments.frames, &Control::default());
     let report = report.map_err(failure)?;
-    if arguments.json { say(report.to_json())? } else { say(text_of_planet(&report))? }
+    if arguments.json {
+        say(report.to_json())?
+    } else {
+        say(text_of_planet(&report))?
+    }
     Ok(ExitCode::SUCCESS)
 }
 

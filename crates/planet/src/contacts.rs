@@ -2,9 +2,9 @@
 //!
 //! Each round, every moving sphere takes the impulses of all its contacts at once, as velocities
 //! were before the round. An impulse is weighted by one over the larger number of contacts of the
-//! two spheres that change anything: so it counts the same for both, and momentum is kept; and as a sphere's weights sum
-//! to at most one, its new velocity is a mean of those after each impulse alone, so that kinetic
-//! energy does not grow, because no single impulse makes it grow.
+//! two spheres that change anything: so it counts the same for both, and momentum is kept. As a
+//! sphere's weights sum to at most one, its new velocity is a mean of those after each impulse
+//! alone, so that kinetic energy does not grow, because no single impulse makes it grow.
 
 use math::{Point3, Vector3};
 

@@ -73,7 +73,8 @@ impl Grid {
                     for entry in &self.entries[range] {
                         let limit = distance + entry.radius;
                         // Other cells may have the same row.
-                        if entry.center.distance_squared(p) <= limit * limit && cell(entry.center) == [x, y, z]
+                        if entry.center.distance_squared(p) <= limit * limit
+                            && cell(entry.center) == [x, y, z]
                         {
                             visit(entry);
                         }

@@ -19,7 +19,7 @@ mod tree;
 mod walker;
 
 pub use bodies::{Bodies, State};
-pub use planet::{Energy, Planet};
+pub use planet::{Energy, Mover, Planet};
 pub use scene::{Viewpoint, scene};
 pub use substance::Substance;
 pub use walker::{Input, Walker};

@@ -3,11 +3,11 @@
 use math::{Frame, Point3, Vec3, Vector3};
 use rayon::prelude::*;
 
+use crate::Substance;
 use crate::bodies::{Bodies, State};
 use crate::contacts::Contact;
 use crate::grid::{Entry, Grid};
 use crate::land::{Land, MOON, core_radius};
-use crate::{Substance, Walker};
 
 /// Gravity, in metres per second squared: the same at all heights, so that nothing escapes.
 const GRAVITY: f32 = 9.0;
@@ -46,11 +46,14 @@ pub struct Energy {
 }
 
 /// A sphere that moves as it likes, and gives way to none.
-#[derive(Clone, Copy)]
-struct Mover {
-    center: Point3,
-    radius: f32,
-    velocity: Vector3,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mover {
+    /// Its centre.
+    pub center: Point3,
+    /// Its radius in metres.
+    pub radius: f32,
+    /// Its velocity in metres per second.
+    pub velocity: Vector3,
 }
 
 /// A planet of spheres.
@@ -88,7 +91,8 @@ impl Planet {
     /// and radii move.
     pub fn with_balls(radius: f32, balls: impl IntoIterator<Item = (Point3, f32)>) -> Self {
         let core = (Substance::Ice, Vec3::ZERO, radius, State::Held);
-        let balls = balls.into_iter().map(|(center, radius)| (Substance::White, center, radius, State::Moving));
+        let balls =
+            balls.into_iter().map(|(center, radius)| (Substance::White, center, radius, State::Moving));
         Self::of(Bodies::new(std::iter::once(core).chain(balls)), radius, false)
     }
 
@@ -204,15 +208,11 @@ impl Planet {
         self.wake(struck);
     }
 
-    /// Moves everything by a time in seconds, at most a thirtieth.
-    pub fn step(&mut self, walker: Option<(&mut Walker, &crate::Input)>, dt: f32) {
+    /// Moves everything by a time in seconds, at most a thirtieth; what is loose makes way for who
+    /// walks there.
+    pub fn step(&mut self, walker: Option<Mover>, dt: f32) {
         self.time += dt;
-        let mut movers = Vec::new();
-        if let Some((walker, input)) = walker {
-            walker.step(self, input, dt);
-            let (center, radius, velocity) = (walker.center(), walker.radius(), walker.velocity());
-            movers.push(Mover { center, radius, velocity });
-        }
+        let mut movers = Vec::from_iter(walker);
         movers.extend(self.move_moon(dt));
         self.wake_around(&movers);
         self.fall(dt);
@@ -335,16 +335,7 @@ impl Planet {
                 return;
             }
             let partner = self.place.get(other as usize).copied().unwrap_or(Contact::FIXED);
-            contacts.push(Contact {
-                other,
-                partner,
-                normal,
-                gap,
-                share,
-                velocity: w,
-                center: q,
-                reach,
-            });
+            contacts.push(Contact { other, partner, normal, gap, share, velocity: w, center: q, reach });
         };
         add(0, Vec3::ZERO, (self.radius, 1.0), Vector3::ZERO);
         for mover in movers {

@@ -37,7 +37,13 @@ pub fn scene(planet: &Planet, viewpoint: &Viewpoint, name: &str) -> String {
     let vector = |v: Vec3| format!("{} {} {}", v.x, v.y, v.z);
     // Writing to a string cannot fail.
     // The format's camera has its right along up × forward, a mirrored one along forward × up.
-    let _ = writeln!(text, "Scale -1 1 1\nLookAt {}   {}   {}", vector(*eyes), vector(*eyes + *gaze), vector(*up));
+    let _ = writeln!(
+        text,
+        "Scale -1 1 1\nLookAt {}   {}   {}",
+        vector(*eyes),
+        vector(*eyes + *gaze),
+        vector(*up)
+    );
     let _ = writeln!(text, "Camera \"perspective\" \"float fov\" {fov}\n\n{LIGHT}");
     for substance in Substance::ALL {
         let range = bodies.range(substance);

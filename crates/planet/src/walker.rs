@@ -2,7 +2,7 @@
 
 use math::{Point3, Vector3};
 
-use crate::{Planet, Viewpoint};
+use crate::{Mover, Planet, Viewpoint};
 
 /// The radius of the walker's body in metres, the height of its centre when it stands, and that of
 /// the eyes.
@@ -68,14 +68,9 @@ impl Walker {
         self.center
     }
 
-    /// The radius of its body.
-    pub fn radius(&self) -> f32 {
-        RADIUS
-    }
-
-    /// Its velocity.
-    pub fn velocity(&self) -> Vector3 {
-        self.velocity
+    /// Its body, for which others make way.
+    pub fn body(&self) -> Mover {
+        Mover { center: self.center, radius: RADIUS, velocity: self.velocity }
     }
 
     /// Whether there is ground under it.
@@ -97,7 +92,7 @@ impl Walker {
     }
 
     /// Moves for a time in seconds.
-    pub(crate) fn step(&mut self, planet: &Planet, input: &Input, dt: f32) {
+    pub fn step(&mut self, planet: &Planet, input: &Input, dt: f32) {
         let up = planet.up(self.center);
         let side = self.forward.cross(up);
         let way = self.forward * input.forward + side * input.right;

@@ -132,7 +132,8 @@ impl Points<'_> {
                 let mut left = (is_in_top & !found).bits();
                 let geometries = geometry.to_array();
                 while left != 0 {
-                    let here = geometry.eq(R::Int::splat(geometries[left.trailing_zeros() as usize % MAX_LANES]))
+                    let here = geometry
+                        .eq(R::Int::splat(geometries[left.trailing_zeros() as usize % MAX_LANES]))
                         & R::Mask::from_bits(left);
                     left &= !here.bits();
                     let lane = here.bits().trailing_zeros() as usize % MAX_LANES;

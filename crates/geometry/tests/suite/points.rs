@@ -106,7 +106,8 @@ fn spheres_of_sets() {
         let centers = (0..200).map(|_| point_in(rng, 2.0)).collect();
         let radii = (0..200).map(|_| size * (0.5 + rng.uniform_f32())).collect();
         let transform = Transform::from_f64(turn).expect("an inverse");
-        builder.add_geometry(GroupId::TOP, SphereSet::new(centers, radii, &transform, reverse).expect("a set"));
+        builder
+            .add_geometry(GroupId::TOP, SphereSet::new(centers, radii, &transform, reverse).expect("a set"));
     }
     let far = SphereSet::new([Vec3::X * 2.5].into(), [1e-6].into(), &Transform::IDENTITY, false);
     let far = builder.add_geometry(GroupId::TOP, far.expect("a set"));

@@ -19,7 +19,8 @@ fn the_same_steps_give_the_same_bits_for_any_number_of_threads() {
                     let p = walker.center();
                     planet.blast(p, 3.0, 8.0);
                 }
-                planet.step(Some((&mut walker, &input)), STEP);
+                walker.step(&planet, &input, STEP);
+                planet.step(Some(walker.body()), STEP);
             }
             (planet.bodies().center.clone(), planet.moving(), walker.center())
         })
@@ -103,7 +104,10 @@ fn a_walker_stands_walks_jumps_and_pushes() {
     let mut planet = Planet::new(6000);
     let mut walker = Walker::new(&planet);
     let step = |planet: &mut Planet, walker: &mut Walker, input: Input, steps: u32| {
-        (0..steps).for_each(|_| planet.step(Some((walker, &input)), STEP));
+        for _ in 0..steps {
+            walker.step(planet, &input, STEP);
+            planet.step(Some(walker.body()), STEP);
+        }
     };
     step(&mut planet, &mut walker, Input::default(), 180);
     assert!(walker.stands());

@@ -1,8 +1,8 @@
 //! A planet of spheres that moves while somebody walks on it.
 //!
-//! An [`Outing`] is the planet with its walker, and the scene that is rendered of it: time passes in
-//! steps of [`STEP`], then the spheres of the compiled scene are moved to where they are, then one
-//! picture is rendered. A [`PlanetReport`] has the times of all that without a window.
+//! An [`Outing`] is the planet with its walker, and the scene that is rendered of it: time passes
+//! in steps of [`STEP`], then the spheres of the compiled scene are moved to where they are, then
+//! one picture is rendered. A [`PlanetReport`] has the times of all that without a window.
 
 mod outing;
 mod report;

@@ -111,7 +111,8 @@ impl Outing {
     ) -> Result<(Frame, Spent), StepError> {
         let begin = Instant::now();
         for _ in 0..steps {
-            self.planet.step(Some((&mut self.walker, input)), STEP);
+            self.walker.step(&self.planet, input, STEP);
+            self.planet.step(Some(self.walker.body()), STEP);
         }
         let simulating = begin.elapsed();
         self.move_spheres()?;

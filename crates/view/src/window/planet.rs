@@ -145,10 +145,8 @@ impl PlanetWindow {
     fn tell(&self, ui: &Ui, drag: [f32; 2]) {
         let (input, turn, blasts) = ui.input(|input| {
             let held = |key| if input.key_down(key) { 1.0 } else { 0.0 };
-            let keys = [
-                held(Key::ArrowRight) - held(Key::ArrowLeft),
-                held(Key::ArrowUp) - held(Key::ArrowDown),
-            ];
+            let keys =
+                [held(Key::ArrowRight) - held(Key::ArrowLeft), held(Key::ArrowUp) - held(Key::ArrowDown)];
             let seconds = input.stable_dt.min(0.1);
             let walk = Input {
                 forward: held(Key::W) - held(Key::S),
@@ -156,7 +154,10 @@ impl PlanetWindow {
                 runs: input.modifiers.shift,
                 jumps: input.key_down(Key::Space),
             };
-            let turn = [drag[0] * TURN + keys[0] * KEY_TURN * seconds, keys[1] * KEY_TURN * seconds - drag[1] * TURN];
+            let turn = [
+                drag[0] * TURN + keys[0] * KEY_TURN * seconds,
+                keys[1] * KEY_TURN * seconds - drag[1] * TURN,
+            ];
             (walk, turn, input.key_pressed(Key::F))
         });
         let mut exchange = locked(&self.walk.exchange);
@@ -184,7 +185,11 @@ impl eframe::App for PlanetWindow {
         CentralPanel::default().frame(Margins::NONE.fill(Color32::BLACK)).show(ui, |ui| {
             let space = ui.available_rect_before_wrap();
             let response = ui.allocate_rect(space, Sense::click_and_drag());
-            let by = if response.dragged_by(PointerButton::Primary) { response.drag_delta() } else { vec2(0.0, 0.0) };
+            let by = if response.dragged_by(PointerButton::Primary) {
+                response.drag_delta()
+            } else {
+                vec2(0.0, 0.0)
+            };
             self.tell(ui, [by.x, by.y]);
             let font = FontId::proportional(15.0);
             let text = |at, align, text: &str| {

@@ -20,7 +20,8 @@ pub fn make(folder: &Path) -> io::Result<()> {
         let mut planet = Planet::new(count);
         let mut walker = Walker::new(&planet);
         for _ in 0..STEPS {
-            planet.step(Some((&mut walker, &Input::default())), 1.0 / 60.0);
+            walker.step(&planet, &Input::default(), 1.0 / 60.0);
+            planet.step(Some(walker.body()), 1.0 / 60.0);
         }
         let walk = walker.viewpoint(&planet);
         for (suffix, viewpoint) in [("", Viewpoint::of_all(&planet)), ("-walk", walk)] {
