@@ -430,7 +430,7 @@ impl Planet {
                 (self.bodies.center[body as usize], &mut self.bodies.velocity[body as usize]);
             let (moved, speed) = (center.distance(*before) / dt, velocity.length());
             if moved < speed {
-                *velocity = *velocity * (moved / speed);
+                *velocity *= moved / speed;
             }
         }
     }
