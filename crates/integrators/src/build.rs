@@ -277,12 +277,11 @@ impl Builder<'_> {
 
     fn path(&self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
         if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
-            return pixels(VolPath::new(desc), sampler);
+            let path = VolPath::new(desc);
+            return if self.has_parts() { pixels(path, sampler) } else { self.waves(path, sampler) };
         }
-        if self.has_subsurface() || self.has_parts() {
-            return pixels(Path::new(desc, interfaces), sampler);
-        }
-        self.waves(Path::new(desc, interfaces), sampler)
+        let path = Path::new(desc, interfaces);
+        if self.has_parts() { pixels(path, sampler) } else { self.waves(path, sampler) }
     }
 }
 

@@ -4,14 +4,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use alhazen::description::{
-    AmbientOcclusionDesc, IntegratorDesc, MaterialDesc, MaterialKind, OpenPbrDesc, PathDesc, SceneDesc,
-};
+use alhazen::description::{AmbientOcclusionDesc, IntegratorDesc, PathDesc, SceneDesc};
 use alhazen::geometry::InstructionSet;
 use alhazen::import::{AssetSource, Files, import};
 use alhazen::integrators::{
     self, AmbientOcclusion, Control, Integrator, Limits, PixelLoop, RayCasting, Session, SessionState,
-    WaveIntegrator, Wavefront, Whitted,
+    VolPath, WaveIntegrator, Wavefront, Whitted,
 };
 use alhazen::sampling::Randomize;
 use alhazen::sampling::sampler::{Independent, Sampler, ZSobol};
@@ -111,36 +109,64 @@ Translate 0.2 0.1 0.1
 ObjectInstance "slab"
 "#;
 
-/// The scenes of the folder without media and scattering under surfaces, which the wavefront leaves
-/// to the scalar engine, and those above, made small, with their names.
+/// Media that differ and vary, bounded by interfaces and by surfaces that scatter, one in another,
+/// some that emit; the camera is in one of them. Glass disperses, and skin lets light go under it.
+const MEDIA: &str = r#"
+LookAt 0 1.5 5 0 0.8 0 0 1 0
+MakeNamedMedium "haze" "string type" "homogeneous" "rgb sigma_s" [ 0.05 0.06 0.08 ] "rgb sigma_a" [ 0.01 0.01 0 ]
+MakeNamedMedium "wine" "string type" "homogeneous" "rgb sigma_a" [ 0.2 2 2 ] "rgb sigma_s" [ 0.1 0.1 0.1 ]
+MakeNamedMedium "smoke" "string type" "uniformgrid" "point3 p0" [ -1 0 -1 ] "point3 p1" [ 1 1 1 ]
+    "integer nx" 2 "integer ny" 2 "integer nz" 2 "float density" [ 0 1 2 0.5 3 0 0.2 1 ]
+    "rgb sigma_s" [ 2 1.5 1 ] "rgb sigma_a" [ 0.1 0.5 0.5 ]
+MakeNamedMedium "fire" "string type" "rgbgrid" "point3 p0" [ -2 0 -2 ] "point3 p1" [ -1 2 -1 ]
+    "integer nx" 1 "integer ny" 2 "integer nz" 1 "rgb sigma_a" [ 1 1 1  0.1 0.2 0.3 ]
+    "rgb Le" [ 3 1 0.2  1 0.3 0 ]
+MediumInterface "" "haze"
+Camera "perspective" "float fov" 50
+Film "rgb"
+Integrator "volpath" "integer maxdepth" 6
+WorldBegin
+LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
+LightSource "infinite" "rgb L" [ 0.2 0.3 0.4 ]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 4 4 3 ]
+    Shape "bilinearmesh" "point3 P" [ -1 3 -1  -1 3 1  1 3 -1  1 3 1 ]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.7 0.4 0.3 ]
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+AttributeBegin
+    Material "interface"
+    MediumInterface "smoke" "haze"
+    Shape "sphere" "float radius" 0.9
+    MediumInterface "fire" "haze"
+    Translate -1.5 1 -1.5
+    Shape "sphere" "float radius" 0.8
+AttributeEnd
+AttributeBegin
+    Translate 1.5 0.6 1
+    MediumInterface "wine" "haze"
+    Material "dielectric" "spectrum eta" "glass-F11"
+    Shape "sphere" "float radius" 0.5
+    Translate -0.5 -0.2 -2.5
+    Material "dielectric" "float roughness" 0.3
+    Shape "sphere" "float radius" 0.5
+    Translate -2.6 0 2
+    Material "subsurface" "rgb mfp" [ 0.1 0.05 0.02 ] "rgb reflectance" [ 0.8 0.5 0.4 ] "float roughness" 0.2
+    Shape "sphere" "float radius" 0.4
+    Translate 1 0 0.8
+    Material "hair"
+    Shape "sphere" "float radius" 0.2
+AttributeEnd
+"#;
+
+/// The scenes of the folder and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
-    let texts = [(LIGHTS, "lights"), (SURFACES, "surfaces")].map(|(text, name)| {
+    let texts = [(LIGHTS, "lights"), (SURFACES, "surfaces"), (MEDIA, "media")].map(|(text, name)| {
         let (path, assets) = scene_text(text);
         (small(path, &assets), name.to_string())
     });
     let scenes = scenes().into_iter().map(|(path, name)| (small(&path, &Files), name));
-    scenes.map(at_once).filter(|(desc, _)| wavefront_draws(desc)).chain(texts)
-}
-
-/// Principled surfaces let light leave where it entered.
-fn at_once((mut desc, name): (SceneDesc, String)) -> (SceneDesc, String) {
-    let radius = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == "subsurface_radius");
-    let materials: Vec<_> = desc.materials.iter().map(|(handle, _)| handle).collect();
-    for handle in materials {
-        if let MaterialKind::OpenPbr(surface) = &mut desc.materials[handle].kind {
-            surface.numbers[radius.expect("a number")] = 0.0.into();
-        }
-    }
-    (desc, name)
-}
-
-fn wavefront_draws(desc: &SceneDesc) -> bool {
-    let is_subsurface = |material: &MaterialDesc| match &material.kind {
-        MaterialKind::Subsurface { .. } => true,
-        MaterialKind::OpenPbr(surface) => surface.scatters_under(),
-        _ => false,
-    };
-    desc.media.is_empty() && !desc.materials.iter().any(|(_, material)| is_subsurface(material))
+    scenes.chain(texts)
 }
 
 fn small(path: &Path, assets: &dyn AssetSource) -> SceneDesc {
@@ -178,15 +204,23 @@ impl Compiled {
     }
 
     /// The algorithms of both engines, by the wavefront with an instruction set and scalar.
-    fn algorithms(&self, sampler: &Sampler, set: InstructionSet) -> [Engines; 4] {
+    fn algorithms(&self, sampler: &Sampler, set: InstructionSet) -> Vec<Engines> {
         let settings = match self.desc.integrator.value {
-            IntegratorDesc::Path(settings) => settings,
+            IntegratorDesc::Path(settings) | IntegratorDesc::VolPath(settings) => settings,
             _ => PathDesc::default(),
         };
         let path = integrators::Path::new(settings, Interfaces::Stop);
+        if !self.scene.media().is_empty() {
+            // The others know media in the scalar engine only.
+            let vol_path = VolPath::new(settings);
+            return vec![
+                Engines::new("path", path, sampler, set),
+                Engines::new("vol-path", vol_path, sampler, set),
+            ];
+        }
         let near = AmbientOcclusionDesc { max_distance: 3.0, ..AmbientOcclusionDesc::default() };
         let occlusion = AmbientOcclusion::new(near, RgbColorSpace::srgb());
-        [
+        vec![
             Engines::new("path", path, sampler, set),
             Engines::new("ambient occlusion", occlusion, sampler, set),
             Engines::new("ray casting", RayCasting, sampler, set),
@@ -229,7 +263,10 @@ fn instruction_sets_and_threads_never_change_a_bit() {
         let [sampler, _] = samplers();
         let pictures = |set, threads| {
             let algorithms = compiled.algorithms(&sampler, set);
-            algorithms.map(|engines| (engines.name, compiled.picture(engines.wavefront, threads)))
+            let pictures = algorithms
+                .into_iter()
+                .map(|engines| (engines.name, compiled.picture(engines.wavefront, threads)));
+            pictures.collect::<Vec<_>>()
         };
         let expected = pictures(InstructionSet::detect(), 1);
         for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {

@@ -50,7 +50,7 @@ impl Path {
 
     /// Leads a path out of a body under the surface of which it has gone; returns the direct light
     /// where it leaves, and whether it goes on.
-    fn leave_body(
+    pub(crate) fn leave_body(
         &self,
         tracer: &mut Tracer,
         path: &mut PathState,

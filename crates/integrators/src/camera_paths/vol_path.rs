@@ -3,9 +3,9 @@
 //! Between surfaces a path flies through media (`transport/media.rs`), which scatter it where they
 //! choose. At each vertex, on a surface or in a medium, a shadow ray goes to a light and estimates
 //! the transmittance on its way; interfaces between media do not occlude it. The two ways to find a
-//! light are weighted by the balance heuristic over both and over all wavelengths by which they may
-//! have been sampled (spectral MIS). From the second vertex on Russian roulette ends paths of low
-//! throughput.
+//! light are weighted by the power heuristic, with densities that are means over the wavelengths by
+//! which each may have been sampled (spectral MIS). From the second vertex on Russian roulette ends
+//! paths of low throughput. Without media all is as in `path.rs`.
 //!
 //! Paths that enter a body go on from another point of its surface
 //! (`transport/subsurface/`).
@@ -21,16 +21,15 @@ use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
 use scene::light::{LightId, LightSampleContext};
-use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
-use scene::{Scene, SurfaceInteraction, View};
+use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::PathsFrom;
-use crate::transport::direct::{MediumVertex, light_context};
-use crate::transport::media::{FlightEnd, Heroes, Throughput};
+use super::{Path, PathsFrom};
+use crate::transport::direct::{MediumVertex, light_context, power_heuristic};
+use crate::transport::media::{Arrival, FlightEnd, Heroes, Throughput};
 use crate::transport::parts::{DIFFUSE, event_at, event_of};
-use crate::transport::path_state::{Origin, Scattered, pass_through, throughput};
+use crate::transport::path_state::{Scattered, pass_through, throughput};
 use crate::transport::roulette;
 use crate::transport::subsurface::entered;
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
@@ -38,16 +37,16 @@ use crate::{Cancelled, Control, RayIntegrator, Tracer};
 /// Path tracing through media.
 #[derive(Clone, Debug)]
 pub struct VolPath {
-    settings: PathDesc,
+    /// The same in empty space.
+    pub(crate) in_vacuum: Path,
     /// Whether lights are sampled.
     sample_lights: bool,
-    lights: LightSampler,
 }
 
 impl VolPath {
     /// Has no lights before [`prepare`](RayIntegrator::prepare).
     pub fn new(settings: PathDesc) -> Self {
-        Self { settings, sample_lights: true, lights: LightSampler::default() }
+        Self { in_vacuum: Path::new(settings, Interfaces::Pass), sample_lights: true }
     }
 
     /// Without light sampling.
@@ -57,21 +56,21 @@ impl VolPath {
 }
 
 /// A path between two vertices.
-struct Path {
-    ray: RayDifferential,
-    medium: Option<MediumId>,
-    throughput: Throughput,
-    heroes: Heroes,
+pub(crate) struct PathInMedia {
+    pub ray: RayDifferential,
+    pub medium: Option<MediumId>,
+    pub throughput: Throughput,
+    pub heroes: Heroes,
     /// Scattering events so far.
-    depth: u32,
+    pub depth: u32,
     /// The last vertex, if light sampling there could have found what the ray hits.
-    origin: Option<Origin>,
+    pub origin: Option<LightSampleContext>,
     /// The product of η² over the refractions.
-    eta_scale: f32,
+    pub eta_scale: f32,
     /// Whether an earlier vertex was not specular.
-    rough_before: bool,
+    pub rough_before: bool,
     /// The event by which it left its first vertex, for layers of parts.
-    first: FirstEvent,
+    pub first: FirstEvent,
 }
 
 /// A vertex from which lights are sampled.
@@ -80,7 +79,18 @@ enum Vertex<'a> {
     Medium(&'a MediumVertex),
 }
 
-impl Path {
+/// What became of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fate {
+    /// It has passed the medium to the end of its ray.
+    Passed,
+    /// It goes on along another ray.
+    GoesOn,
+    /// It has ended.
+    Ended,
+}
+
+impl PathInMedia {
     fn new(ray: RayDifferential, medium: Option<MediumId>, heroes: Heroes) -> Self {
         Self {
             ray,
@@ -101,34 +111,44 @@ impl Path {
         self.ray = ray;
         self.throughput.r_l = self.throughput.r_u / pdf;
         self.rough_before |= origin.is_some();
-        self.origin = origin.map(|context| Origin { context, pdf });
+        self.origin = origin;
     }
 
-    /// Plays Russian roulette; `false` if the path has ended.
-    fn survives(&mut self, sampler: &mut Sampler) -> bool {
+    /// Plays Russian roulette.
+    fn play(&mut self, sampler: &mut Sampler) -> Fate {
         let carried = self.throughput.estimate(SampledSpectrum::splat(self.eta_scale), &self.heroes);
         let survival = roulette::survival(self.depth, roulette::of_camera_path(carried), sampler);
         self.throughput.beta /= survival.unwrap_or(1.0);
-        survival.is_some()
+        if survival.is_some() { Fate::GoesOn } else { Fate::Ended }
     }
 }
 
 impl VolPath {
+    fn settings(&self) -> &PathDesc {
+        &self.in_vacuum.settings
+    }
+
     /// The weighted radiance of a light that the ray of a path meets.
-    fn met(&self, scene: &Scene, path: &Path, light: LightId, l: SampledSpectrum) -> SampledSpectrum {
-        let Throughput { beta, r_u, r_l } = path.throughput;
+    fn met(&self, scene: &Scene, path: &PathInMedia, light: LightId, l: SampledSpectrum) -> SampledSpectrum {
+        let l = path.throughput.estimate(l, &path.heroes);
         match &path.origin {
-            Some(Origin { context, .. }) if self.sample_lights => {
-                let pdf = self.lights.pmf(context, light)
+            Some(context) if self.sample_lights => {
+                let Throughput { r_u, r_l, .. } = path.throughput;
+                let pdf = self.in_vacuum.direct.lights().pmf(context, light)
                     * scene.light(light).pdf_li(context, path.ray.ray.d, true);
-                beta * l / path.heroes.mean(r_u + r_l * pdf)
+                l * power_heuristic(path.heroes.mean(r_u), path.heroes.mean(r_l) * pdf)
             }
-            _ => path.throughput.estimate(l, &path.heroes),
+            _ => l,
         }
     }
 
     /// The radiance of infinite lights along the ray of a path that leaves the scene.
-    fn escaped(&self, tracer: &mut Tracer, path: &Path, lambda: &SampledWavelengths) -> SampledSpectrum {
+    fn escaped(
+        &self,
+        tracer: &mut Tracer,
+        path: &PathInMedia,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
         let scene = tracer.scene;
         let lights = scene.infinite_lights().iter();
         let met = lights.map(|&id| {
@@ -139,11 +159,29 @@ impl VolPath {
         met.sum()
     }
 
+    /// The emission of a surface that a path has hit.
+    pub(crate) fn emitted(
+        &self,
+        tracer: &mut Tracer,
+        path: &PathInMedia,
+        surface: &SurfaceInteraction,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let Some(light) = surface.area_light else { return SampledSpectrum::ZERO };
+        let l = tracer.scene.emitted(surface, surface.surface.wo, lambda);
+        if l.is_black() {
+            return l;
+        }
+        let l = self.met(tracer.scene, path, light, l);
+        tracer.take_part(Some(light), &path.first, path.depth, l);
+        l
+    }
+
     /// Next-event estimation at a vertex.
     fn direct(
         &self,
         tracer: &mut Tracer,
-        path: &Path,
+        path: &PathInMedia,
         vertex: Vertex,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
@@ -152,12 +190,13 @@ impl VolPath {
         }
         let scene = tracer.scene;
         let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
+        let numbers = tracer.two_numbers();
         let context = match &vertex {
             Vertex::Surface(surface, bsdf) => light_context(surface, bsdf.flags()),
             Vertex::Medium(vertex) => vertex.context,
         };
         let black = SampledSpectrum::ZERO;
-        let Some((light, pmf)) = self.lights.sample(&context, u) else { return black };
+        let Some((light, pmf)) = self.in_vacuum.direct.lights().sample(&context, u) else { return black };
         let Some(sample) = scene.sample_light(light, &context, u_light, lambda, true) else { return black };
         let wi = sample.wi;
         let (f, pdf, medium) = match &vertex {
@@ -179,13 +218,13 @@ impl VolPath {
             Vertex::Surface(surface, _) => sample.shadow_ray(&surface.surface),
             Vertex::Medium(vertex) => vertex.shadow_ray(&sample),
         };
-        let Some(passage) = tracer.transmittance(&ray, t_max, medium, lambda, &path.heroes) else {
+        let Some(passage) = tracer.transmittance((&ray, t_max), medium, lambda, &path.heroes, numbers) else {
             return black;
         };
         let Throughput { beta, r_u, .. } = path.throughput;
-        let by_light = r_u * passage.r_l * (pmf * sample.pdf);
-        let by_scattering = if scene.light(light).is_delta() { black } else { r_u * passage.r_u * pdf };
-        let l = beta * l * passage.t / path.heroes.mean(by_light + by_scattering);
+        let p_l = pmf * sample.pdf;
+        let ratio = if scene.light(light).is_delta() { 0.0 } else { pdf / p_l };
+        let l = Arrival { l: beta * l / p_l, r_u, ratio }.through(&passage, &path.heroes);
         if tracer.takes_parts() {
             let first = match &vertex {
                 _ if path.depth > 1 => path.first,
@@ -197,12 +236,99 @@ impl VolPath {
         l
     }
 
+    /// Lets a path fly through its medium, up to `t_max`, where it may scatter; returns the light
+    /// on the way, that of paths of fewer than `min_depth` scattering events left out.
+    pub(crate) fn fly(
+        &self,
+        min_depth: u32,
+        tracer: &mut Tracer,
+        path: &mut PathInMedia,
+        t_max: f32,
+        lambda: &SampledWavelengths,
+    ) -> (SampledSpectrum, Fate) {
+        let mut l = SampledSpectrum::ZERO;
+        let Some(medium) = path.medium else { return (l, Fate::Passed) };
+        let flight = tracer.fly(medium, &path.ray.ray, t_max, lambda, &path.heroes, &mut path.throughput);
+        if path.depth >= min_depth {
+            l += flight.emitted;
+            tracer.take_part(None, &path.first, path.depth, flight.emitted);
+        }
+        let (p, phase) = match flight.end {
+            FlightEnd::Passed => return (l, Fate::Passed),
+            FlightEnd::Scattered { p, phase, .. } if path.depth < self.settings().max_depth => (p, phase),
+            FlightEnd::Scattered { .. } | FlightEnd::Absorbed => return (l, Fate::Ended),
+        };
+        path.depth += 1;
+        if path.depth == 1 {
+            path.first = FirstEvent::Volume;
+        }
+        let vertex = MediumVertex::new(p, &path.ray.ray, phase);
+        l += self.direct(tracer, path, Vertex::Medium(&vertex), lambda);
+        let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
+        path.leave(vertex.context.spawn_ray(wi).into(), pdf, Some(vertex.context));
+        (l, path.play(tracer.sampler))
+    }
+
+    /// Scatters a path at a surface that it has hit at distance `t`; returns the direct light.
+    pub(crate) fn scatter(
+        &self,
+        tracer: &mut Tracer,
+        path: &mut PathInMedia,
+        (mut surface, t): (SurfaceInteraction, f32),
+        lambda: &mut SampledWavelengths,
+    ) -> (SampledSpectrum, Fate) {
+        let mut l = SampledSpectrum::ZERO;
+        let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
+            path.medium = surface.medium_towards(path.ray.ray.d, path.medium);
+            path.ray = pass_through(&path.ray, &surface, t);
+            return (l, Fate::GoesOn);
+        };
+        if path.depth == self.settings().max_depth {
+            return (l, Fate::Ended);
+        }
+        path.depth += 1;
+        if lambda.secondary_terminated() {
+            path.throughput.keep_first(&mut path.heroes);
+        }
+        bsdf.bxdf.keep_boundary();
+        bsdf.regularize(self.settings().regularize && path.rough_before);
+        if bsdf.flags().is_non_specular() {
+            l += self.direct(tracer, path, Vertex::Surface(&surface, &bsdf), lambda);
+        }
+        let Some(Scattered { sample, pdf }) = Scattered::sample(&surface, &bsdf, tracer.sampler) else {
+            return (l, Fate::Ended);
+        };
+        path.throughput.beta *= throughput(&surface, &sample);
+        let body = entered(&bsdf, &surface, &sample);
+        if path.depth == 1 && tracer.takes_parts() {
+            path.first = match body {
+                Some(_) => DIFFUSE,
+                None => event_of(&bsdf, surface.surface.wo, &sample),
+            };
+        }
+        if let Some(body) = body {
+            let (left, goes_on) = self.under_surface(tracer, path, &surface, (body, &sample), lambda);
+            l += left;
+            if !goes_on {
+                return (l, Fate::Ended);
+            }
+        } else {
+            if sample.flags.is_transmissive() {
+                path.eta_scale *= sample.eta * sample.eta;
+            }
+            let context = (!sample.flags.is_specular()).then(|| light_context(&surface, bsdf.flags()));
+            path.medium = surface.medium_towards(sample.wi, path.medium);
+            path.leave(surface.spawn_scattered(&path.ray, &sample), pdf, context);
+        }
+        (l, path.play(tracer.sampler))
+    }
+
     /// Leads a path that enters a body at `entry`, from the side of its medium, out of it again;
     /// returns the direct light where it leaves, and whether it goes on.
     fn under_surface(
         &self,
         tracer: &mut Tracer,
-        path: &mut Path,
+        path: &mut PathInMedia,
         entry: &SurfaceInteraction,
         (body, sample): (Body, &BsdfSample),
         lambda: &SampledWavelengths,
@@ -233,96 +359,28 @@ impl PathsFrom for VolPath {
         ray: RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
-        let scene = tracer.scene;
         let mut l = SampledSpectrum::ZERO;
         let heroes = Heroes::any(tracer.sampler.get_1d());
-        let mut path = Path::new(ray, tracer.view.medium, heroes);
+        let mut path = PathInMedia::new(ray, tracer.view.medium, heroes);
         loop {
             let hit = tracer.intersect(&path.ray.ray);
-            if let Some(id) = path.medium {
-                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
-                let flight = tracer.fly(id, &path.ray.ray, t_max, lambda, &path.heroes, &mut path.throughput);
-                if path.depth >= min_depth {
-                    l += flight.emitted;
-                    tracer.take_part(None, &path.first, path.depth, flight.emitted);
-                }
-                match flight.end {
-                    FlightEnd::Passed => (),
-                    FlightEnd::Absorbed => return l,
-                    FlightEnd::Scattered { p, phase, .. } => {
-                        if path.depth == self.settings.max_depth {
-                            return l;
-                        }
-                        path.depth += 1;
-                        if path.depth == 1 {
-                            path.first = FirstEvent::Volume;
-                        }
-                        let vertex = MediumVertex::new(p, &path.ray.ray, phase);
-                        l += self.direct(tracer, &path, Vertex::Medium(&vertex), lambda);
-                        let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
-                        path.leave(vertex.context.spawn_ray(wi).into(), pdf, Some(vertex.context));
-                        if !path.survives(tracer.sampler) {
-                            return l;
-                        }
-                        continue;
-                    }
-                }
+            let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+            let (light, fate) = self.fly(min_depth, tracer, &mut path, t_max, lambda);
+            l += light;
+            match fate {
+                Fate::Passed => (),
+                Fate::GoesOn => continue,
+                Fate::Ended => return l,
             }
-            let Some((mut surface, t)) = hit else {
+            let Some((surface, t)) = hit else {
                 return if path.depth >= min_depth { l + self.escaped(tracer, &path, lambda) } else { l };
             };
-            if let Some(light) = surface.area_light.filter(|_| path.depth >= min_depth) {
-                let emitted = scene.emitted(&surface, surface.surface.wo, lambda);
-                if !emitted.is_black() {
-                    let emitted = self.met(scene, &path, light, emitted);
-                    tracer.take_part(Some(light), &path.first, path.depth, emitted);
-                    l += emitted;
-                }
+            if path.depth >= min_depth {
+                l += self.emitted(tracer, &path, &surface, lambda);
             }
-            let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
-                path.medium = surface.medium_towards(path.ray.ray.d, path.medium);
-                path.ray = pass_through(&path.ray, &surface, t);
-                continue;
-            };
-            if path.depth == self.settings.max_depth {
-                return l;
-            }
-            path.depth += 1;
-            if lambda.secondary_terminated() {
-                path.throughput.keep_first(&mut path.heroes);
-            }
-            bsdf.bxdf.keep_boundary();
-            bsdf.regularize(self.settings.regularize && path.rough_before);
-            if bsdf.flags().is_non_specular() {
-                l += self.direct(tracer, &path, Vertex::Surface(&surface, &bsdf), lambda);
-            }
-            let Some(Scattered { sample, pdf }) = Scattered::sample(&surface, &bsdf, tracer.sampler) else {
-                return l;
-            };
-            path.throughput.beta *= throughput(&surface, &sample);
-            let body = entered(&bsdf, &surface, &sample);
-            if path.depth == 1 && tracer.takes_parts() {
-                path.first = match body {
-                    Some(_) => DIFFUSE,
-                    None => event_of(&bsdf, surface.surface.wo, &sample),
-                };
-            }
-            if let Some(body) = body {
-                let (left, goes_on) =
-                    self.under_surface(tracer, &mut path, &surface, (body, &sample), lambda);
-                l += left;
-                if !goes_on {
-                    return l;
-                }
-            } else {
-                if sample.flags.is_transmissive() {
-                    path.eta_scale *= sample.eta * sample.eta;
-                }
-                let context = (!sample.flags.is_specular()).then(|| light_context(&surface, bsdf.flags()));
-                path.medium = surface.medium_towards(sample.wi, path.medium);
-                path.leave(surface.spawn_scattered(&path.ray, &sample), pdf, context);
-            }
-            if !path.survives(tracer.sampler) {
+            let (light, fate) = self.scatter(tracer, &mut path, (surface, t), lambda);
+            l += light;
+            if fate == Fate::Ended {
                 return l;
             }
         }
@@ -330,12 +388,8 @@ impl PathsFrom for VolPath {
 }
 
 impl RayIntegrator for VolPath {
-    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        if self.sample_lights {
-            let lights = scene.light_sampler(self.settings.light_sampler, &control.cancel);
-            self.lights = lights.ok_or(Cancelled)?;
-        }
-        Ok(())
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        if self.sample_lights { self.in_vacuum.prepare(scene, view, control) } else { Ok(()) }
     }
 
     fn li(

@@ -18,7 +18,7 @@ use super::materials::Shading;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
-use super::segments::Segments;
+use super::segments::{Besides, Segments};
 use super::shade::{AtVertices, Shade};
 use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
@@ -53,7 +53,7 @@ pub(super) struct BatchColumns {
     left: Vec<u32>,
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
-    occluded: Vec<bool>,
+    pub occluded: Vec<bool>,
     light_samples: Samples,
 }
 
@@ -72,20 +72,20 @@ impl<'a> Batch<'a> {
     }
 
     /// Starts a path for each pixel, whose camera ray may have differentials.
-    pub(super) fn begin(&mut self, tiles: &[FilmTile], with_differentials: bool) {
+    pub(super) fn begin(&mut self, tiles: &[FilmTile], besides: Besides) {
         let instruction_set = self.pass.instruction_set;
         let with_weights = !self.pass.pixels.view.camera.is_unweighted();
         let Self { pass, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
-        paths.start(tiles.iter().map(FilmTile::bounds), with_weights);
-        segments.start_from_camera(paths.len(), with_differentials);
-        queues.next.start(paths.len(), with_differentials);
-        instruction_set.dispatch(Begin { pass: *pass, paths, segments, with_differentials });
+        paths.start(tiles.iter().map(FilmTile::bounds), with_weights, besides.media);
+        segments.start_from_camera(paths.len(), besides, pass.pixels.view.medium);
+        queues.next.start(paths.len(), besides);
+        instruction_set.dispatch(Begin { pass: *pass, paths, segments, besides });
         queues.waiting.clear();
         if with_weights {
             // Rays that the camera's lens blocks are not traced.
             for row in 0..paths.len() {
                 if paths.camera_weight[row] > 0.0 {
-                    queues.next.push(row as u32, &segments.state(row));
+                    queues.next.push_from(segments, row);
                 }
             }
             self.go_on();
@@ -222,6 +222,7 @@ impl<'a> Batch<'a> {
             material,
             with_footprint,
             points: &self.columns.points,
+            geometries: &self.columns.hits.geometry,
             turns,
             rows,
             segments: &self.columns.segments,
@@ -305,6 +306,9 @@ impl<'a> Batch<'a> {
                 }
             }
             queue.clear();
+        }
+        if !self.columns.queues.passages.shadows.paths.is_empty() {
+            self.connect_through_media();
         }
     }
 

@@ -4,10 +4,10 @@ use lanes::{Int, Kernel, Real};
 use sampling::sampler::Address;
 use scene::camera::differential_scale;
 
-use super::numbers::CameraNumbers;
+use super::numbers::{CameraNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
-use super::segments::{Segments, numbers_of};
+use super::segments::{Besides, Segments, numbers_of};
 use crate::transport::shutter_sample::ShutterSample;
 
 /// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
@@ -15,7 +15,7 @@ pub(super) struct Begin<'a, 'b> {
     pub pass: Pass<'a>,
     pub paths: &'b mut Paths,
     pub segments: &'b mut Segments,
-    pub with_differentials: bool,
+    pub besides: Besides,
 }
 
 impl Kernel for Begin<'_, '_> {
@@ -41,11 +41,14 @@ impl Begin<'_, '_> {
         let time = ShutterSample::shutter(pixels.view, numbers.time);
         let sample = pixels.camera_sample(pixel, numbers.place, time, numbers.lens);
         let (paths, segments) = (&mut *self.paths, &mut *self.segments);
+        if self.besides.media {
+            paths.choose_heroes(first, draw_1d::<R>(&self.pass, &mut address));
+        }
         address.dimension.store(&mut paths.dimension[first..]);
         sample.filter_weight.store(&mut paths.filter_weight[first..]);
         paths.set_wavelengths(first, &lambda);
         let camera = &pixels.view.camera;
-        let (ray, weight) = if self.with_differentials {
+        let (ray, weight) = if self.besides.differentials {
             let (ray, mut differentials, weight) = camera.ray_and_neighbours(&sample);
             differentials.scale(&ray, R::splat(differential_scale(pixels.view.samples_per_pixel)));
             segments.differentials.store(first, numbers_of(&differentials));

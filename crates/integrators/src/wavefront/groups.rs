@@ -1,5 +1,6 @@
 //! Hits grouped by material.
 
+use geometry::HitColumns;
 use lanes::{Int, Kernel, Mask, Real};
 use scene::material::MaterialId;
 
@@ -78,6 +79,11 @@ pub(super) struct Grouping<'a> {
     pub left: &'a mut Vec<u32>,
 }
 
+impl Grouping<'_> {
+    /// In place of a geometry, for paths that are not at their hits any more.
+    pub const GONE: u32 = HitColumns::NONE - 1;
+}
+
 impl Kernel for Grouping<'_> {
     type Output = ();
 
@@ -87,6 +93,7 @@ impl Kernel for Grouping<'_> {
         let lanes = R::Int::from_fn(|lane| lane as u32);
         for first in (0..geometries.len()).step_by(R::LANES) {
             let Rows { indices: geometry, active } = Rows::<R>::first(&geometries[first..]);
+            let active = active & !geometry.eq(R::Int::splat(Self::GONE));
             let rows = Rows::<R>::first(&segments.rows[first..]);
             let turns = lanes.wrapping_add(R::Int::splat(first as u32));
             let material = materials.of_geometries::<R>(geometry);

@@ -27,6 +27,7 @@ mod finish;
 mod groups;
 mod lights;
 mod materials;
+mod media;
 mod numbers;
 mod pass;
 mod path;
@@ -36,6 +37,7 @@ mod ray_casting;
 mod segments;
 mod shade;
 mod spectra;
+mod vol_path;
 mod whitted;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -50,7 +52,9 @@ use scene::{Scene, View};
 use self::area_lights::AreaLights;
 use self::batch::{Batch, BatchColumns};
 use self::materials::LaneMaterials;
+use self::media::LaneMedia;
 use self::pass::Pass;
+use self::segments::Besides;
 use crate::camera_paths::record;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError, RayIntegrator, Record};
@@ -66,6 +70,9 @@ pub trait WaveIntegrator: RayIntegrator {
     /// Whether it reads textures, for which camera rays have differentials.
     const READS_TEXTURES: bool = true;
 
+    /// Whether it knows media.
+    const KNOWS_MEDIA: bool = false;
+
     /// Continues each active path from its hit: adds light, asks for shadow rays, and gives the
     /// paths that go on their next rays.
     fn shade(&self, batch: &mut Batch);
@@ -76,6 +83,7 @@ pub struct Wavefront<A> {
     algorithm: A,
     sampler: Sampler,
     materials: LaneMaterials,
+    media: LaneMedia,
     area_lights: AreaLights,
     instruction_set: InstructionSet,
     /// The columns of batches that have ended.
@@ -89,6 +97,7 @@ impl<A: WaveIntegrator> Wavefront<A> {
             algorithm,
             sampler,
             materials: LaneMaterials::default(),
+            media: LaneMedia::default(),
             area_lights: AreaLights::default(),
             instruction_set: InstructionSet::detect(),
             spare: Mutex::default(),
@@ -108,7 +117,8 @@ impl<A: WaveIntegrator> Wavefront<A> {
     fn trace(&self, batch: &mut Batch, mut tiles: Vec<FilmTile>) -> Result<(), Cancelled> {
         let control = batch.pass.control;
         let PixelSamples { scene, view, .. } = batch.pass.pixels;
-        batch.begin(&tiles, A::READS_TEXTURES && scene.needs_footprints(view));
+        let with_differentials = A::READS_TEXTURES && scene.needs_footprints(view);
+        batch.begin(&tiles, Besides { differentials: with_differentials, media: A::KNOWS_MEDIA });
         while !batch.columns.segments.rows.is_empty() {
             control.check()?;
             batch.extend();
@@ -117,6 +127,7 @@ impl<A: WaveIntegrator> Wavefront<A> {
             control.check()?;
             batch.connect();
         }
+        control.check()?;
         batch.finish(&mut tiles)
     }
 }
@@ -129,6 +140,7 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.algorithm.prepare(scene, view, control)?;
         self.materials = LaneMaterials::new(scene, view);
+        self.media = LaneMedia::new(scene);
         self.area_lights = AreaLights::new(scene);
         Ok(())
     }
@@ -148,6 +160,7 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
         let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
         let pass = Pass {
             materials: &self.materials,
+            media: &self.media,
             area_lights: &self.area_lights,
             pixels: &pixels,
             control,

@@ -35,9 +35,11 @@ impl<R: Real> CameraNumbers<R> {
 }
 
 /// The numbers of a vertex, one for each lane.
-pub(super) struct VertexNumbers<R> {
+pub(super) struct VertexNumbers<R: Real> {
     /// Of a sample of a light; any numbers where there is none.
     pub light: (R, Vec2<R>),
+    /// The dimension of the numbers of a shadow ray in media, the first of two.
+    pub passage: R::Int,
     /// Of a sample of the BSDF.
     pub bsdf: (R, Vec2<R>),
 }
@@ -45,12 +47,22 @@ pub(super) struct VertexNumbers<R> {
 impl<R: Real> VertexNumbers<R> {
     /// The next coordinates of each lane; only some lanes sample a light.
     #[inline(always)]
-    pub fn draw(pass: &Pass, address: &mut Address<R::Int>, samples_light: R::Mask) -> Self {
+    pub fn draw(
+        pass: &Pass,
+        address: &mut Address<R::Int>,
+        samples_light: R::Mask,
+        with_media: bool,
+    ) -> Self {
         let mut draw = Draw::new(pass, address);
         let mut before = *address;
+        let mut passage = address.dimension;
         if samples_light.any() {
             draw.push(Coordinates::One, address);
             draw.push(Coordinates::Two, address);
+            passage = address.dimension;
+            if with_media {
+                address.skip(2);
+            }
             before.dimension = R::Int::select(samples_light, address.dimension, before.dimension);
             *address = before;
         }
@@ -58,7 +70,7 @@ impl<R: Real> VertexNumbers<R> {
         draw.push(Coordinates::One, address);
         draw.push(Coordinates::Two, address);
         let u = draw.numbers(pass);
-        Self { light: (u.one(0), u.two(1)), bsdf: (u.one(first), u.two(first + 1)) }
+        Self { light: (u.one(0), u.two(1)), passage, bsdf: (u.one(first), u.two(first + 1)) }
     }
 }
 

@@ -4,6 +4,7 @@ use lanes::InstructionSet;
 
 use super::area_lights::AreaLights;
 use super::materials::LaneMaterials;
+use super::media::LaneMedia;
 use crate::Control;
 use crate::transport::pixel_samples::PixelSamples;
 
@@ -11,6 +12,7 @@ use crate::transport::pixel_samples::PixelSamples;
 #[derive(Clone, Copy)]
 pub(super) struct Pass<'a> {
     pub materials: &'a LaneMaterials,
+    pub media: &'a LaneMedia,
     pub area_lights: &'a AreaLights,
     pub pixels: &'a PixelSamples<'a>,
     pub control: &'a Control,

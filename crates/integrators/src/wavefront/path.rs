@@ -11,14 +11,16 @@ use scene::material::MaterialModel;
 use super::WaveIntegrator;
 use super::batch::{Batch, BatchColumns, Vertex};
 use super::lights::{self, LightLanes};
+use super::media::{PassageLanes, VerticesInMedia};
 use super::numbers::{VertexNumbers, draw_1d};
 use super::queues::Shadow;
 use super::segments::Segment;
 use super::shade::{AtVertices, Shade, Vertices};
-use crate::Path;
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
 use crate::transport::roulette::{self, CERTAIN};
+use crate::transport::subsurface::entered;
+use crate::{Path, Tracer};
 
 impl WaveIntegrator for Path {
     fn shade(&self, batch: &mut Batch) {
@@ -36,9 +38,10 @@ impl Path {
         if state.depth == self.settings.max_depth {
             return;
         }
-        let Batch { pass, sampler, columns: BatchColumns { paths, queues, .. }, .. } = batch;
+        let Batch { pass, sampler, stats, columns: BatchColumns { paths, queues, .. } } = batch;
         let (scene, path, row) = (pass.pixels.scene, place.0, place.0 as usize);
         state.depth += 1;
+        bsdf.bxdf.keep_boundary();
         bsdf.regularize(self.settings.regularize && paths.rough_before[row]);
         let context = light_context(&surface, bsdf.flags());
         let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
@@ -54,7 +57,19 @@ impl Path {
         });
         let Some(scattered) = scattered else { return };
         paths.rough_before[row] |= !scattered.sample.flags.is_specular();
-        state.scatter(&surface, context, &scattered);
+        if let Some(body) = entered(&bsdf, &surface, &scattered.sample) {
+            let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
+            let entry = (&surface, context);
+            let Some(exit) = state.go_under(&mut tracer, entry, (body, &scattered), &lambda) else { return };
+            let (l, goes_on) = self.leave_body(&mut tracer, &mut state, &exit, &lambda);
+            paths.add_light(row, l);
+            if !goes_on {
+                return;
+            }
+            paths.rough_before[row] = true;
+        } else {
+            state.scatter(&surface, context, &scattered);
+        }
         if state.survives(sampler) {
             paths.dimension[row] = sampler.dimension();
             queues.next.push(path, &state);
@@ -76,9 +91,13 @@ impl AtVertices for Path {
         contexts: &LightSampleContext<R>,
     ) {
         let samples_light = bsdf.flags().is_non_specular();
-        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light);
-        shade.connect(&vertices, bsdf, contexts, numbers.light, samples_light);
-        shade.scatter(&vertices, bsdf, contexts, numbers.bsdf);
+        let media = shade.segments.media.as_ref().map(|columns| {
+            let place = (vertices.turns, shade.geometries);
+            VerticesInMedia::new(shade.pass.media, columns, place, vertices.lambda.secondary_terminated())
+        });
+        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light, media.is_some());
+        shade.connect((&vertices, media.as_ref()), bsdf, contexts, &numbers, samples_light);
+        shade.scatter((&vertices, media.as_ref()), bsdf, contexts, numbers.bsdf);
     }
 }
 
@@ -87,10 +106,10 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
     #[inline(always)]
     fn connect<R: Real, B: Scatter<R>>(
         &mut self,
-        vertices: &Vertices<R>,
+        (vertices, media): (&Vertices<R>, Option<&VerticesInMedia<R>>),
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
-        u: (R, Vec2<R>),
+        numbers: &VertexNumbers<R>,
         is_non_specular: R::Mask,
     ) {
         let samples = vertices.active & is_non_specular;
@@ -98,16 +117,29 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
             return;
         }
         let sampling = (&self.pass, &self.algorithm.direct, &mut *self.light_samples);
-        let light = lights::sample(sampling, None, contexts, u, &vertices.lambda, samples);
+        let light = lights::sample(sampling, None, contexts, numbers.light, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let f = bsdf.f(wo, wi, TransportMode::Radiance);
         let scattered = f * l * wi.dot(ns).abs();
         let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
-        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
-        let l = vertices.beta * (scattered * (weight / pdf));
         let lit = valid & !scattered.is_black();
         let (ray, t_max) = light.shadow_rays(p, n, time);
+        if let Some(media) = media {
+            // The weight depends on what the rays pass.
+            let shadow = Shadow { l: vertices.beta * scattered / pdf, ray, t_max };
+            let passage = PassageLanes {
+                r_u: media.r_u,
+                ratio: R::select(light.is_delta, R::zero(), p_b / pdf),
+                medium: media.towards(wi, n),
+                dimension: numbers.passage,
+            };
+            self.queues.passages.shadows.append(vertices.rows, lit, &shadow);
+            self.queues.passages.append(lit, &passage);
+            return;
+        }
+        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
+        let l = vertices.beta * (scattered * (weight / pdf));
         let shadow = Shadow { l, ray, t_max };
         let [stopped, passing] = &mut self.queues.shadows;
         stopped.append(vertices.rows, lit & !light.passes, &shadow);
@@ -118,7 +150,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
     #[inline(always)]
     fn scatter<R: Real, B: Scatter<R>>(
         &mut self,
-        vertices: &Vertices<R>,
+        (vertices, media): (&Vertices<R>, Option<&VerticesInMedia<R>>),
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
         (uc, u): (R, Vec2<R>),
@@ -164,6 +196,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
             depth: depth.wrapping_add(one),
             vertex: *contexts,
             pdf: R::select(is_specular, R::zero(), pdf),
+            media: media.map(|media| media.leave((wi, n), pdf)),
         };
         self.queues.next.append(rows.indices, survives, &segment);
     }

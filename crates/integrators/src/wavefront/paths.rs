@@ -4,10 +4,11 @@ use lanes::{Int, MAX_LANES, Real};
 use math::Bounds2i;
 use sampling::Sampler;
 use sampling::sampler::Address;
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::columns::{Column, Rows, fill, grow};
 use super::spectra::Spectra;
+use crate::transport::media::Heroes;
 
 /// What the paths of a batch have from their start to their end; a path is a row. Columns are
 /// longer, so that a vector can begin at any row.
@@ -29,6 +30,8 @@ pub(super) struct Paths {
     pub l: Spectra,
     /// Whether a rough surface scattered it before.
     pub rough_before: Vec<bool>,
+    /// The wavelengths that choose collisions with media, if there are any.
+    heroes: Vec<u32>,
 }
 
 impl Paths {
@@ -39,7 +42,7 @@ impl Paths {
 
     /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
     /// wavelengths and weights yet.
-    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_weights: bool) {
+    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_weights: bool, with_media: bool) {
         self.pixels.clear();
         for Bounds2i { min, max } in pixels {
             for y in min[1]..max[1] {
@@ -56,6 +59,7 @@ impl Paths {
         self.wavelengths.iter_mut().for_each(|numbers| numbers.grow(rows));
         self.l.fill(rows, 0.0);
         fill(&mut self.rough_before, rows, false);
+        self.heroes.resize(if with_media { rows } else { 0 }, 0);
     }
 
     /// The next address of the sampler of each path, at the sample of an index.
@@ -117,6 +121,22 @@ impl Paths {
         let [lambda, pdf] = &mut self.wavelengths;
         lambda.set_row(row, SampledSpectrum(*wavelengths.lambda()));
         pdf.set_row(row, wavelengths.pdf());
+    }
+
+    /// Chooses the heroes of successive paths.
+    #[inline(always)]
+    pub fn choose_heroes<R: Real>(&mut self, first: usize, u: R) {
+        let number = (u * R::splat(N as f32)).min(R::splat((N - 1) as f32));
+        number.to_int().store(&mut self.heroes[first..]);
+    }
+
+    /// The wavelengths of a path that choose collisions with media.
+    pub fn heroes(&self, row: usize) -> Heroes {
+        if self.lambda(row).secondary_terminated() {
+            Heroes::first()
+        } else {
+            Heroes::any_as(self.heroes[row] as usize)
+        }
     }
 
     /// Adds light to a path.

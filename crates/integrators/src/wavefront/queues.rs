@@ -6,6 +6,7 @@ use math::Ray;
 use spectrum::SampledSpectrum;
 
 use super::columns::Rows;
+use super::media::Passages;
 use super::segments::Segments;
 use super::spectra::Spectra;
 use crate::transport::path_state::PathState;
@@ -19,6 +20,8 @@ pub(super) struct Queues {
     pub scalar: Vec<(u32, u32)>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.
     pub shadows: [ShadowRays; 2],
+    /// Those of scenes with media.
+    pub passages: Passages,
     /// Rays that wait until their path has no other, the last first; one stack for each path.
     pub waiting: Vec<Vec<PathState>>,
 }

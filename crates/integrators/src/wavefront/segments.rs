@@ -9,9 +9,11 @@ use geometry::RayColumns;
 use lanes::{Int, MAX_LANES, Real};
 use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
+use scene::medium::MediumId;
 use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Columns, Rows, fill, grow};
+use super::media::{MediaColumns, SegmentInMedia};
 use super::spectra::Spectra;
 use crate::transport::path_state::{Origin, PathState};
 
@@ -41,6 +43,15 @@ pub(super) struct Segments {
     pub vertex: [Columns<3>; 4],
     /// The density of the ray's direction at that vertex; 0 after specular scattering.
     pub pdf: Column,
+    /// Where there are media.
+    pub media: Option<MediaColumns>,
+}
+
+/// What paths of an algorithm have besides what all have.
+#[derive(Clone, Copy)]
+pub(super) struct Besides {
+    pub differentials: bool,
+    pub media: bool,
 }
 
 /// Segments in lanes, without differentials.
@@ -51,11 +62,12 @@ pub(super) struct Segment<R: Real> {
     pub depth: R::Int,
     pub vertex: LightSampleContext<R>,
     pub pdf: R,
+    pub media: Option<SegmentInMedia<R>>,
 }
 
 impl Segments {
     /// Makes room for as many paths, and has none.
-    pub fn start(&mut self, count: usize, with_differentials: bool) {
+    pub fn start(&mut self, count: usize, besides: Besides) {
         let len = count + MAX_LANES;
         self.rows.clear();
         [&mut self.time, &mut self.eta_scale, &mut self.pdf].into_iter().for_each(|column| grow(column, len));
@@ -63,19 +75,23 @@ impl Segments {
         self.vertex.iter_mut().for_each(|columns| columns.grow(len));
         self.beta.grow(len);
         self.depth.resize(len, 0);
-        fill(&mut self.are_differentials, if with_differentials { len } else { 0 }, 0);
+        fill(&mut self.are_differentials, if besides.differentials { len } else { 0 }, 0);
         self.differentials.grow(self.are_differentials.len());
+        if besides.media {
+            self.media.get_or_insert_default().grow(len);
+        }
     }
 
     /// Has one camera ray for each row below `count`, which has no numbers yet, and is not
     /// scattered.
-    pub fn start_from_camera(&mut self, count: usize, with_differentials: bool) {
-        self.start(count, with_differentials);
+    pub fn start_from_camera(&mut self, count: usize, besides: Besides, medium: Option<MediumId>) {
+        self.start(count, besides);
         self.rows.extend(0..count as u32);
         self.beta.fill(count + MAX_LANES, 1.0);
         fill(&mut self.eta_scale, count + MAX_LANES, 1.0);
         fill(&mut self.depth, count + MAX_LANES, 0);
         fill(&mut self.pdf, count + MAX_LANES, 0.0);
+        self.media.iter_mut().for_each(|media| media.begin_in(medium));
     }
 
     /// Whether a path has ray differentials.
@@ -140,11 +156,20 @@ impl Segments {
         }
     }
 
+    /// Appends a path of others.
+    pub fn push_from(&mut self, others: &Self, from: usize) {
+        let turn = self.rows.len();
+        self.push(others.rows[from], &others.state(from));
+        if let (Some(media), Some(others)) = (&mut self.media, &others.media) {
+            media.copy(turn, others, from);
+        }
+    }
+
     /// Appends the paths of a mask's lanes, which have no differentials.
     #[inline(always)]
     pub fn append<R: Real>(&mut self, rows: R::Int, mask: R::Mask, segment: &Segment<R>) {
         let turn = self.rows.len();
-        let Segment { ray, beta, eta_scale, depth, vertex, pdf } = segment;
+        let Segment { ray, beta, eta_scale, depth, vertex, pdf, media } = segment;
         self.origin.compress(turn, mask, ray.o.to_array());
         self.direction.compress(turn, mask, ray.d.to_array());
         self.beta.compress(turn, mask, *beta);
@@ -158,6 +183,9 @@ impl Segments {
         depth.compress(mask, &mut self.depth[turn..]);
         if !self.are_differentials.is_empty() {
             R::Int::splat(0).store(&mut self.are_differentials[turn..]);
+        }
+        if let (Some(columns), Some(media)) = (&mut self.media, media) {
+            columns.compress(turn, mask, media);
         }
         rows.append(mask, &mut self.rows);
     }

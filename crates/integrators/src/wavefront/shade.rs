@@ -43,6 +43,8 @@ pub(super) struct Shade<'a, 'b, M, A> {
     pub with_footprint: bool,
     /// Their surface points.
     pub points: &'b PointColumns,
+    /// The geometries of all hits.
+    pub geometries: &'b [u32],
     /// Indices of hits, and their paths.
     pub turns: &'b [u32],
     pub rows: &'b [u32],

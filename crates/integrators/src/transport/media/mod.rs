@@ -21,13 +21,16 @@
 //! Shadow rays estimate their transmittance: exactly in homogeneous media, and in others by ratio
 //! tracking, the product of σ_n/σ_maj = 1 − σ_t/σ_maj over all tentative collisions.
 
+mod arrival;
 mod flight;
 mod passage;
 #[cfg(test)]
 mod tests;
 mod throughput;
 
+pub(crate) use arrival::Arrival;
 pub(crate) use flight::FlightEnd;
+pub(crate) use passage::Passage;
 pub(crate) use throughput::{Heroes, Throughput};
 
 use lanes::exp;
@@ -37,12 +40,21 @@ use spectrum::SampledSpectrum;
 use super::Tracer;
 
 impl Tracer<'_> {
-    /// The random numbers of a flight or shadow ray: the first is a coordinate of the sample, the
-    /// others follow from it.
+    /// The random numbers of a flight.
     pub(super) fn collisions(&mut self) -> (f32, Rng) {
-        let (first, seed) = (self.sampler.get_1d(), self.sampler.get_1d());
-        (first, Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])))
+        collisions(self.two_numbers())
     }
+
+    /// The coordinates of the sample that a flight or shadow ray takes.
+    pub(crate) fn two_numbers(&mut self) -> [f32; 2] {
+        [self.sampler.get_1d(), self.sampler.get_1d()]
+    }
+}
+
+/// The random numbers of a flight or shadow ray: the first is a coordinate of the sample, the
+/// others follow from two of them.
+fn collisions([first, seed]: [f32; 2]) -> (f32, Rng) {
+    (first, Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])))
 }
 
 /// exp(−σ·d).

@@ -1,12 +1,12 @@
 //! The transmittance of shadow rays.
 
 use math::Ray;
-use sampling::warp;
+use sampling::{Rng, warp};
 use scene::Interfaces;
 use scene::medium::{Medium, MediumId};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Heroes, attenuation};
+use super::{Heroes, attenuation, collisions};
 use crate::transport::{Step, Tracer};
 
 /// The transmittance below which ratio tracking ends at random.
@@ -25,7 +25,7 @@ pub(crate) struct Passage {
 
 impl Passage {
     /// Through nothing.
-    const CLEAR: Self =
+    pub const CLEAR: Self =
         Self { t: SampledSpectrum::ONE, r_u: SampledSpectrum::ONE, r_l: SampledSpectrum::ONE };
 
     /// The transmittance, weighted over the wavelengths that could have chosen the collisions.
@@ -44,34 +44,54 @@ impl Passage {
 
 impl Tracer<'_> {
     /// The transmittance of a ray that leaves `medium` along 0 < t < `t_max`, through all media and
-    /// interfaces; `None` if a surface occludes it.
+    /// interfaces; `None` if a surface occludes it. `numbers` are two coordinates of the sample.
     pub(crate) fn transmittance(
         &mut self,
-        ray: &Ray,
-        t_max: f32,
+        (ray, t_max): (&Ray, f32),
         medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
+        numbers: [f32; 2],
     ) -> Option<Passage> {
         if self.scene.media().is_empty() {
             let is_clear = !self.occluded(ray, t_max, Interfaces::Pass);
             return is_clear.then_some(Passage::CLEAR);
         }
-        let passage = self.passage(ray, t_max, medium, lambda, heroes);
+        let passage = self.passage((ray, t_max), medium, lambda, heroes, numbers);
         self.take_step(|_| Step::Shadow { ray: *ray, t_max, is_clear: passage.is_some() });
         passage
+    }
+
+    /// [`transmittance`](Self::transmittance) of a ray that meets neither surfaces nor interfaces.
+    pub(crate) fn transmittance_within(
+        &mut self,
+        (ray, t_max): (&Ray, f32),
+        medium: Option<MediumId>,
+        lambda: &SampledWavelengths,
+        heroes: &Heroes,
+        numbers: [f32; 2],
+    ) -> Option<Passage> {
+        let mut passage = Passage::CLEAR;
+        if let Some(medium) = medium {
+            let scale = ray.d.length();
+            let part = (&Ray { d: ray.d / scale, ..*ray }, t_max * scale);
+            let medium = &self.scene.media()[medium.0 as usize];
+            self.attenuate(medium, part, lambda, heroes, &mut collisions(numbers), &mut passage)?;
+        }
+        Some(passage)
     }
 
     /// [`transmittance`](Self::transmittance) in a scene with media.
     fn passage(
         &mut self,
-        ray: &Ray,
-        t_max: f32,
+        (ray, t_max): (&Ray, f32),
         mut medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
+        numbers: [f32; 2],
     ) -> Option<Passage> {
         let mut passage = Passage::CLEAR;
+        let mut collisions = collisions(numbers);
         let (mut ray, mut t_max) = (*ray, t_max);
         // The length of the direction, which is a difference of points for lights at a distance.
         let scale = ray.d.length();
@@ -87,7 +107,8 @@ impl Tracer<'_> {
             if let Some(medium) = medium {
                 let unit = Ray { d: ray.d / scale, ..ray };
                 let medium = &self.scene.media()[medium.0 as usize];
-                self.attenuate(medium, &unit, end * scale, lambda, heroes, &mut passage)?;
+                let part = (&unit, end * scale);
+                self.attenuate(medium, part, lambda, heroes, &mut collisions, &mut passage)?;
             }
             let Some(hit) = hit else { return Some(passage) };
             let surface = self.scene.interaction(&hit, self.scene.world().surface(&ray, &hit));
@@ -113,7 +134,8 @@ impl Tracer<'_> {
             return (!self.occluded(ray, t_max, Interfaces::Pass)).then_some(SampledSpectrum::ONE);
         }
         let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
-        let passage = self.transmittance(ray, t_max, medium, lambda, &heroes)?;
+        let numbers = self.two_numbers();
+        let passage = self.transmittance((ray, t_max), medium, lambda, &heroes, numbers)?;
         Some(passage.estimate(&heroes))
     }
 
@@ -128,9 +150,10 @@ impl Tracer<'_> {
         lambda: &SampledWavelengths,
     ) -> Option<SampledSpectrum> {
         let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
+        let mut collisions = collisions(self.two_numbers());
         let mut passage = Passage::CLEAR;
         let medium = &self.scene.media()[medium.0 as usize];
-        self.attenuate(medium, ray, t_max, lambda, &heroes, &mut passage)?;
+        self.attenuate(medium, (ray, t_max), lambda, &heroes, &mut collisions, &mut passage)?;
         Some(passage.estimate(&heroes))
     }
 
@@ -138,10 +161,10 @@ impl Tracer<'_> {
     fn attenuate(
         &mut self,
         medium: &Medium,
-        ray: &Ray,
-        t_max: f32,
+        (ray, t_max): (&Ray, f32),
         lambda: &SampledWavelengths,
         heroes: &Heroes,
+        (u, rng): &mut (f32, Rng),
         passage: &mut Passage,
     ) -> Option<()> {
         let hero = heroes.hero;
@@ -151,14 +174,16 @@ impl Tracer<'_> {
             passage.r_u *= passed;
             return (!passage.t.is_black()).then_some(());
         }
-        let (mut u, mut rng) = self.collisions();
         for segment in medium.majorants(ray, t_max, lambda) {
             let [mut t, end] = segment.t;
             let majorant = segment.majorant;
             loop {
-                let next =
-                    if majorant[hero] == 0.0 { end } else { t + warp::sample_exponential(u, majorant[hero]) };
-                u = rng.uniform_f32();
+                let next = if majorant[hero] == 0.0 {
+                    end
+                } else {
+                    t + warp::sample_exponential(*u, majorant[hero])
+                };
+                *u = rng.uniform_f32();
                 let passed = attenuation(majorant, next.min(end) - t);
                 let passed = passed / passed[hero];
                 if next >= end {

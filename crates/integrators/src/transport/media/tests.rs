@@ -205,7 +205,8 @@ fn shadow_rays_have_the_transmittance_of_the_ray() {
                 let heroes = heroes(tracer.sampler.get_1d());
                 // A direction that is not of unit length, as to points on lights.
                 let ray = Ray { d: ray().d * LENGTH, ..ray() };
-                let passage = tracer.transmittance(&ray, 1.0, Some(medium), &lambda, &heroes);
+                let numbers = tracer.two_numbers();
+                let passage = tracer.transmittance((&ray, 1.0), Some(medium), &lambda, &heroes, numbers);
                 [passage.map_or(SampledSpectrum::ZERO, |passage| passage.estimate(&heroes)) * beta]
             });
         }

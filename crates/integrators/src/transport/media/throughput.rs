@@ -58,7 +58,11 @@ pub(crate) struct Heroes {
 impl Heroes {
     /// Any of the four, chosen by `u`.
     pub fn any(u: f32) -> Self {
-        let hero = ((u * spectrum::N as f32) as usize).min(spectrum::N - 1);
+        Self::any_as(((u * spectrum::N as f32) as usize).min(spectrum::N - 1))
+    }
+
+    /// Any of the four, which is this one.
+    pub fn any_as(hero: usize) -> Self {
         Self { probabilities: SampledSpectrum::splat(1.0 / spectrum::N as f32), hero }
     }
 
