@@ -12,6 +12,7 @@ use description::{
     CoefficientsDesc, ColorSpaceDesc, GridDesc, Handle, MediumDesc, MediumKind as Desc, Origin, Stated,
     Substance, TemperatureDesc, VoxelsDesc,
 };
+use lanes::InstructionSet;
 use math::{Bounds3, DMat4, DVec3, Point3, Transform, Vec3};
 use scattering::HenyeyGreenstein;
 use spectrum::{RgbUnboundedSpectrum, Spectrum};
@@ -82,6 +83,7 @@ impl Compiler<'_> {
                     density: *density,
                     wispiness: *wispiness,
                     frequency: *frequency,
+                    instruction_set: InstructionSet::detect(),
                 }))
             }
             Desc::NanoVdb { .. } => MediumKind::NanoVdb(Box::new(self.nano_vdb(desc)?)),

@@ -7,6 +7,7 @@
 
 use super::{Coefficients, MajorantGrid, Majorants, MediumModel, MediumProperties, Placement};
 use crate::texture::noise;
+use lanes::{Each, InstructionSet, Kernel, MAX_LANES, Real};
 use math::{Bounds3, Point3, Ray, Vec3, Vector3};
 use spectrum::SampledWavelengths;
 
@@ -30,37 +31,71 @@ pub struct CloudMedium {
     pub wispiness: f32,
     /// Frequency of the noise.
     pub frequency: f32,
+    /// That which computes it; all give the same.
+    pub instruction_set: InstructionSet,
 }
 
-impl CloudMedium {
-    /// The density at a point of the medium's space.
-    fn density(&self, p: Point3) -> f32 {
-        let mut place = p * self.frequency;
-        if self.wispiness > 0.0 {
-            let (mut amount, mut frequency) = (0.05 * self.wispiness, 10.0);
+/// Computes the density of a cloud at a point of the medium's space. Noise takes most of the time of
+/// paths through clouds, so that lanes have its values at the points that are known at once.
+struct Density<'a> {
+    cloud: &'a CloudMedium,
+    p: Point3,
+}
+
+impl Kernel for Density<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> f32 {
+        let Self { cloud, p } = self;
+        let mut place = p * cloud.frequency;
+        if cloud.wispiness > 0.0 {
+            let (mut amount, mut frequency) = (0.05 * cloud.wispiness, 10.0);
             for _ in 0..2 {
-                place += gradient(place * frequency) * amount;
+                place += gradient::<R>(place * frequency) * amount;
                 amount *= 0.5;
                 frequency *= LACUNARITY;
             }
         }
-        let (mut sum, mut weight, mut frequency) = (0.0, 0.5, 1.0);
-        for _ in 0..5 {
-            sum += weight * noise(place * frequency);
-            weight *= 0.5;
+        let mut frequency = 1.0;
+        let octaves = noises::<R, 5>(std::array::from_fn(|_| {
+            let p = place * frequency;
             frequency *= LACUNARITY;
+            p
+        }));
+        let (mut sum, mut weight) = (0.0, 0.5);
+        for octave in octaves {
+            sum += weight * octave;
+            weight *= 0.5;
         }
-        let shape = ((1.0 - p.y) * 4.5 * self.density * sum).clamp(0.0, 1.0);
+        let shape = ((1.0 - p.y) * 4.5 * cloud.density * sum).clamp(0.0, 1.0);
         (shape + 2.0 * (0.5 - p.y).max(0.0)).clamp(0.0, 1.0)
     }
 }
 
 /// The gradient of the noise, by forward differences.
-fn gradient(p: Point3) -> Vector3 {
+#[inline(always)]
+fn gradient<R: Real>(p: Point3) -> Vector3 {
     const STEP: f32 = 0.01;
-    let here = noise(p);
-    let there = |axis: Vec3| noise(p + axis * STEP);
-    (Vec3::new(there(Vec3::X), there(Vec3::Y), there(Vec3::Z)) - Vec3::splat(here)) / STEP
+    let at = |axis: Vec3| p + axis * STEP;
+    let [here, x, y, z] = noises::<R, 4>([p, at(Vec3::X), at(Vec3::Y), at(Vec3::Z)]);
+    (Vec3::new(x, y, z) - Vec3::splat(here)) / STEP
+}
+
+/// The noise at `K` points.
+#[inline(always)]
+fn noises<R: Real, const K: usize>(points: [Point3; K]) -> [f32; K] {
+    const { assert!(K <= MAX_LANES / 2) };
+    let mut columns = [[0.0; MAX_LANES]; 3];
+    for (i, p) in points.iter().enumerate() {
+        columns.iter_mut().zip(p.to_array()).for_each(|(column, x)| column[i] = x);
+    }
+    let mut values = [0.0; MAX_LANES];
+    for first in (0..K).step_by(R::LANES) {
+        let [x, y, z] = columns.each(|column| R::load(&column[first..]));
+        noise(Vec3::new(x, y, z)).store(&mut values[first..]);
+    }
+    std::array::from_fn(|i| values[i])
 }
 
 impl MediumModel for CloudMedium {
@@ -75,7 +110,8 @@ impl MediumModel for CloudMedium {
     fn at(&self, p: Point3, lambda: &SampledWavelengths) -> MediumProperties {
         let Some(p) = self.placement.point(p) else { return MediumProperties::default() };
         let place = self.bounds.min + p * self.bounds.diagonal();
-        self.coefficients.at(self.density(place), lambda)
+        let density = self.instruction_set.dispatch(Density { cloud: self, p: place });
+        self.coefficients.at(density, lambda)
     }
 
     fn majorants<'a>(&'a self, ray: &Ray, t_max: f32, lambda: &SampledWavelengths) -> Majorants<'a> {

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use alhazen_scene::medium::{Medium, MediumId, MediumInterface};
+use alhazen_scene::medium::{CloudMedium, Medium, MediumId, MediumInterface, MediumKind as MediumRow};
 use alhazen_scene::{Scene, compile};
 use description::{
     CoefficientsDesc, ColorSpaceDesc, GridDesc, MediumDesc, MediumKind, SceneDesc, SpectrumDesc,
     TemperatureDesc, TransformDesc, VoxelsDesc,
 };
+use lanes::InstructionSet;
 use math::{DMat4, DVec3, Point3, Ray, Vec3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
@@ -166,6 +167,27 @@ fn voxels_lie_at_integer_points_of_index_space() {
     let found = density(&scene, [0.55, 0.4, 0.1]);
     assert!((found - 3.5).abs() < 1e-3, "{found}");
     assert_eq!(voxels.value([100, 0, 8]), 0.0);
+}
+
+#[test]
+fn instruction_sets_give_the_same_cloud() {
+    let (scene, mut random) = (scene(cloud()), Random::new(7));
+    let Medium { kind: MediumRow::Cloud(cloud), phase } = medium(&scene) else { panic!("a cloud") };
+    let with = |set| {
+        let cloud = CloudMedium { instruction_set: set, ..(**cloud).clone() };
+        Medium { kind: MediumRow::Cloud(Box::new(cloud)), phase: *phase }
+    };
+    let sets = InstructionSet::ALL.into_iter().filter(|set| set.is_available());
+    let media: Vec<Medium> = sets.map(with).collect();
+    let mut dense = 0;
+    for _ in 0..1000 {
+        let p = at(&scene, [(); 3].map(|()| f64::from(random.get_1d())));
+        let density = |medium: &Medium| medium.at(p, &lambda()).sigma_s[0];
+        let expected = density(&media[0]);
+        dense += u32::from(expected > 0.0);
+        assert!(media.iter().all(|medium| density(medium) == expected), "{p:?}");
+    }
+    assert!(dense > 100, "{dense}");
 }
 
 #[test]
