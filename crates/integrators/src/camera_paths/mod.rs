@@ -19,6 +19,6 @@ pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;
 pub use simple_path::SimplePath;
 pub use vol_path::VolPath;
-pub(crate) use vol_path::{Fate, PathInMedia};
+pub(crate) use vol_path::{Flown, PathInMedia};
 pub(crate) use whitted::Node;
 pub use whitted::Whitted;

@@ -17,9 +17,9 @@
 
 use description::PathDesc;
 use film::FirstEvent;
-use math::RayDifferential;
+use math::{Point3, RayDifferential};
 use sampling::Sampler;
-use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
+use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, HenyeyGreenstein, TransportMode};
 use scene::light::{LightId, LightSampleContext};
 use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction, View};
@@ -79,13 +79,12 @@ enum Vertex<'a> {
     Medium(&'a MediumVertex),
 }
 
-/// What became of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fate {
+/// The end of a path's flight through its medium.
+pub(crate) enum Flown {
     /// It has passed the medium to the end of its ray.
     Passed,
-    /// It goes on along another ray.
-    GoesOn,
+    /// It is scattered here.
+    Scattered(Point3, HenyeyGreenstein),
     /// It has ended.
     Ended,
 }
@@ -114,12 +113,12 @@ impl PathInMedia {
         self.origin = origin;
     }
 
-    /// Plays Russian roulette.
-    fn play(&mut self, sampler: &mut Sampler) -> Fate {
+    /// Plays Russian roulette; `false` if the path has ended.
+    fn survives(&mut self, sampler: &mut Sampler) -> bool {
         let carried = self.throughput.estimate(SampledSpectrum::splat(self.eta_scale), &self.heroes);
         let survival = roulette::survival(self.depth, roulette::of_camera_path(carried), sampler);
         self.throughput.beta /= survival.unwrap_or(1.0);
-        if survival.is_some() { Fate::GoesOn } else { Fate::Ended }
+        survival.is_some()
     }
 }
 
@@ -236,8 +235,8 @@ impl VolPath {
         l
     }
 
-    /// Lets a path fly through its medium, up to `t_max`, where it may scatter; returns the light
-    /// on the way, that of paths of fewer than `min_depth` scattering events left out.
+    /// Lets a path fly through its medium, up to `t_max`; returns the light on the way, that of
+    /// paths of fewer than `min_depth` scattering events left out.
     pub(crate) fn fly(
         &self,
         min_depth: u32,
@@ -245,46 +244,56 @@ impl VolPath {
         path: &mut PathInMedia,
         t_max: f32,
         lambda: &SampledWavelengths,
-    ) -> (SampledSpectrum, Fate) {
-        let mut l = SampledSpectrum::ZERO;
-        let Some(medium) = path.medium else { return (l, Fate::Passed) };
+    ) -> (SampledSpectrum, Flown) {
+        let black = SampledSpectrum::ZERO;
+        let Some(medium) = path.medium else { return (black, Flown::Passed) };
         let flight = tracer.fly(medium, &path.ray.ray, t_max, lambda, &path.heroes, &mut path.throughput);
-        if path.depth >= min_depth {
-            l += flight.emitted;
-            tracer.take_part(None, &path.first, path.depth, flight.emitted);
+        let l = if path.depth >= min_depth { flight.emitted } else { black };
+        tracer.take_part(None, &path.first, path.depth, l);
+        let is_last = path.depth == self.settings().max_depth;
+        match flight.end {
+            FlightEnd::Passed => (l, Flown::Passed),
+            FlightEnd::Scattered { p, phase, .. } if !is_last => (l, Flown::Scattered(p, phase)),
+            FlightEnd::Scattered { .. } | FlightEnd::Absorbed => (l, Flown::Ended),
         }
-        let (p, phase) = match flight.end {
-            FlightEnd::Passed => return (l, Fate::Passed),
-            FlightEnd::Scattered { p, phase, .. } if path.depth < self.settings().max_depth => (p, phase),
-            FlightEnd::Scattered { .. } | FlightEnd::Absorbed => return (l, Fate::Ended),
-        };
+    }
+
+    /// Scatters a path in a medium; returns the direct light, and whether it goes on.
+    fn scatter_in_medium(
+        &self,
+        tracer: &mut Tracer,
+        path: &mut PathInMedia,
+        (p, phase): (Point3, HenyeyGreenstein),
+        lambda: &SampledWavelengths,
+    ) -> (SampledSpectrum, bool) {
         path.depth += 1;
         if path.depth == 1 {
             path.first = FirstEvent::Volume;
         }
         let vertex = MediumVertex::new(p, &path.ray.ray, phase);
-        l += self.direct(tracer, path, Vertex::Medium(&vertex), lambda);
+        let l = self.direct(tracer, path, Vertex::Medium(&vertex), lambda);
         let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
         path.leave(vertex.context.spawn_ray(wi).into(), pdf, Some(vertex.context));
-        (l, path.play(tracer.sampler))
+        (l, path.survives(tracer.sampler))
     }
 
-    /// Scatters a path at a surface that it has hit at distance `t`; returns the direct light.
+    /// Scatters a path at a surface that it has hit at distance `t`; returns the direct light, and
+    /// whether it goes on.
     pub(crate) fn scatter(
         &self,
         tracer: &mut Tracer,
         path: &mut PathInMedia,
         (mut surface, t): (SurfaceInteraction, f32),
         lambda: &mut SampledWavelengths,
-    ) -> (SampledSpectrum, Fate) {
+    ) -> (SampledSpectrum, bool) {
         let mut l = SampledSpectrum::ZERO;
         let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
             path.medium = surface.medium_towards(path.ray.ray.d, path.medium);
             path.ray = pass_through(&path.ray, &surface, t);
-            return (l, Fate::GoesOn);
+            return (l, true);
         };
         if path.depth == self.settings().max_depth {
-            return (l, Fate::Ended);
+            return (l, false);
         }
         path.depth += 1;
         if lambda.secondary_terminated() {
@@ -296,7 +305,7 @@ impl VolPath {
             l += self.direct(tracer, path, Vertex::Surface(&surface, &bsdf), lambda);
         }
         let Some(Scattered { sample, pdf }) = Scattered::sample(&surface, &bsdf, tracer.sampler) else {
-            return (l, Fate::Ended);
+            return (l, false);
         };
         path.throughput.beta *= throughput(&surface, &sample);
         let body = entered(&bsdf, &surface, &sample);
@@ -310,7 +319,7 @@ impl VolPath {
             let (left, goes_on) = self.under_surface(tracer, path, &surface, (body, &sample), lambda);
             l += left;
             if !goes_on {
-                return (l, Fate::Ended);
+                return (l, false);
             }
         } else {
             if sample.flags.is_transmissive() {
@@ -320,7 +329,7 @@ impl VolPath {
             path.medium = surface.medium_towards(sample.wi, path.medium);
             path.leave(surface.spawn_scattered(&path.ray, &sample), pdf, context);
         }
-        (l, path.play(tracer.sampler))
+        (l, path.survives(tracer.sampler))
     }
 
     /// Leads a path that enters a body at `entry`, from the side of its medium, out of it again;
@@ -365,12 +374,19 @@ impl PathsFrom for VolPath {
         loop {
             let hit = tracer.intersect(&path.ray.ray);
             let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
-            let (light, fate) = self.fly(min_depth, tracer, &mut path, t_max, lambda);
+            let (light, flown) = self.fly(min_depth, tracer, &mut path, t_max, lambda);
             l += light;
-            match fate {
-                Fate::Passed => (),
-                Fate::GoesOn => continue,
-                Fate::Ended => return l,
+            match flown {
+                Flown::Passed => (),
+                Flown::Scattered(p, phase) => {
+                    let (light, goes_on) = self.scatter_in_medium(tracer, &mut path, (p, phase), lambda);
+                    l += light;
+                    if !goes_on {
+                        return l;
+                    }
+                    continue;
+                }
+                Flown::Ended => return l,
             }
             let Some((surface, t)) = hit else {
                 return if path.depth >= min_depth { l + self.escaped(tracer, &path, lambda) } else { l };
@@ -378,9 +394,9 @@ impl PathsFrom for VolPath {
             if path.depth >= min_depth {
                 l += self.emitted(tracer, &path, &surface, lambda);
             }
-            let (light, fate) = self.scatter(tracer, &mut path, (surface, t), lambda);
+            let (light, goes_on) = self.scatter(tracer, &mut path, (surface, t), lambda);
             l += light;
-            if fate == Fate::Ended {
+            if !goes_on {
                 return l;
             }
         }

@@ -15,6 +15,7 @@ use super::finish::{Finish, finish_with_first_hits};
 use super::groups::{Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
+use super::medium_vertices::MediumVertices;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
@@ -54,7 +55,9 @@ pub(super) struct BatchColumns {
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
     pub occluded: Vec<bool>,
-    light_samples: Samples,
+    pub light_samples: Samples,
+    /// Where media scatter paths.
+    pub medium_vertices: MediumVertices,
 }
 
 /// A vertex of one path.
@@ -307,7 +310,7 @@ impl<'a> Batch<'a> {
             }
             queue.clear();
         }
-        if !self.columns.queues.passages.shadows.paths.is_empty() {
+        if !self.columns.queues.passages.is_empty() {
             self.connect_through_media();
         }
     }

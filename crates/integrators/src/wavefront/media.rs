@@ -1,7 +1,8 @@
 //! Paths through media.
 //!
-//! Flights and the vertices in media are computed path by path, surfaces as in empty space. Shadow
-//! rays that nothing stops wait for their passage through media, which is computed one by one, too.
+//! Flights are computed path by path, vertices in media (`medium_vertices.rs`) and on surfaces in
+//! lanes. Shadow rays that nothing stops wait for their passage through media, which is computed one
+//! by one, too.
 //!
 //! Densities are divided by the mean of r_u ([`Throughput`]): β is then the estimate itself, and the
 //! density of a path's ray is 1 over the mean of r_l, so that stages that meet lights need not know
@@ -9,7 +10,7 @@
 
 use film::FirstEvent;
 use geometry::HitColumns;
-use lanes::{Int, Real};
+use lanes::{Int, Mask, Real};
 use math::{Normal3, Vector3};
 use scene::material::Material;
 use scene::medium::{MediumId, MediumInterface};
@@ -19,14 +20,15 @@ use spectrum::SampledSpectrum;
 use super::batch::{Batch, BatchColumns};
 use super::columns::{Column, Rows};
 use super::groups::Grouping;
+use super::medium_vertices::ScatterInMedia;
 use super::paths::Paths;
-use super::queues::ShadowRays;
+use super::queues::{Shadow, ShadowRays};
 use super::segments::Segments;
 use super::spectra::Spectra;
-use crate::camera_paths::{Fate, PathInMedia};
+use crate::camera_paths::{Flown, PathInMedia};
 use crate::transport::media::{Arrival, Passage, Throughput};
 use crate::transport::path_state::{Origin, PathState};
-use crate::{Tracer, VolPath};
+use crate::{Path, Tracer, VolPath};
 
 /// The media of a scene, as lanes look them up.
 #[derive(Clone, Debug, Default)]
@@ -102,6 +104,12 @@ impl MediaColumns {
         self.r_l.set_row(turn, path.throughput.r_l / density);
     }
 
+    /// The media of paths, and r_u.
+    #[inline(always)]
+    pub fn at<R: Real>(&self, turns: Rows<R>) -> (R::Int, SampledSpectrum<R>) {
+        (R::Int::gather(&self.medium, turns.indices), self.r_u.get(turns))
+    }
+
     /// Changes successive paths to those of a mask's lanes.
     #[inline(always)]
     pub fn compress<R: Real>(&mut self, turn: usize, mask: R::Mask, segment: &SegmentInMedia<R>) {
@@ -138,11 +146,10 @@ impl<R: Real> VerticesInMedia<R> {
         (turns, geometries): (Rows<R>, &[u32]),
         terminated: R::Mask,
     ) -> Self {
-        let before = R::Int::gather(&columns.medium, turns.indices);
+        let (before, r_u) = columns.at(turns);
         let geometry = R::Int::gather(geometries, turns.indices);
         let [inside, outside] = R::Int::gather_rows(media.sides.as_flattened(), geometry.shl(1));
         let is_same = inside.eq(R::Int::splat(LaneMedia::SAME));
-        let r_u = columns.r_u.get(turns);
         Self {
             inside: R::Int::select(is_same, before, inside),
             outside: R::Int::select(is_same, before, outside),
@@ -167,7 +174,7 @@ impl<R: Real> VerticesInMedia<R> {
 #[derive(Default)]
 pub(super) struct Passages {
     /// The rays, and the light of [`Arrival`].
-    pub shadows: ShadowRays,
+    shadows: ShadowRays,
     /// As of [`Arrival`].
     r_u: Spectra,
     ratio: Column,
@@ -186,13 +193,28 @@ pub(super) struct PassageLanes<R: Real> {
 }
 
 impl Passages {
-    /// Adds what the rays of a mask's lanes have besides those of [`shadows`](Self::shadows).
+    /// Adds the rays of a mask's lanes.
     #[inline(always)]
-    pub fn append<R: Real>(&mut self, mask: R::Mask, lanes: &PassageLanes<R>) {
+    pub fn append<R: Real>(
+        &mut self,
+        rows: Rows<R>,
+        mask: R::Mask,
+        shadow: &Shadow<R>,
+        lanes: &PassageLanes<R>,
+    ) {
+        if !mask.any() {
+            return;
+        }
+        self.shadows.append(rows, mask, shadow);
         self.r_u.append(mask, lanes.r_u);
         lanes.ratio.append(mask, &mut self.ratio);
         lanes.medium.append(mask, &mut self.medium);
         lanes.dimension.append(mask, &mut self.dimension);
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.shadows.paths.is_empty()
     }
 
     fn clear(&mut self) {
@@ -204,14 +226,19 @@ impl Passages {
 }
 
 impl Segments {
-    fn is_in_medium(&self, turn: usize) -> bool {
-        self.media.as_ref().is_some_and(|media| media.medium[turn] != 0)
+    /// What the paths of an algorithm that knows media have besides.
+    pub fn media(&self) -> &MediaColumns {
+        self.media.as_ref().expect("invariant: the algorithm knows media")
+    }
+
+    fn media_mut(&mut self) -> &mut MediaColumns {
+        self.media.as_mut().expect("invariant: the algorithm knows media")
     }
 
     /// A path that has media.
     fn path_in_media(&self, paths: &Paths, turn: usize) -> PathInMedia {
         let row = self.rows[turn] as usize;
-        let media = self.media.as_ref().expect("invariant: the algorithm knows media");
+        let media = self.media();
         let PathState { ray, beta, depth, origin, eta_scale, .. } = self.state(turn);
         PathInMedia {
             ray,
@@ -233,7 +260,7 @@ impl Segments {
         let &PathInMedia { ray, medium, depth, eta_scale, first, .. } = path;
         let origin = path.origin.map(|context| Origin { context, pdf });
         self.push(row, &PathState { ray, beta, depth, origin, medium, eta_scale, first });
-        self.media.as_mut().expect("invariant: the algorithm knows media").set(turn, path);
+        self.media_mut().set(turn, path);
     }
 
     /// Changes the weights of a path that has passed its medium.
@@ -243,7 +270,7 @@ impl Segments {
         if path.origin.is_some() {
             self.pdf[turn] = pdf;
         }
-        self.media.as_mut().expect("invariant: the algorithm knows media").set(turn, path);
+        self.media_mut().set(turn, path);
     }
 }
 
@@ -255,37 +282,53 @@ fn weight_and_pdf(path: &PathInMedia) -> (SampledSpectrum, f32) {
 }
 
 impl Batch<'_> {
-    /// Lets the paths in media fly to their hits. Those that are scattered before go on from there,
-    /// and are no longer at a hit; so are those that have ended.
+    /// Lets the paths in media fly to their hits. Those that are scattered before go on from there.
     pub(super) fn fly(&mut self, algorithm: &VolPath) {
         let Self { pass, sampler, stats, columns } = self;
         let pixels = pass.pixels;
-        let BatchColumns { paths, segments, hits, queues, .. } = &mut **columns;
+        let BatchColumns { paths, segments, hits, medium_vertices, .. } = &mut **columns;
+        medium_vertices.clear();
         for turn in 0..segments.rows.len() {
-            if !segments.is_in_medium(turn) {
+            if segments.media().medium[turn] == 0 {
                 continue;
             }
             let mut path = segments.path_in_media(paths, turn);
-            let row = segments.rows[turn];
-            let at = row as usize;
+            let at = segments.rows[turn] as usize;
             let lambda = paths.lambda(at);
             paths.resume(sampler, at, pixels.index);
             let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
             let has_hit = hits.geometry[turn] != HitColumns::NONE;
             let t_max = if has_hit { hits.t[turn] } else { f32::INFINITY };
-            let (l, fate) = algorithm.fly(0, &mut tracer, &mut path, t_max, &lambda);
+            let (l, flown) = algorithm.fly(0, &mut tracer, &mut path, t_max, &lambda);
             paths.add_light(at, l);
             paths.dimension[at] = sampler.dimension();
-            match fate {
-                Fate::Passed => segments.pass(turn, &path),
-                Fate::GoesOn => {
+            match flown {
+                Flown::Passed => segments.pass(turn, &path),
+                Flown::Scattered(p, phase) => {
+                    segments.pass(turn, &path);
+                    medium_vertices.push(turn, p, phase);
                     hits.geometry[turn] = Grouping::GONE;
-                    paths.rough_before[at] = path.rough_before;
-                    queues.next.push_in_media(row, &path);
                 }
-                Fate::Ended => hits.geometry[turn] = Grouping::GONE,
+                Flown::Ended => hits.geometry[turn] = Grouping::GONE,
             }
         }
+        if !self.columns.medium_vertices.is_empty() {
+            self.scatter_in_media(&algorithm.in_vacuum);
+        }
+    }
+
+    /// Scatters the paths at their vertices in media.
+    fn scatter_in_media(&mut self, algorithm: &Path) {
+        let BatchColumns { medium_vertices, segments, paths, queues, light_samples, .. } = &mut *self.columns;
+        self.pass.instruction_set.dispatch(ScatterInMedia {
+            pass: self.pass,
+            algorithm,
+            vertices: medium_vertices,
+            segments,
+            paths,
+            queues,
+            light_samples,
+        });
     }
 
     /// Shades the hit of a path that is not shaded in lanes.
@@ -308,11 +351,11 @@ impl Batch<'_> {
         if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
             paths.add_light(at, algorithm.emitted(&mut tracer, &path, &surface, &lambda));
         }
-        let (l, fate) = algorithm.scatter(&mut tracer, &mut path, (surface, hit.t), &mut lambda);
+        let (l, goes_on) = algorithm.scatter(&mut tracer, &mut path, (surface, hit.t), &mut lambda);
         paths.add_light(at, l);
         paths.set_lambda(at, &lambda);
         paths.dimension[at] = sampler.dimension();
-        if fate == Fate::GoesOn {
+        if goes_on {
             paths.rough_before[at] = path.rough_before;
             queues.next.push_in_media(row, &path);
         }

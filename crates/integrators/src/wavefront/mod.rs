@@ -28,6 +28,7 @@ mod groups;
 mod lights;
 mod materials;
 mod media;
+mod medium_vertices;
 mod numbers;
 mod pass;
 mod path;

@@ -45,6 +45,19 @@ pub(super) struct VertexNumbers<R: Real> {
 }
 
 impl<R: Real> VertexNumbers<R> {
+    /// The next coordinates of each lane, of vertices in media, which have no choice of lobes.
+    #[inline(always)]
+    pub fn draw_in_media(pass: &Pass, address: &mut Address<R::Int>) -> Self {
+        let mut draw = Draw::new(pass, address);
+        draw.push(Coordinates::One, address);
+        draw.push(Coordinates::Two, address);
+        let passage = address.dimension;
+        address.skip(2);
+        draw.push(Coordinates::Two, address);
+        let u = draw.numbers(pass);
+        Self { light: (u.one(0), u.two(1)), passage, bsdf: (R::zero(), u.two(2)) }
+    }
+
     /// The next coordinates of each lane; only some lanes sample a light.
     #[inline(always)]
     pub fn draw(

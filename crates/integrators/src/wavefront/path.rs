@@ -3,16 +3,19 @@
 use geometry::{Hit, PatchPoints};
 use lanes::{Int, Mask, Real};
 use math::{Ray, Vec2, offset_ray_origin};
+use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
+use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, BatchColumns, Vertex};
 use super::lights::{self, LightLanes};
 use super::media::{PassageLanes, VerticesInMedia};
 use super::numbers::{VertexNumbers, draw_1d};
+use super::pass::Pass;
 use super::queues::Shadow;
 use super::segments::Segment;
 use super::shade::{AtVertices, Shade, Vertices};
@@ -134,8 +137,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
                 medium: media.towards(wi, n),
                 dimension: numbers.passage,
             };
-            self.queues.passages.shadows.append(vertices.rows, lit, &shadow);
-            self.queues.passages.append(lit, &passage);
+            self.queues.passages.append(vertices.rows, lit, &shadow, &passage);
             return;
         }
         let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
@@ -168,22 +170,9 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let valid = valid & vertices.active;
 
-        // The first scattering event is never the last by roulette.
         let depth = R::Int::gather(&self.segments.depth, turns.indices);
-        let is_first = depth.eq(R::Int::splat(0));
-        let probability = roulette::of_camera_path(beta * eta_scale);
-        let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
-        let draws = plays & probability.gt(R::zero());
-        let mut survives = valid & !plays;
-        if draws.any() {
-            let u = draw_1d::<R>(&self.pass, &mut { vertices.address });
-            survives = survives | (draws & u.lt(probability));
-        }
-        let beta = beta * R::select(plays, R::one() / probability, R::one());
-
-        let one = R::Int::splat(1);
-        let dimension = vertices.address.dimension;
-        let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
+        let Roulette { survives, weight, dimension } =
+            play(&self.pass, vertices.address, depth, beta * eta_scale, valid);
         dimension.scatter(survives, &mut self.paths.dimension, rows.indices);
         let is_specular = flags.is_specular();
         if self.algorithm.settings.regularize {
@@ -191,13 +180,47 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         }
         let segment = Segment {
             ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
-            beta,
+            beta: beta * weight,
             eta_scale,
-            depth: depth.wrapping_add(one),
+            depth: depth.wrapping_add(R::Int::splat(1)),
             vertex: *contexts,
             pdf: R::select(is_specular, R::zero(), pdf),
             media: media.map(|media| media.leave((wi, n), pdf)),
         };
         self.queues.next.append(rows.indices, survives, &segment);
     }
+}
+
+/// Russian roulette in lanes.
+pub(super) struct Roulette<R: Real> {
+    pub survives: R::Mask,
+    /// The factor of the throughput of those that survive.
+    pub weight: R,
+    /// The next dimension of their samplers.
+    pub dimension: R::Int,
+}
+
+/// Plays Russian roulette for the `valid` paths, which `carry` so much after `depth` scattering
+/// events and one more.
+#[inline(always)]
+pub(super) fn play<R: Real>(
+    pass: &Pass,
+    address: Address<R::Int>,
+    depth: R::Int,
+    carry: SampledSpectrum<R>,
+    valid: R::Mask,
+) -> Roulette<R> {
+    // The first scattering event is never the last by roulette.
+    let is_first = depth.eq(R::Int::splat(0));
+    let probability = roulette::of_camera_path(carry);
+    let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
+    let draws = plays & probability.gt(R::zero());
+    let mut survives = valid & !plays;
+    if draws.any() {
+        let u = draw_1d::<R>(pass, &mut { address });
+        survives = survives | (draws & u.lt(probability));
+    }
+    let weight = R::select(plays, R::one() / probability, R::one());
+    let next = address.dimension.wrapping_add(R::Int::splat(1));
+    Roulette { survives, weight, dimension: R::Int::select(draws, next, address.dimension) }
 }

@@ -1,0 +1,118 @@
+//! The vertices of paths in media, in lanes: light samples, samples of the phase function and
+//! Russian roulette.
+
+use lanes::{Int, Kernel, Real};
+use math::{Point3, Point3Error, Ray, Vec3};
+use scattering::HenyeyGreenstein;
+use scene::light::LightSampleContext;
+
+use super::columns::{Column, Rows};
+use super::lights::{self, Samples};
+use super::media::{PassageLanes, SegmentInMedia};
+use super::numbers::VertexNumbers;
+use super::pass::Pass;
+use super::path::{Roulette, play};
+use super::paths::Paths;
+use super::queues::{Queues, Shadow};
+use super::segments::{Segment, Segments};
+use crate::Path;
+
+/// Where paths have been scattered by media.
+#[derive(Default)]
+pub(super) struct MediumVertices {
+    turns: Vec<u32>,
+    p: [Column; 3],
+    /// The asymmetry of the phase function.
+    g: Column,
+}
+
+impl MediumVertices {
+    pub fn push(&mut self, turn: usize, p: Point3, phase: HenyeyGreenstein) {
+        self.turns.push(turn as u32);
+        self.p.iter_mut().zip(p.to_array()).for_each(|(column, x)| column.push(x));
+        self.g.push(phase.g);
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.turns.is_empty()
+    }
+
+    pub fn clear(&mut self) {
+        self.turns.clear();
+        self.p.iter_mut().for_each(Vec::clear);
+        self.g.clear();
+    }
+}
+
+/// Scatters paths at vertices in media.
+pub(super) struct ScatterInMedia<'a, 'b> {
+    pub pass: Pass<'a>,
+    pub algorithm: &'b Path,
+    pub vertices: &'b MediumVertices,
+    pub segments: &'b Segments,
+    pub paths: &'b mut Paths,
+    pub queues: &'b mut Queues,
+    pub light_samples: &'b mut Samples,
+}
+
+impl Kernel for ScatterInMedia<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(mut self) {
+        for first in (0..self.vertices.turns.len()).step_by(R::LANES) {
+            self.scatter::<R>(first);
+        }
+    }
+}
+
+impl ScatterInMedia<'_, '_> {
+    #[inline(always)]
+    fn scatter<R: Real>(&mut self, first: usize) {
+        let Self { pass, algorithm, vertices, segments, .. } = *self;
+        let turns = Rows::<R>::first(&vertices.turns[first..]);
+        let rows = Rows { indices: R::Int::gather(&segments.rows, turns.indices), active: turns.active };
+        let last = vertices.turns.len() - 1;
+        let place = R::Int::from_fn(|lane| (first + lane).min(last) as u32);
+        let [x, y, z] = vertices.p.each_ref().map(|column| R::gather(column, place));
+        let phase = HenyeyGreenstein { g: R::gather(&vertices.g, place) };
+        let (p, n) = (Point3Error::exact(Vec3::new(x, y, z)), Vec3::splat(R::zero()));
+        let time = R::gather(&segments.time, turns.indices);
+        let wo = -segments.direction.vector(turns);
+        let context = LightSampleContext { p, n, ns: n, time };
+        let beta = segments.beta.get(turns);
+        let (medium, r_u) = segments.media().at(turns);
+        let mut address = self.paths.address(rows, pass.pixels.index);
+        let numbers = VertexNumbers::draw_in_media(&pass, &mut address);
+
+        let lambda = self.paths.lambda_lanes(rows);
+        let sampling = (&pass, &algorithm.direct, &mut *self.light_samples);
+        let light = lights::sample(sampling, None, &context, numbers.light, &lambda, rows.active);
+        let value = phase.p(wo, light.wi);
+        let l = beta * (light.l * value) / light.pdf;
+        let (ray, t_max) = light.shadow_rays(p, n, time);
+        let ratio = R::select(light.is_delta, R::zero(), value / light.pdf);
+        let passage = PassageLanes { r_u, ratio, medium, dimension: numbers.passage };
+        let lit = light.valid & !(light.l * value).is_black();
+        self.queues.passages.append(rows, lit, &Shadow { l, ray, t_max }, &passage);
+
+        let (_, u) = numbers.bsdf;
+        let (wi, pdf) = phase.sample_p(wo, u);
+        let eta_scale = R::gather(&segments.eta_scale, turns.indices);
+        let depth = R::Int::gather(&segments.depth, turns.indices);
+        let Roulette { survives, weight, dimension } =
+            play(&pass, address, depth, beta * eta_scale, rows.active);
+        dimension.scatter(survives, &mut self.paths.dimension, rows.indices);
+        rows.each_of(survives, |_, row| self.paths.rough_before[row] = true);
+        let segment = Segment {
+            ray: Ray::new(p.p, wi, time),
+            beta: beta * weight,
+            eta_scale,
+            depth: depth.wrapping_add(R::Int::splat(1)),
+            vertex: context,
+            pdf,
+            media: Some(SegmentInMedia { medium, r_u, r_l: r_u / pdf }),
+        };
+        self.queues.next.append(rows.indices, survives, &segment);
+    }
+}
