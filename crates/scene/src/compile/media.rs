@@ -12,7 +12,6 @@ use description::{
     CoefficientsDesc, ColorSpaceDesc, GridDesc, Handle, MediumDesc, MediumKind as Desc, Origin, Stated,
     Substance, TemperatureDesc, VoxelsDesc,
 };
-use lanes::InstructionSet;
 use math::{Bounds3, DMat4, DVec3, Point3, Transform, Vec3};
 use scattering::HenyeyGreenstein;
 use spectrum::{RgbUnboundedSpectrum, Spectrum};
@@ -83,7 +82,7 @@ impl Compiler<'_> {
                     density: *density,
                     wispiness: *wispiness,
                     frequency: *frequency,
-                    instruction_set: InstructionSet::detect(),
+                    instruction_set: CloudMedium::instruction_set(),
                 }))
             }
             Desc::NanoVdb { .. } => MediumKind::NanoVdb(Box::new(self.nano_vdb(desc)?)),

@@ -35,6 +35,17 @@ pub struct CloudMedium {
     pub instruction_set: InstructionSet,
 }
 
+impl CloudMedium {
+    /// The instruction set for its noise. No more than five values are known at once, and gathers
+    /// of sixteen take longer than those of eight.
+    pub fn instruction_set() -> InstructionSet {
+        match InstructionSet::detect() {
+            InstructionSet::Avx512 => InstructionSet::Avx2,
+            set => set,
+        }
+    }
+}
+
 /// Computes the density of a cloud at a point of the medium's space. Noise takes most of the time of
 /// paths through clouds, so that lanes have its values at the points that are known at once.
 struct Density<'a> {
