@@ -390,7 +390,9 @@ impl Batch<'_> {
                 let lambda = paths.lambda(at);
                 sampler.start_pixel_sample(paths.pixel(at), pixels.index, dimension[shadow]);
                 let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
-                let numbers = tracer.two_numbers();
+                let varies = medium.is_some_and(|MediumId(id)| pixels.scene.media()[id as usize].varies());
+                // Within homogeneous media no collisions are chosen.
+                let numbers = if meets_interfaces || varies { tracer.two_numbers() } else { [0.0; 2] };
                 let (ray, t_max) = (rays.ray(shadow), rays.t_max(shadow));
                 if meets_interfaces {
                     tracer.transmittance((&ray, t_max), medium, &lambda, &heroes, numbers)

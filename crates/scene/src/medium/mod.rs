@@ -126,6 +126,11 @@ impl Medium {
         each_medium!(&self.kind, medium => medium.bounds())
     }
 
+    /// Whether its properties differ from place to place.
+    pub fn varies(&self) -> bool {
+        !matches!(self.kind, MediumKind::Homogeneous(_))
+    }
+
     /// The properties that it has everywhere, if it is homogeneous.
     pub fn homogeneous(&self, lambda: &SampledWavelengths) -> Option<MediumProperties> {
         match &self.kind {
