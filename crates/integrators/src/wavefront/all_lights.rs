@@ -10,8 +10,8 @@ use spectrum::SampledSpectrum;
 
 use super::lights::{self, LightLanes};
 use super::numbers::draw_2d;
-use super::queues::Shadow;
 use super::shade::{AtVertices, Shade, Vertices};
+use super::shadows::Shadow;
 use crate::transport::direct::DirectLighting;
 
 /// Direct light by one sample of every light.

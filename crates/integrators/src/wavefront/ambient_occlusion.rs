@@ -11,8 +11,9 @@ use super::columns::Rows;
 use super::numbers::draw_2d;
 use super::pass::Pass;
 use super::paths::Paths;
-use super::queues::{Queues, Shadow};
+use super::queues::Queues;
 use super::segments::Segments;
+use super::shadows::Shadow;
 use crate::AmbientOcclusion;
 
 impl WaveIntegrator for AmbientOcclusion {

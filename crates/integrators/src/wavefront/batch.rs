@@ -15,7 +15,7 @@ use super::finish::{Finish, finish_with_first_hits};
 use super::groups::{Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
-use super::medium_vertices::MediumVertices;
+use super::media::MediumVertices;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
@@ -309,9 +309,6 @@ impl<'a> Batch<'a> {
                 }
             }
             queue.clear();
-        }
-        if !self.columns.queues.passages.is_empty() {
-            self.connect_through_media();
         }
     }
 

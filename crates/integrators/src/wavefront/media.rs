@@ -1,34 +1,21 @@
-//! Paths through media.
+//! What paths have where there are media.
 //!
-//! Flights are computed path by path, vertices in media (`medium_vertices.rs`) and on surfaces in
-//! lanes. Shadow rays that nothing stops wait for their passage through media, which is computed one
-//! by one, too.
-//!
-//! Densities are divided by the mean of r_u ([`Throughput`]): β is then the estimate itself, and the
-//! density of a path's ray is 1 over the mean of r_l, so that stages that meet lights need not know
-//! of media.
+//! Densities are divided by the mean of r_u (see `transport/media/`): β is then the estimate
+//! itself, and the density of a path's ray is 1 over the mean of r_l, so that stages that meet
+//! lights need not know of media.
 
-use film::FirstEvent;
-use geometry::HitColumns;
-use lanes::{Int, Mask, Real};
-use math::{Normal3, Vector3};
-use scene::material::Material;
+use lanes::{Int, Real};
+use math::{Normal3, Point3, Vector3};
+use scattering::HenyeyGreenstein;
+use scene::Scene;
+use scene::material::{Material, MaterialEntry};
 use scene::medium::{MediumId, MediumInterface};
-use scene::{Interfaces, Scene};
 use spectrum::SampledSpectrum;
 
-use super::batch::{Batch, BatchColumns};
 use super::columns::{Column, Rows};
-use super::groups::Grouping;
-use super::medium_vertices::ScatterInMedia;
-use super::paths::Paths;
-use super::queues::{Shadow, ShadowRays};
-use super::segments::Segments;
 use super::spectra::Spectra;
-use crate::camera_paths::{Flown, PathInMedia};
-use crate::transport::media::{Arrival, Passage, Throughput};
-use crate::transport::path_state::{Origin, PathState};
-use crate::{Path, Tracer, VolPath};
+use crate::camera_paths::PathInMedia;
+use crate::transport::media::Throughput;
 
 /// The media of a scene, as lanes look them up.
 #[derive(Clone, Debug, Default)]
@@ -36,7 +23,7 @@ pub(super) struct LaneMedia {
     /// For each geometry the media inside and outside of it, or [`SAME`](Self::SAME).
     sides: Vec<[u32; 2]>,
     /// Whether there are interfaces, which shadow rays pass.
-    has_interfaces: bool,
+    pub has_interfaces: bool,
 }
 
 impl LaneMedia {
@@ -48,8 +35,7 @@ impl LaneMedia {
             let media = entry.media.filter(MediumInterface::is_transition);
             media.map_or([Self::SAME; 2], |media| [media.inside, media.outside].map(number))
         });
-        let is_interface =
-            |entry: &scene::material::MaterialEntry| matches!(entry.material, Material::Interface);
+        let is_interface = |entry: &MaterialEntry| matches!(entry.material, Material::Interface);
         Self { sides: sides.collect(), has_interfaces: scene.materials().iter().any(is_interface) }
     }
 }
@@ -60,7 +46,7 @@ fn number(medium: Option<MediumId>) -> u32 {
 }
 
 /// The medium of a number.
-fn medium(number: u32) -> Option<MediumId> {
+pub(super) fn medium(number: u32) -> Option<MediumId> {
     number.checked_sub(1).map(MediumId)
 }
 
@@ -90,6 +76,16 @@ impl MediaColumns {
         self.r_l.fill(len, 1.0);
     }
 
+    /// The medium of a path.
+    pub fn medium(&self, turn: usize) -> Option<MediumId> {
+        medium(self.medium[turn])
+    }
+
+    /// The weights of a path whose estimate is β.
+    pub fn throughput(&self, turn: usize, beta: SampledSpectrum) -> Throughput {
+        Throughput { beta, r_u: self.r_u.row(turn), r_l: self.r_l.row(turn) }
+    }
+
     /// Copies a path.
     pub fn copy(&mut self, turn: usize, from: &Self, from_turn: usize) {
         self.medium[turn] = from.medium[from_turn];
@@ -97,7 +93,8 @@ impl MediaColumns {
         self.r_l.set_row(turn, from.r_l.row(from_turn));
     }
 
-    fn set(&mut self, turn: usize, path: &PathInMedia) {
+    /// Changes a path.
+    pub fn set(&mut self, turn: usize, path: &PathInMedia) {
         let density = path.heroes.mean(path.throughput.r_u);
         self.medium[turn] = number(path.medium);
         self.r_u.set_row(turn, path.throughput.r_u / density);
@@ -170,243 +167,30 @@ impl<R: Real> VerticesInMedia<R> {
     }
 }
 
-/// Shadow rays in scenes with media.
+/// Where paths have been scattered by media.
 #[derive(Default)]
-pub(super) struct Passages {
-    /// The rays, and the light of [`Arrival`].
-    shadows: ShadowRays,
-    /// As of [`Arrival`].
-    r_u: Spectra,
-    ratio: Column,
-    /// The media where they leave their vertices, as numbers.
-    medium: Vec<u32>,
-    /// The dimension of their random numbers.
-    dimension: Vec<u32>,
+pub(super) struct MediumVertices {
+    /// The turns of the paths.
+    pub turns: Vec<u32>,
+    pub p: [Column; 3],
+    /// The asymmetry of the phase function.
+    pub g: Column,
 }
 
-/// Shadow rays in lanes.
-pub(super) struct PassageLanes<R: Real> {
-    pub r_u: SampledSpectrum<R>,
-    pub ratio: R,
-    pub medium: R::Int,
-    pub dimension: R::Int,
-}
-
-impl Passages {
-    /// Adds the rays of a mask's lanes.
-    #[inline(always)]
-    pub fn append<R: Real>(
-        &mut self,
-        rows: Rows<R>,
-        mask: R::Mask,
-        shadow: &Shadow<R>,
-        lanes: &PassageLanes<R>,
-    ) {
-        if !mask.any() {
-            return;
-        }
-        self.shadows.append(rows, mask, shadow);
-        self.r_u.append(mask, lanes.r_u);
-        lanes.ratio.append(mask, &mut self.ratio);
-        lanes.medium.append(mask, &mut self.medium);
-        lanes.dimension.append(mask, &mut self.dimension);
+impl MediumVertices {
+    pub fn push(&mut self, turn: usize, p: Point3, phase: HenyeyGreenstein) {
+        self.turns.push(turn as u32);
+        self.p.iter_mut().zip(p.to_array()).for_each(|(column, x)| column.push(x));
+        self.g.push(phase.g);
     }
 
-    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.shadows.paths.is_empty()
+        self.turns.is_empty()
     }
 
-    fn clear(&mut self) {
-        self.shadows.clear();
-        self.r_u.clear();
-        self.ratio.clear();
-        [&mut self.medium, &mut self.dimension].into_iter().for_each(Vec::clear);
-    }
-}
-
-impl Segments {
-    /// What the paths of an algorithm that knows media have besides.
-    pub fn media(&self) -> &MediaColumns {
-        self.media.as_ref().expect("invariant: the algorithm knows media")
-    }
-
-    fn media_mut(&mut self) -> &mut MediaColumns {
-        self.media.as_mut().expect("invariant: the algorithm knows media")
-    }
-
-    /// A path that has media.
-    fn path_in_media(&self, paths: &Paths, turn: usize) -> PathInMedia {
-        let row = self.rows[turn] as usize;
-        let media = self.media();
-        let PathState { ray, beta, depth, origin, eta_scale, .. } = self.state(turn);
-        PathInMedia {
-            ray,
-            medium: medium(media.medium[turn]),
-            throughput: Throughput { beta, r_u: media.r_u.row(turn), r_l: media.r_l.row(turn) },
-            heroes: paths.heroes(row),
-            depth,
-            origin: origin.map(|origin| origin.context),
-            eta_scale,
-            rough_before: paths.rough_before[row],
-            first: FirstEvent::None,
-        }
-    }
-
-    /// Appends a path that has media.
-    fn push_in_media(&mut self, row: u32, path: &PathInMedia) {
-        let turn = self.rows.len();
-        let (beta, pdf) = weight_and_pdf(path);
-        let &PathInMedia { ray, medium, depth, eta_scale, first, .. } = path;
-        let origin = path.origin.map(|context| Origin { context, pdf });
-        self.push(row, &PathState { ray, beta, depth, origin, medium, eta_scale, first });
-        self.media_mut().set(turn, path);
-    }
-
-    /// Changes the weights of a path that has passed its medium.
-    fn pass(&mut self, turn: usize, path: &PathInMedia) {
-        let (beta, pdf) = weight_and_pdf(path);
-        self.beta.set_row(turn, beta);
-        if path.origin.is_some() {
-            self.pdf[turn] = pdf;
-        }
-        self.media_mut().set(turn, path);
-    }
-}
-
-/// The estimate β, and the density of the ray's direction.
-fn weight_and_pdf(path: &PathInMedia) -> (SampledSpectrum, f32) {
-    let Throughput { beta, r_u, r_l } = path.throughput;
-    let density = path.heroes.mean(r_u);
-    (beta / density, density / path.heroes.mean(r_l))
-}
-
-impl Batch<'_> {
-    /// Lets the paths in media fly to their hits. Those that are scattered before go on from there.
-    pub(super) fn fly(&mut self, algorithm: &VolPath) {
-        let Self { pass, sampler, stats, columns } = self;
-        let pixels = pass.pixels;
-        let BatchColumns { paths, segments, hits, medium_vertices, .. } = &mut **columns;
-        medium_vertices.clear();
-        for turn in 0..segments.rows.len() {
-            if segments.media().medium[turn] == 0 {
-                continue;
-            }
-            let mut path = segments.path_in_media(paths, turn);
-            let at = segments.rows[turn] as usize;
-            let lambda = paths.lambda(at);
-            paths.resume(sampler, at, pixels.index);
-            let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
-            let has_hit = hits.geometry[turn] != HitColumns::NONE;
-            let t_max = if has_hit { hits.t[turn] } else { f32::INFINITY };
-            let (l, flown) = algorithm.fly(0, &mut tracer, &mut path, t_max, &lambda);
-            paths.add_light(at, l);
-            paths.dimension[at] = sampler.dimension();
-            match flown {
-                Flown::Passed => segments.pass(turn, &path),
-                Flown::Scattered(p, phase) => {
-                    segments.pass(turn, &path);
-                    medium_vertices.push(turn, p, phase);
-                    hits.geometry[turn] = Grouping::GONE;
-                }
-                Flown::Ended => hits.geometry[turn] = Grouping::GONE,
-            }
-        }
-        if !self.columns.medium_vertices.is_empty() {
-            self.scatter_in_media(&algorithm.in_vacuum);
-        }
-    }
-
-    /// Scatters the paths at their vertices in media.
-    fn scatter_in_media(&mut self, algorithm: &Path) {
-        let BatchColumns { medium_vertices, segments, paths, queues, light_samples, .. } = &mut *self.columns;
-        self.pass.instruction_set.dispatch(ScatterInMedia {
-            pass: self.pass,
-            algorithm,
-            vertices: medium_vertices,
-            segments,
-            paths,
-            queues,
-            light_samples,
-        });
-    }
-
-    /// Shades the hit of a path that is not shaded in lanes.
-    pub(super) fn shade_in_media(
-        &mut self,
-        algorithm: &VolPath,
-        (row, turn): (u32, u32),
-        hit: &geometry::Hit,
-    ) {
-        let Self { pass, sampler, stats, columns } = self;
-        let pixels = pass.pixels;
-        let BatchColumns { paths, segments, queues, .. } = &mut **columns;
-        let mut path = segments.path_in_media(paths, turn as usize);
-        let at = row as usize;
-        let mut lambda = paths.lambda(at);
-        let scene = pixels.scene;
-        let surface = scene.interaction(hit, scene.world().surface(&path.ray.ray, hit));
-        paths.resume(sampler, at, pixels.index);
-        let mut tracer = Tracer::new(scene, pixels.view, pass.control, sampler, stats);
-        if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
-            paths.add_light(at, algorithm.emitted(&mut tracer, &path, &surface, &lambda));
-        }
-        let (l, goes_on) = algorithm.scatter(&mut tracer, &mut path, (surface, hit.t), &mut lambda);
-        paths.add_light(at, l);
-        paths.set_lambda(at, &lambda);
-        paths.dimension[at] = sampler.dimension();
-        if goes_on {
-            paths.rough_before[at] = path.rough_before;
-            queues.next.push_in_media(row, &path);
-        }
-    }
-
-    /// Traces the shadow rays that pass media.
-    pub(super) fn connect_through_media(&mut self) {
-        let Self { pass, sampler, stats, columns } = self;
-        let BatchColumns { queues, paths, occluded, .. } = &mut **columns;
-        let Passages { shadows, r_u, ratio, medium: media, dimension } = &queues.passages;
-        let (pixels, rays) = (pass.pixels, shadows.rays.columns());
-        let mut trace = |interfaces| {
-            let mut stopped = std::mem::take(occluded);
-            stopped.clear();
-            stopped.resize(shadows.paths.len(), false);
-            pixels.scene.occluded_batch(rays, interfaces, &mut stopped, stats);
-            stopped
-        };
-        let stopped = trace(Interfaces::Stop);
-        let occluded = if pass.media.has_interfaces { trace(Interfaces::Pass) } else { Vec::new() };
-        for (shadow, &row) in shadows.paths.iter().enumerate() {
-            let meets_interfaces = stopped[shadow];
-            if meets_interfaces && occluded.get(shadow).is_none_or(|&occluded| occluded) {
-                continue;
-            }
-            let at = row as usize;
-            let medium = medium(media[shadow]);
-            let heroes = paths.heroes(at);
-            let passage = if medium.is_none() && !meets_interfaces {
-                Some(Passage::CLEAR)
-            } else {
-                let lambda = paths.lambda(at);
-                sampler.start_pixel_sample(paths.pixel(at), pixels.index, dimension[shadow]);
-                let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
-                let varies = medium.is_some_and(|MediumId(id)| pixels.scene.media()[id as usize].varies());
-                // Within homogeneous media no collisions are chosen.
-                let numbers = if meets_interfaces || varies { tracer.two_numbers() } else { [0.0; 2] };
-                let (ray, t_max) = (rays.ray(shadow), rays.t_max(shadow));
-                if meets_interfaces {
-                    tracer.transmittance((&ray, t_max), medium, &lambda, &heroes, numbers)
-                } else {
-                    tracer.transmittance_within((&ray, t_max), medium, &lambda, &heroes, numbers)
-                }
-            };
-            if let Some(passage) = passage {
-                let arrival =
-                    Arrival { l: shadows.l.row(shadow), r_u: r_u.row(shadow), ratio: ratio[shadow] };
-                paths.add_light(at, arrival.through(&passage, &heroes));
-            }
-        }
-        columns.occluded = stopped;
-        columns.queues.passages.clear();
+    pub fn clear(&mut self) {
+        self.turns.clear();
+        self.p.iter_mut().for_each(Vec::clear);
+        self.g.clear();
     }
 }

@@ -2,47 +2,21 @@
 //! Russian roulette.
 
 use lanes::{Int, Kernel, Real};
-use math::{Point3, Point3Error, Ray, Vec3};
+use math::{Point3Error, Ray, Vec3};
 use scattering::HenyeyGreenstein;
 use scene::light::LightSampleContext;
 
-use super::columns::{Column, Rows};
+use super::columns::Rows;
 use super::lights::{self, Samples};
-use super::media::{PassageLanes, SegmentInMedia};
+use super::media::{MediumVertices, SegmentInMedia};
 use super::numbers::VertexNumbers;
 use super::pass::Pass;
 use super::path::{Roulette, play};
 use super::paths::Paths;
-use super::queues::{Queues, Shadow};
+use super::queues::Queues;
 use super::segments::{Segment, Segments};
+use super::shadows::{PassageLanes, Shadow};
 use crate::Path;
-
-/// Where paths have been scattered by media.
-#[derive(Default)]
-pub(super) struct MediumVertices {
-    turns: Vec<u32>,
-    p: [Column; 3],
-    /// The asymmetry of the phase function.
-    g: Column,
-}
-
-impl MediumVertices {
-    pub fn push(&mut self, turn: usize, p: Point3, phase: HenyeyGreenstein) {
-        self.turns.push(turn as u32);
-        self.p.iter_mut().zip(p.to_array()).for_each(|(column, x)| column.push(x));
-        self.g.push(phase.g);
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.turns.is_empty()
-    }
-
-    pub fn clear(&mut self) {
-        self.turns.clear();
-        self.p.iter_mut().for_each(Vec::clear);
-        self.g.clear();
-    }
-}
 
 /// Scatters paths at vertices in media.
 pub(super) struct ScatterInMedia<'a, 'b> {

@@ -37,6 +37,7 @@ mod queues;
 mod ray_casting;
 mod segments;
 mod shade;
+mod shadows;
 mod spectra;
 mod vol_path;
 mod whitted;
@@ -127,6 +128,9 @@ impl<A: WaveIntegrator> Wavefront<A> {
             batch.go_on();
             control.check()?;
             batch.connect();
+            if A::KNOWS_MEDIA {
+                batch.connect_through_media();
+            }
         }
         control.check()?;
         batch.finish(&mut tiles)

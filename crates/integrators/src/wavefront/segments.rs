@@ -156,6 +156,16 @@ impl Segments {
         }
     }
 
+    /// What the paths of an algorithm that knows media have besides.
+    pub fn media(&self) -> &MediaColumns {
+        self.media.as_ref().expect("invariant: the algorithm knows media")
+    }
+
+    /// The same, to be changed.
+    pub fn media_mut(&mut self) -> &mut MediaColumns {
+        self.media.as_mut().expect("invariant: the algorithm knows media")
+    }
+
     /// Appends a path of others.
     pub fn push_from(&mut self, others: &Self, from: usize) {
         let turn = self.rows.len();

@@ -46,8 +46,8 @@ impl CloudMedium {
     }
 }
 
-/// Computes the density of a cloud at a point of the medium's space. Noise takes most of the time of
-/// paths through clouds, so that lanes have its values at the points that are known at once.
+/// Computes the density of a cloud at a point of the medium's space. Noise takes most of the time
+/// of paths through clouds, so lanes have its values at the points that are known at once.
 struct Density<'a> {
     cloud: &'a CloudMedium,
     p: Point3,
