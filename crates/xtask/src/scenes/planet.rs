@@ -1,7 +1,7 @@
 //! Small planets of 10⁵ and 10⁶ spheres, seen from outside and by one who walks there.
 //!
-//! Land and motion are those of `alhazen view --planet`: the picture is that of the planet after
-//! some seconds, when most of what has fallen rests.
+//! Land and motion are those of `alhazen view --planet`: the picture is that of the smaller planet
+//! after two seconds, and of the larger one, a step of which takes a second, after half of one.
 
 use std::fs;
 use std::io;
@@ -9,17 +9,15 @@ use std::path::Path;
 
 use planet::{Input, Planet, Viewpoint, Walker, scene};
 
-/// Planets by the power of ten of their spheres.
-const PLANETS: [(&str, usize); 2] = [("5", 100_000), ("6", 1_000_000)];
-
-/// Steps of a sixtieth of a second.
-const STEPS: u32 = 240;
+/// Planets by the power of ten of their spheres, and the steps of a sixtieth of a second before they
+/// are seen.
+const PLANETS: [(&str, usize, u32); 2] = [("5", 100_000, 120), ("6", 1_000_000, 30)];
 
 pub fn make(folder: &Path) -> io::Result<()> {
-    for (power, count) in PLANETS {
+    for (power, count, steps) in PLANETS {
         let mut planet = Planet::new(count);
         let mut walker = Walker::new(&planet);
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             walker.step(&planet, &Input::default(), 1.0 / 60.0);
             planet.step(Some(walker.body()), 1.0 / 60.0);
         }

@@ -1,11 +1,15 @@
 //! `cargo xtask bench`: installs the programs that alhazen is compared with from PyPI, each into a
-//! Python environment of its own under `target/`, and runs the measurement.
+//! Python environment of its own under `target/`, and runs the measurement; or measures alhazen
+//! alone.
+
+mod forest;
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::command::{cargo, python_environment, succeed, target};
+use crate::command::{cargo, python_environment, succeed, target};
+pub use forest::measure as forest;
 
 /// The package of PyPI that carries Embree's library.
 const EMBREE: &str = "embreex==4.4.*";
