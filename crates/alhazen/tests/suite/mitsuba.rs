@@ -184,6 +184,36 @@ fn homogeneous_media() {
     }
 }
 
+/// The side of the grid of densities, and how many voxels each of its voxels becomes along it.
+const SIDE: usize = 16;
+const FINER: usize = 4;
+
+/// A grid of densities as one of more voxels, interpolated. Mitsuba continues the outermost
+/// densities to the faces of the grid; those of the format fall off to half of them there, from the
+/// centres of the outermost voxels on, which are nearer to the faces then.
+fn finer(densities: &[f32]) -> impl Iterator<Item = f32> + '_ {
+    let fine = 0..SIDE * FINER;
+    let places = fine.clone().flat_map(move |z| {
+        let fine = fine.clone();
+        fine.clone().flat_map(move |y| fine.clone().map(move |x| [x, y, z]))
+    });
+    places.map(|place| {
+        let at = place.map(|i| ((i as f32 + 0.5) / FINER as f32 - 0.5).clamp(0.0, (SIDE - 1) as f32));
+        (0..8)
+            .map(|corner| {
+                let (mut index, mut weight) = (0, 1.0);
+                for axis in [2, 1, 0] {
+                    let low = (at[axis] as usize).min(SIDE - 2);
+                    let (bit, t) = (corner >> axis & 1, at[axis] - low as f32);
+                    index = SIDE * index + low + bit;
+                    weight *= if bit == 1 { t } else { 1.0 - t };
+                }
+                weight * densities[index]
+            })
+            .sum()
+    })
+}
+
 /// A grid of densities.
 #[test]
 fn a_grid_medium() {
@@ -192,12 +222,14 @@ fn a_grid_medium() {
     let bytes = std::fs::read(scene.join("textures/sigmat.vol")).expect("the volume is readable");
     // A header of 48 bytes is followed by 16³ floats.
     let densities = bytes[48..].chunks_exact(4).map(|value| f32::from_le_bytes(value.try_into().unwrap()));
-    let densities: String = densities.map(|density| format!("{density} ")).collect();
-    let text = "AttributeBegin Translate -0.5 -0.5 -0.5 Scale 1.5 1.5 1.5\n\
-                MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"\n\
-                \"integer nx\" 16 \"integer ny\" 16 \"integer nz\" 16 \"float density\" ["
-        .to_owned()
-        + &densities
+    let densities: Vec<f32> = densities.collect();
+    let densities: String = finer(&densities).map(|density| format!("{density} ")).collect();
+    let side = SIDE * FINER;
+    let text = format!(
+        "AttributeBegin Translate -0.5 -0.5 -0.5 Scale 1.5 1.5 1.5\n\
+         MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"\n\
+         \"integer nx\" {side} \"integer ny\" {side} \"integer nz\" {side} \"float density\" ["
+    ) + &densities
         + "]\n"
         + &medium([1.0; 3], [0.99, 0.5, 0.5], 5.0)
         + "AttributeEnd\nAttributeBegin Scale 1.5 1.5 1.5\n\
