@@ -1,8 +1,8 @@
 //! How memory and time grow with the triangles of a forest of instances.
 //!
-//! An instance takes the memory of a transform and a node, whatever the number of its triangles, and
-//! a ray finds its way through twice as many by one more step of the tree. So memory grows by a
-//! constant for each tree, and the tests of a ray as the logarithm of their number.
+//! An instance takes the memory of a transform and a node, whatever the number of its triangles,
+//! and a ray finds its way through twice as many by one more step of the tree. So memory grows by
+//! a constant for each tree, and the tests of a ray as the logarithm of their number.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -95,7 +95,8 @@ fn plot(costs: &[Cost]) -> String {
             first.triangles * ratio,
         );
     }
-    let curves: [(&str, &str, fn(&Cost) -> f64); 4] = [
+    type Value = fn(&Cost) -> f64;
+    let curves: [(&str, &str, Value); 4] = [
         ("triangles", "#aaa", |cost| cost.triangles),
         ("time a ray", "#c33", |cost| cost.nanoseconds),
         ("tests a ray", "#36c", |cost| cost.tests),

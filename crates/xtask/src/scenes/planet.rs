@@ -9,8 +9,8 @@ use std::path::Path;
 
 use planet::{Input, Planet, Viewpoint, Walker, scene};
 
-/// Planets by the power of ten of their spheres, and the steps of a sixtieth of a second before they
-/// are seen.
+/// Planets by the power of ten of their spheres, and the steps of a sixtieth of a second before
+/// they are seen.
 const PLANETS: [(&str, usize, u32); 2] = [("5", 100_000, 120), ("6", 1_000_000, 30)];
 
 pub fn make(folder: &Path) -> io::Result<()> {
