@@ -98,6 +98,28 @@ impl IntegratorDesc {
         matches!(self, Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_))
     }
 
+    /// Whether the algorithm estimates pixels one by one, with nothing else.
+    pub fn estimates_pixels(&self) -> bool {
+        match self {
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(_)
+            | Self::RandomWalk(_)
+            | Self::SimplePath(_)
+            | Self::Path(_)
+            | Self::VolPath(_)
+            | Self::SimpleVolPath(_) => true,
+            Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Mlt(_)
+            | Self::PhotonMapping(_)
+            | Self::Sppm(_)
+            | Self::Vcm(_)
+            | Self::Radiosity(_)
+            | Self::Function(_) => false,
+        }
+    }
+
     /// Whether the algorithm draws scattering under surfaces, or no scattering at all.
     pub fn knows_subsurface(&self) -> bool {
         match self {

@@ -11,6 +11,7 @@ use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
 use scene::texture::color_space;
 
+use crate::adaptive::{Adaptive, PixelIntegrator};
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, Function, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping,
@@ -39,6 +40,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     builder.subsurface();
     builder.connections_to_lens();
     builder.parts();
+    builder.samples();
     let diagnostics = builder.diagnostics;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
@@ -48,8 +50,16 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
 
 /// The sampler of a scene whose settings are valid.
 pub fn sampler(scene: &SceneDesc) -> Sampler {
+    sampler_with_seed(scene, seed(scene))
+}
+
+/// The seed of the sampler of a scene.
+fn seed(scene: &SceneDesc) -> u32 {
+    scene.sampler.seed.unwrap_or(scene.options.seed) as u32
+}
+
+fn sampler_with_seed(scene: &SceneDesc, seed: u32) -> Sampler {
     let desc = &scene.sampler;
-    let seed = desc.seed.unwrap_or(scene.options.seed) as u32;
     let (samples, resolution) = (desc.kind.samples_per_pixel(), scene.film.resolution);
     match desc.kind {
         SamplerKind::Independent { .. } => Sampler::Independent(Independent::new(samples, seed)),
@@ -147,10 +157,23 @@ impl Builder<'_> {
             .push(warning.with_help("`path`, `vol-path` and algorithms with light paths draw it"));
     }
 
+    /// Warns if pixels cannot take different numbers of samples.
+    fn samples(&mut self) {
+        let integrator = &self.desc.integrator;
+        if self.desc.options.adaptive.is_none() || integrator.estimates_pixels() {
+            return;
+        }
+        let message = format!(
+            "integrator `{}` does not estimate pixels one by one; all take the same number of samples",
+            integrator.name()
+        );
+        self.diagnostics.push(Diagnostic::warning("not-adaptive", message, integrator.origin.span));
+    }
+
     /// The sampler of light paths, independent of that of camera paths.
     fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
         const LIGHTS: u32 = 0x6c69_6768;
-        let seed = hash(&[self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32, LIGHTS]) as u32;
+        let seed = hash(&[seed(self.desc), LIGHTS]) as u32;
         let samples = of_camera.samples_per_pixel();
         Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
     }
@@ -167,17 +190,17 @@ impl Builder<'_> {
         match self.desc.integrator.value.clone() {
             IntegratorDesc::RayCasting => self.waves_in_media(RayCasting, sampler),
             IntegratorDesc::Whitted(desc) if desc.reflections != ReflectionsDesc::Traced => {
-                pixels(Whitted::new(desc), sampler)
+                self.pixels(Whitted::new(desc), sampler)
             }
             IntegratorDesc::Whitted(desc) => self.waves_in_media(Whitted::new(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
                 self.waves(AmbientOcclusion::new(desc, color_space), sampler)
             }
-            IntegratorDesc::RandomWalk(desc) => pixels(RandomWalk(desc), sampler),
-            IntegratorDesc::SimplePath(desc) => pixels(SimplePath(desc), sampler),
+            IntegratorDesc::RandomWalk(desc) => self.pixels(RandomWalk(desc), sampler),
+            IntegratorDesc::SimplePath(desc) => self.pixels(SimplePath(desc), sampler),
             IntegratorDesc::Path(desc) => self.path(desc, Interfaces::Stop, sampler),
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
-            IntegratorDesc::SimpleVolPath(desc) => pixels(VolPath::simple(desc.max_depth), sampler),
+            IntegratorDesc::SimpleVolPath(desc) => self.pixels(VolPath::simple(desc.max_depth), sampler),
             IntegratorDesc::LightTracing(desc) => {
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(LightTracing::new(desc, sampler, light_sampler))
@@ -188,10 +211,7 @@ impl Builder<'_> {
                 self.techniques(&desc, &bdpt);
                 Box::new(bdpt)
             }
-            IntegratorDesc::Mlt(desc) => {
-                let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
-                Box::new(Mlt::new(desc, sampler, seed))
-            }
+            IntegratorDesc::Mlt(desc) => Box::new(Mlt::new(desc, sampler, seed(self.desc))),
             IntegratorDesc::PhotonMapping(desc) => {
                 Box::new(PhotonMapping::new(desc, sampler, self.photon_seed(None)))
             }
@@ -264,29 +284,38 @@ impl Builder<'_> {
 
     /// An algorithm that both engines have, and that knows media in the scalar one.
     fn waves_in_media(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
-        if self.desc.media.is_empty() { self.waves(rays, sampler) } else { pixels(rays, sampler) }
+        if self.desc.media.is_empty() { self.waves(rays, sampler) } else { self.pixels(rays, sampler) }
+    }
+
+    /// An algorithm that the scalar engine has.
+    fn pixels(&self, rays: impl RayIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
+        self.adaptive(PixelLoop::new(rays, sampler.clone()), sampler)
+    }
+
+    /// An algorithm with this sampler, which may take more samples where pixels differ.
+    fn adaptive(&self, pixels: impl PixelIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
+        const COARSE: u32 = 0x636f_6172;
+        let Some(limit) = self.desc.options.adaptive else { return Box::new(pixels) };
+        let coarse = sampler_with_seed(self.desc, hash(&[seed(self.desc), COARSE]) as u32);
+        Box::new(Adaptive::new(pixels, [sampler, coarse], limit))
     }
 
     /// An algorithm that both engines have.
     fn waves(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
         match self.desc.options.engine {
-            Engine::Wavefront => Box::new(Wavefront::new(rays, sampler)),
-            Engine::Scalar => pixels(rays, sampler),
+            Engine::Wavefront => self.adaptive(Wavefront::new(rays, sampler.clone()), sampler),
+            Engine::Scalar => self.pixels(rays, sampler),
         }
     }
 
     fn path(&self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
         if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
             let path = VolPath::new(desc);
-            return if self.has_parts() { pixels(path, sampler) } else { self.waves(path, sampler) };
+            return if self.has_parts() { self.pixels(path, sampler) } else { self.waves(path, sampler) };
         }
         let path = Path::new(desc, interfaces);
-        if self.has_parts() { pixels(path, sampler) } else { self.waves(path, sampler) }
+        if self.has_parts() { self.pixels(path, sampler) } else { self.waves(path, sampler) }
     }
-}
-
-fn pixels(rays: impl RayIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
-    Box::new(PixelLoop::new(rays, sampler))
 }
 
 fn randomize(randomization: Randomization) -> Randomize {

@@ -28,6 +28,7 @@
 //! throughput, and the depth of a path the number of its scattering events: depth 0 is emission,
 //! depth 1 adds direct light.
 
+mod adaptive;
 mod bidirectional;
 mod build;
 mod camera_paths;

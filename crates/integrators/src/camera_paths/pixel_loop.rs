@@ -1,12 +1,13 @@
 //! Camera rays for all pixels: turns a [`RayIntegrator`] into an [`Integrator`].
 
-use film::{Film, Filter};
+use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use scene::{Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use crate::adaptive::PixelIntegrator;
 use crate::transport::Record;
 use crate::transport::pixel_samples::{PixelSample, PixelSamples};
 use crate::{Cancelled, Control, Integrator, PassError, Tracer};
@@ -79,14 +80,9 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
         control: &Control,
     ) -> Result<RayStats, PassError> {
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        let stats = pixels.add(film.tiles_mut()?, control, |sample, tracer| {
-            let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
-            let l = self.rays.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight;
-            tracer.scale_parts(camera_ray.weight);
-            l
-        })?;
-        Ok(stats)
+        let (filter, sampler) = (&filter, &self.sampler);
+        let pixels = PixelSamples { index: pass, scene, view, filter, sampler, counts: None };
+        Ok(self.add(&pixels, film.tiles_mut()?, control)?)
     }
 
     fn record(
@@ -97,7 +93,23 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
         filter: &Filter,
         control: &Control,
     ) -> Option<Result<Record, Cancelled>> {
-        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler };
+        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler, counts: None };
         Some(record(&self.rays, &pixels, pixel, control))
+    }
+}
+
+impl<R: RayIntegrator> PixelIntegrator for PixelLoop<R> {
+    fn add(
+        &self,
+        samples: &PixelSamples,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        samples.add(tiles, control, |sample, tracer| {
+            let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
+            let l = self.rays.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight;
+            tracer.scale_parts(camera_ray.weight);
+            l
+        })
     }
 }

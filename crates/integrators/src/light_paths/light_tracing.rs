@@ -101,7 +101,8 @@ impl Integrator for LightTracing {
         };
         let filter = film.filter().clone();
         let (tiles, splatter) = film.tiles_and_splatter()?;
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         let stats = pixels.add(tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();

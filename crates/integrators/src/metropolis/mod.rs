@@ -138,7 +138,8 @@ impl Integrator for Mlt {
         let (tiles, splatter) = film.tiles_and_splatter()?;
         let domain = FilmDomain::new(&splatter);
 
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         let mut stats = pixels.add(tiles, control, |sample, tracer| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
             self.seen.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight

@@ -121,7 +121,8 @@ impl Integrator for Sppm {
         let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
         let shutter = self.merging.shutter(view, pass);
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         stats += pixels.add_at(Some(&shutter), film.tiles_mut()?, control, |sample, tracer| {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };

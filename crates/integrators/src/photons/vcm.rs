@@ -155,7 +155,8 @@ impl Integrator for Vcm {
         let shutter = self.merging.shutter(view, pass);
         let filter = film.filter().clone();
         let (tiles, splatter) = film.tiles_and_splatter()?;
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         stats += pixels.add_at(Some(&shutter), tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;
             let [x, y] = sample.pixel;

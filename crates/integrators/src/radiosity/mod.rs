@@ -171,7 +171,8 @@ impl Integrator for Radiosity {
         let mut stats = state.advance(pass, scene, view, self.color_space, control)?;
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         let shown = SolutionRadiance { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;

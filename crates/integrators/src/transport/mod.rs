@@ -25,6 +25,7 @@ pub(crate) mod path_state;
 pub(crate) mod pixel_samples;
 mod record;
 pub(crate) mod roulette;
+pub(crate) mod sample_counts;
 pub(crate) mod shutter_sample;
 pub(crate) mod single_scattering;
 pub(crate) mod subsurface;

@@ -16,10 +16,11 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::first_hit::first_hit;
+use super::sample_counts::SampleCounts;
 use super::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
-/// One sample of each pixel.
+/// One sample of each pixel that takes it.
 #[derive(Clone, Copy)]
 pub(crate) struct PixelSamples<'a> {
     /// The index of the sample.
@@ -28,6 +29,8 @@ pub(crate) struct PixelSamples<'a> {
     pub view: &'a View,
     pub filter: &'a Filter,
     pub sampler: &'a Sampler,
+    /// Where pixels take different numbers of samples, how many.
+    pub counts: Option<&'a SampleCounts>,
 }
 
 /// A sample of a pixel.
@@ -46,6 +49,11 @@ pub(crate) struct PixelSample {
 }
 
 impl PixelSamples<'_> {
+    /// Whether a pixel takes a sample.
+    pub fn takes(&self, pixel: [i32; 2]) -> bool {
+        self.counts.is_none_or(|counts| counts.takes(pixel, self.index))
+    }
+
     /// Adds the estimates of `radiance` to each pixel of the tiles, at the wavelengths that it
     /// leaves in the sample. The tracer's sampler continues after the dimensions of the camera
     /// sample. After a cancellation the film has all finished samples, and no parts of others.
@@ -72,7 +80,7 @@ impl PixelSamples<'_> {
             let (bounds, mut parts) = (tile.bounds(), tile.new_parts());
             let done = (bounds.min[1]..bounds.max[1]).try_for_each(|y| {
                 control.check()?;
-                for x in bounds.min[0]..bounds.max[0] {
+                for x in (bounds.min[0]..bounds.max[0]).filter(|&x| self.takes([x, y])) {
                     let mut sample = self.begin(shutter, [x, y], &mut sampler);
                     parts.iter_mut().for_each(Parts::clear);
                     let mut tracer = Tracer::new(self.scene, self.view, control, &mut sampler, &mut stats)

@@ -11,7 +11,7 @@ use spectrum::SampledWavelengths;
 
 use super::begin::Begin;
 use super::emission::{Emit, Escape, LightHit};
-use super::finish::{Finish, finish_with_first_hits};
+use super::finish::{Finish, finish_some, finish_with_first_hits};
 use super::groups::{Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
@@ -26,7 +26,7 @@ use crate::transport::direct::DirectLighting;
 use crate::transport::path_state::PathState;
 use crate::transport::pixel_samples::PixelSamples;
 
-/// The paths of some tiles, one for each pixel. Between the stages here an algorithm
+/// The paths of some tiles, one for each pixel that takes a sample. Between the stages here an algorithm
 /// [shades](super::WaveIntegrator::shade) the hits.
 pub struct Batch<'a> {
     pub(super) pass: Pass<'a>,
@@ -74,12 +74,13 @@ impl<'a> Batch<'a> {
         Self { pass, sampler: pass.pixels.sampler.clone(), stats: RayStats::default(), columns }
     }
 
-    /// Starts a path for each pixel, whose camera ray may have differentials.
+    /// Starts a path for each pixel that takes a sample, whose camera ray may have differentials.
     pub(super) fn begin(&mut self, tiles: &[FilmTile], besides: Besides) {
         let instruction_set = self.pass.instruction_set;
         let with_weights = !self.pass.pixels.view.camera.is_unweighted();
         let Self { pass, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
-        paths.start(tiles.iter().map(FilmTile::bounds), with_weights, besides.media);
+        let bounds = tiles.iter().map(FilmTile::bounds);
+        paths.start(bounds, |pixel| pass.pixels.takes(pixel), with_weights, besides.media);
         segments.start_from_camera(paths.len(), besides, pass.pixels.view.medium);
         queues.next.start(paths.len(), besides);
         instruction_set.dispatch(Begin { pass: *pass, paths, segments, besides });
@@ -317,14 +318,18 @@ impl<'a> Batch<'a> {
         self.columns.paths.weigh();
         let mut first = 0;
         for tile in tiles {
-            let (pixels, with_first_hits) = (tile.bounds().area(), tile.wants_first_hit());
-            let finish = Finish { paths: &self.columns.paths, first, tile };
+            let paths = &self.columns.paths;
+            let rows = first..paths.end_of(tile.bounds(), first);
+            first = rows.end;
+            let (with_first_hits, is_full) = (tile.wants_first_hit(), rows.len() == tile.bounds().area());
+            let finish = Finish { paths, rows, tile };
             if with_first_hits {
                 finish_with_first_hits(&self.pass, &mut self.sampler, &mut self.stats, finish)?;
-            } else {
+            } else if is_full {
                 self.pass.instruction_set.dispatch(finish);
+            } else {
+                finish_some(finish);
             }
-            first += pixels;
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! The end of paths on the film.
 
+use std::ops::Range;
+
 use film::FilmTile;
 use lanes::{Kernel, Real};
 use sampling::Sampler;
@@ -10,11 +12,11 @@ use crate::transport::pixel_samples::PixelSample;
 use crate::{Cancelled, Tracer};
 use geometry::RayStats;
 
-/// Adds the light of successive paths to the pixels of a tile.
+/// Adds the light of paths to the pixels of a tile, all of which have one.
 pub(super) struct Finish<'a, 'film> {
     pub paths: &'a Paths,
-    /// The row of the path of the tile's first pixel.
-    pub first: usize,
+    /// The rows of the paths of the tile.
+    pub rows: Range<usize>,
     pub tile: &'a mut FilmTile<'film>,
 }
 
@@ -23,10 +25,10 @@ impl Kernel for Finish<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { paths, first, tile } = self;
-        let pixels = tile.bounds().area();
+        let Self { paths, rows, tile } = self;
+        let pixels = rows.len();
         for pixel in (0..pixels).step_by(R::LANES) {
-            let row = first + pixel;
+            let row = rows.start + pixel;
             let l = paths.l.load::<R>(row);
             let lambda = paths.wavelengths(row);
             let weight = R::load(&paths.filter_weight[row..]);
@@ -35,15 +37,22 @@ impl Kernel for Finish<'_, '_> {
     }
 }
 
+/// The same, one by one, where some of the pixels have a path.
+pub(super) fn finish_some(Finish { paths, rows, tile }: Finish) {
+    for row in rows {
+        tile.add_sample(paths.pixel(row), &paths.l.row(row), &paths.lambda(row), paths.filter_weight[row]);
+    }
+}
+
 /// The same, one by one, for a film with layers of first hits, which are traced.
 pub(super) fn finish_with_first_hits(
     pass: &Pass,
     sampler: &mut Sampler,
     stats: &mut RayStats,
-    Finish { paths, first, tile }: Finish,
+    Finish { paths, rows, tile }: Finish,
 ) -> Result<(), Cancelled> {
     let pixels = pass.pixels;
-    for row in first..first + tile.bounds().area() {
+    for row in rows {
         let pixel = paths.pixel(row);
         let lambda = paths.lambda(row);
         let mut sample: PixelSample = pixels.begin(None, pixel, sampler);

@@ -57,6 +57,7 @@ use self::materials::LaneMaterials;
 use self::media::LaneMedia;
 use self::pass::Pass;
 use self::segments::Besides;
+use crate::adaptive::PixelIntegrator;
 use crate::camera_paths::record;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError, RayIntegrator, Record};
@@ -159,34 +160,9 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
         control: &Control,
     ) -> Result<RayStats, PassError> {
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        let tiles = film.tiles_mut()?;
-        let batches = BATCHES_PER_THREAD * rayon::current_num_threads();
-        let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
-        let pass = Pass {
-            materials: &self.materials,
-            media: &self.media,
-            area_lights: &self.area_lights,
-            pixels: &pixels,
-            control,
-            instruction_set: self.instruction_set,
-        };
-        let this = &*self;
-        let run = |tiles: Vec<FilmTile>| -> Result<RayStats, Cancelled> {
-            let mut columns = this.spare().pop().unwrap_or_default();
-            let mut batch = Batch::new(pass, &mut columns);
-            let done = this.trace(&mut batch, tiles);
-            let stats = batch.stats;
-            control.count(&stats);
-            done?;
-            this.spare().push(columns);
-            Ok(stats)
-        };
-        let batches = tiles.into_par_iter().chunks(batch_tiles).map(run);
-        Ok(batches.try_reduce(RayStats::default, |mut sum, stats| {
-            sum += stats;
-            Ok(sum)
-        })?)
+        let (filter, sampler) = (&filter, &self.sampler);
+        let pixels = PixelSamples { index: pass, scene, view, filter, sampler, counts: None };
+        Ok(self.add(&pixels, film.tiles_mut()?, control)?)
     }
 
     fn record(
@@ -197,7 +173,41 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
         filter: &Filter,
         control: &Control,
     ) -> Option<Result<Record, Cancelled>> {
-        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler };
+        let pixels = PixelSamples { index, scene, view, filter, sampler: &self.sampler, counts: None };
         Some(record(&self.algorithm, &pixels, pixel, control))
+    }
+}
+
+impl<A: WaveIntegrator> PixelIntegrator for Wavefront<A> {
+    fn add(
+        &self,
+        samples: &PixelSamples,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let batches = BATCHES_PER_THREAD * rayon::current_num_threads();
+        let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
+        let pass = Pass {
+            materials: &self.materials,
+            media: &self.media,
+            area_lights: &self.area_lights,
+            pixels: samples,
+            control,
+            instruction_set: self.instruction_set,
+        };
+        let run = |tiles: Vec<FilmTile>| -> Result<RayStats, Cancelled> {
+            let mut columns = self.spare().pop().unwrap_or_default();
+            let mut batch = Batch::new(pass, &mut columns);
+            let done = self.trace(&mut batch, tiles);
+            let stats = batch.stats;
+            control.count(&stats);
+            done?;
+            self.spare().push(columns);
+            Ok(stats)
+        };
+        tiles.into_par_iter().chunks(batch_tiles).map(run).try_reduce(RayStats::default, |mut sum, stats| {
+            sum += stats;
+            Ok(sum)
+        })
     }
 }

@@ -40,13 +40,20 @@ impl Paths {
         self.count
     }
 
-    /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
-    /// wavelengths and weights yet.
-    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_weights: bool, with_media: bool) {
+    /// Replaces all paths by one for each pixel of the rectangles that takes one, row by row, which
+    /// have no wavelengths and weights yet.
+    pub fn start(
+        &mut self,
+        pixels: impl Iterator<Item = Bounds2i>,
+        takes: impl Fn([i32; 2]) -> bool,
+        with_weights: bool,
+        with_media: bool,
+    ) {
         self.pixels.clear();
         for Bounds2i { min, max } in pixels {
             for y in min[1]..max[1] {
-                self.pixels.extend((min[0]..max[0]).map(|x| [x as u32, y as u32]));
+                let row = (min[0]..max[0]).filter(|&x| takes([x, y]));
+                self.pixels.extend(row.map(|x| [x as u32, y as u32]));
             }
         }
         self.count = self.pixels.len();
@@ -70,6 +77,11 @@ impl Paths {
             index,
             dimension: R::Int::gather(&self.dimension, rows.indices),
         }
+    }
+
+    /// The end of the rows, from `first` on, whose pixels are in a rectangle.
+    pub fn end_of(&self, pixels: Bounds2i, first: usize) -> usize {
+        (first..self.count).find(|&row| !pixels.contains(self.pixel(row))).unwrap_or(self.count)
     }
 
     /// The pixel of a path.

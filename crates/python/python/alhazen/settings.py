@@ -747,6 +747,7 @@ class accelerator:
 
 def options(
     *,
+    adaptive: float | None = None,
     disablepixeljitter: bool | None = None,
     disabletexturefiltering: bool | None = None,
     disablewavelengthjitter: bool | None = None,
@@ -761,6 +762,10 @@ def options(
     wavefront: bool | None = None,
 ) -> Settings:
     """Settings of the scene's options.
+
+    adaptive: a number above 0. Contrast of neighbouring pixels, a difference of sRGB codes, from
+    which a pixel takes all of its samples, down to a sixteenth of them where there is none.
+    Otherwise all pixels take as many.
 
     disablepixeljitter: true or false, by default false. Sample every pixel at its centre only.
 

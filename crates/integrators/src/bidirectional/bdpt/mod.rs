@@ -92,7 +92,8 @@ impl Integrator for Bdpt {
         let filter = film.filter().clone();
         let techniques = self.techniques.open(film)?;
         let (tiles, splatter) = film.tiles_and_splatter()?;
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         // On films of splats, the sample of a pixel is one of as many paths as there are pixels.
         let per_sample = pixel_count as f32 / filter.integral();
         let stats = pixels.add(tiles, control, |sample, tracer| {

@@ -213,7 +213,8 @@ impl Integrator for PhotonMapping {
         let (direct, mean_radius) = (&self.direct, &self.mean_radius);
         let gather = Gather { direct, maps: &maps, settings, neighbourhood, mean_radius };
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        let pixels =
+            PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler, counts: None };
         stats += pixels.add_at(Some(&shutter), film.tiles_mut()?, control, |sample, tracer| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
             gather.li(camera_ray.ray, &sample.lambda, tracer) * camera_ray.weight
