@@ -8,6 +8,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
+use crate::command::target;
+
 /// How large pictures are made.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Size {
@@ -27,18 +29,51 @@ pub struct Drawn {
     pub text: String,
 }
 
+/// Runs commands, and tells with the costs of all but the last how far their pictures are from its.
+pub fn compare(root: &Path, program: &Path, lines: &[&str]) -> Result<Vec<Drawn>, String> {
+    let folder = target(root).join("gallery");
+    let file = |i: usize| folder.join(format!("compared-{i}.exr"));
+    let run = |(i, line): (usize, &&str)| run_and_keep(root, program, line, Size::Whole, Some(&file(i)));
+    let mut drawn = lines.iter().enumerate().map(run).collect::<Result<Vec<Drawn>, String>>()?;
+    if let Some((_, others)) = drawn.split_last_mut() {
+        let reference = file(others.len());
+        for (i, drawn) in others.iter_mut().enumerate() {
+            let mut command = Command::new(program);
+            command.args(["image", "diff", "--json"]).args([&reference, &file(i)]);
+            let json = json(&output(&mut command)?)?;
+            let [flip, relmse] = ["flip", "relmse"].map(|key| json[key].as_f64().unwrap_or(f64::NAN));
+            drawn.cost += &format!("; FLIP {flip:.3} and relMSE {relmse:.4} to the last picture");
+        }
+    }
+    Ok(drawn)
+}
+
 /// Runs a command, as a reader would in the root of the repository.
 pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn, String> {
+    run_and_keep(root, program, line, size, None)
+}
+
+/// The same; a picture is also written to another file.
+fn run_and_keep(
+    root: &Path,
+    program: &Path,
+    line: &str,
+    size: Size,
+    also: Option<&Path>,
+) -> Result<Drawn, String> {
     let failed = |problem: String| format!("`{line}`: {problem}");
     let words: Vec<&str> = line.split_whitespace().collect();
     let ["alhazen", name @ ("render" | "trace-pixel"), rest @ ..] = &words[..] else {
         return Err(failed("it is neither `alhazen render` nor `alhazen trace-pixel`".into()));
     };
-    let folder = crate::command::target(root).join("gallery");
+    let folder = target(root).join("gallery");
     fs::create_dir_all(&folder).map_err(|error| failed(error.to_string()))?;
     let file = folder.join(if *name == "render" { "picture.jpg" } else { "picture.svg" });
     let mut command = Command::new(program);
     command.current_dir(root).arg(name).arg("-o").arg(&file);
+    if let Some(file) = also {
+        command.arg("-o").arg(file);
+    }
     match (*name, size) {
         ("render", Size::Small) => {
             command.args(without_size(rest)).args(["--resolution", "36x24", "--spp", "1", "--json"]);
@@ -50,19 +85,30 @@ pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn,
             command.args(rest);
         }
     }
-    let output = command.output().map_err(|error| failed(error.to_string()))?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    if !output.status.success() {
-        return Err(failed(format!("{text}{}", String::from_utf8_lossy(&output.stderr))));
-    }
+    let text = output(&mut command).map_err(failed)?;
     let bytes = fs::read(&file).map_err(|error| failed(error.to_string()))?;
     let kind = if *name == "render" { "jpeg" } else { "svg+xml" };
     let picture = format!("data:image/{kind};base64,{}", STANDARD.encode(bytes));
     if *name == "trace-pixel" {
         return Ok(Drawn { picture, cost: String::new(), text });
     }
-    let json: Value = serde_json::from_str(&text).map_err(|error| failed(error.to_string()))?;
+    let json = json(&text).map_err(failed)?;
     Ok(Drawn { picture, cost: cost(&json), text: String::new() })
+}
+
+/// What a command writes.
+fn output(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| error.to_string())?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    if output.status.success() {
+        Ok(text)
+    } else {
+        Err(format!("{text}{}", String::from_utf8_lossy(&output.stderr)))
+    }
+}
+
+fn json(text: &str) -> Result<Value, String> {
+    serde_json::from_str(text).map_err(|error| error.to_string())
 }
 
 /// The words of a command without those that say how large and how good a picture is.

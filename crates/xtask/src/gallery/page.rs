@@ -7,7 +7,8 @@ use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd, html};
 
 use super::command::{self, Drawn, Size};
 
-/// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line.
+/// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line; those
+/// of `sh compared` are compared with the last one of the block.
 pub struct Page {
     /// The first heading.
     pub title: String,
@@ -63,15 +64,24 @@ impl Page {
         program: &Path,
         [before, after]: [Option<&Self>; 2],
     ) -> Result<String, String> {
-        let (mut events, mut inside) = (Vec::new(), false);
+        let (mut events, mut inside, mut compared) = (Vec::new(), false, false);
         for event in Parser::new_ext(&self.text, Options::ENABLE_TABLES) {
             match event {
-                Event::Start(Tag::CodeBlock(kind)) if is_of_commands(&kind) => inside = true,
+                Event::Start(Tag::CodeBlock(kind)) if is_of_commands(&kind) => {
+                    (inside, compared) = (true, is_compared(&kind));
+                }
                 Event::End(TagEnd::CodeBlock) if inside => inside = false,
                 Event::Text(lines) if inside => {
-                    let figures: Result<String, String> =
-                        lines.lines().map(|line| figure(root, program, line)).collect();
-                    events.push(Event::Html(format!("<div class=\"pictures\">{}</div>\n", figures?).into()));
+                    let lines: Vec<&str> = lines.lines().collect();
+                    let drawn = if compared {
+                        command::compare(root, program, &lines)?
+                    } else {
+                        let run = |line: &&str| command::run(root, program, line, Size::Whole);
+                        lines.iter().map(run).collect::<Result<Vec<Drawn>, String>>()?
+                    };
+                    let figures: String =
+                        lines.into_iter().zip(drawn).map(|(line, drawn)| figure(line, drawn)).collect();
+                    events.push(Event::Html(format!("<div class=\"pictures\">{figures}</div>\n").into()));
                 }
                 // Texts refer to texts, pages to pages.
                 Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
@@ -98,18 +108,21 @@ impl Page {
 }
 
 fn is_of_commands(kind: &CodeBlockKind) -> bool {
-    matches!(kind, CodeBlockKind::Fenced(language) if &**language == "sh")
+    matches!(kind, CodeBlockKind::Fenced(info) if info.split(' ').next() == Some("sh"))
+}
+
+fn is_compared(kind: &CodeBlockKind) -> bool {
+    matches!(kind, CodeBlockKind::Fenced(info) if info.split(' ').any(|word| word == "compared"))
 }
 
 /// A command with what it draws.
-fn figure(root: &Path, program: &Path, line: &str) -> Result<String, String> {
-    let Drawn { picture, cost, text } = command::run(root, program, line, Size::Whole)?;
+fn figure(line: &str, Drawn { picture, cost, text }: Drawn) -> String {
     let told = if text.is_empty() { text } else { format!("<pre>{}</pre>", escaped(&text)) };
     let (line, cost) = (escaped(line), escaped(&cost));
-    Ok(format!(
+    format!(
         "<figure><pre>{line}</pre><img src=\"{picture}\" alt=\"what the command draws\">\
          <figcaption>{cost}</figcaption>{told}</figure>\n"
-    ))
+    )
 }
 
 /// The page with links to all others.
