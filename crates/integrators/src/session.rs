@@ -95,8 +95,8 @@ pub struct Session {
     is_whole: bool,
     /// Drafts done by this session.
     drafts: u32,
-    /// Passes done by this session, drafts included.
-    passes: u32,
+    /// Pixel samples in the films before this session.
+    samples_before: u64,
     stats: RayStats,
     elapsed: Duration,
     last_pass: Duration,
@@ -177,11 +177,11 @@ impl Session {
             scene,
             view,
             integrator,
+            samples_before: state.sample_count(),
             state,
             is_prepared: false,
             is_whole: true,
             drafts: 0,
-            passes: 0,
             stats: RayStats::default(),
             elapsed: Duration::ZERO,
             last_pass: Duration::ZERO,
@@ -273,7 +273,6 @@ impl Session {
         let stats = outcome?;
         clock.control.take_counted();
         self.stats += stats;
-        self.passes += 1;
         self.last_pass = clock.control.now().saturating_sub(begin);
         self.take_time(clock);
         Ok(())
@@ -319,7 +318,7 @@ impl Session {
         Progress {
             pass: self.drafts + self.state.done.count(),
             passes: self.integrator.drafts().saturating_add(passes as u32),
-            samples: u64::from(self.passes) * self.state.film.pixel_bounds().area() as u64,
+            samples: self.state.sample_count().saturating_sub(self.samples_before),
             stats: self.stats,
             elapsed: self.elapsed,
             noise: self.noise,
@@ -349,6 +348,7 @@ impl Session {
     /// Resumes from the state of another session of the same scene, view and algorithm, and from
     /// the further films that its algorithm has filled.
     pub fn resume(&mut self, state: SessionState, films: Vec<(String, Film)>) {
+        self.samples_before = state.sample_count();
         self.state = state;
         self.integrator.set_films(films);
     }

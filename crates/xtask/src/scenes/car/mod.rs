@@ -69,17 +69,22 @@ pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
     let is_side = |p| matches!(p, Panel::DoorGlass | Panel::QuarterGlass);
     car.part("window-trim", "chrome", &trim::strips(&surface, is_side, 0.0045, 0.0005))?;
     car.part("grille-trim", "chrome", &trim::strips(&surface, |p| p == Panel::Grille, 0.006, 0.0))?;
+    place_lamps(&mut car.text, &fittings::projectors(&surface));
+    place_wheels(&mut car.text);
+    fs::write(folder.join("car-parts.pbrt"), std::mem::take(&mut car.text))?;
+
+    objects(&mut car, sides, fine)?;
+    fs::write(folder.join("flakes.pfm"), paint::flakes(512))?;
+    let objects = std::mem::take(&mut car.text);
+    fs::write(folder.join("car-objects.pbrt"), format!("{}{objects}", paint::MATERIALS))?;
+
+    car.text += "Include \"car-objects.pbrt\"\nInclude \"car-parts.pbrt\"\n";
     car.text += "AttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 9 9.4 10 ]\n  ";
     car.part("daylight", "plastic", &fittings::daylight(&surface))?;
     car.text += "AttributeEnd\nAttributeBegin\n  AreaLightSource \"diffuse\" \"rgb L\" [ 2.4 0.06 0.03 ]\n  ";
     car.part("taillight", "plastic", &fittings::taillight(&surface))?;
     car.text += "AttributeEnd\n";
-
-    objects(&mut car, sides, fine)?;
-    place_lamps(&mut car.text, &fittings::projectors(&surface));
-    place_wheels(&mut car.text);
-    fs::write(folder.join("flakes.pfm"), paint::flakes(512))?;
-    fs::write(folder.join("car.pbrt"), format!("{}{}", paint::MATERIALS, car.text))?;
+    fs::write(folder.join("car.pbrt"), &car.text)?;
     studio::write(folder)?;
     street::write(folder)?;
     println!("{} triangles in files", car.triangles);

@@ -13,15 +13,30 @@ const VIEW: [f32; 2] = [-0.587, -0.81];
 
 pub fn write(folder: &Path) -> io::Result<()> {
     backdrop().write(&folder.join("backdrop.ply"))?;
-    for (name, look, angle) in [
-        ("car-studio", "5.0 6.9 1.25   0.0 0.05 0.57", "19.5"),
-        ("car-paint", "2.3 4.0 0.95   0.66 1.85 0.57", "17"),
-    ] {
+    let whole = (["5.0 6.9 1.25   0.0 0.05 0.57", "19.5"], PATH, INCLUDED);
+    let near = (["2.3 4.0 0.95   0.66 1.85 0.57", "17"], PATH, INCLUDED);
+    let reflections = (whole.0, WHITTED, AS_OBJECT);
+    for (name, ([look, angle], integrator, car)) in
+        [("car-studio", whole), ("car-paint", near), ("car-reflections", reflections)]
+    {
         let scene = STUDIO.replace("NAME", name).replace("LOOK", look).replace("ANGLE", angle);
+        let scene = scene.replace("INTEGRATOR", integrator).replace("CAR", car);
         fs::write(folder.join(format!("{name}.pbrt")), scene)?;
     }
     Ok(())
 }
+
+const PATH: &str = "Integrator \"path\" \"integer maxdepth\" 12 \"bool regularize\" true";
+const WHITTED: &str = "Integrator \"whitted\" \"integer maxdepth\" 5";
+
+const INCLUDED: &str = "Include \"car.pbrt\"";
+/// One object, of which a picture of its surroundings can be made. Its lamps are off, as `whitted`
+/// sends a shadow ray to each of their triangles.
+const AS_OBJECT: &str = "Include \"car-objects.pbrt\"
+ObjectBegin \"car\"
+Include \"car-parts.pbrt\"
+ObjectEnd
+ObjectInstance \"car\"";
 
 /// The floor of the studio, which rises behind the car in an arc.
 fn backdrop() -> Mesh {
@@ -54,7 +69,7 @@ const STUDIO: &str = r#"# A coupé in a studio: soft boxes over a dark floor tha
 Film "rgb" "integer xresolution" 1920 "integer yresolution" 1080 "string filename" "NAME.png"
     "float maxcomponentvalue" 3
 Sampler "zsobol" "integer pixelsamples" 256
-Integrator "path" "integer maxdepth" 12 "bool regularize" true
+INTEGRATOR
 
 LookAt LOOK   0 0 1
 Camera "perspective" "float fov" ANGLE
@@ -80,5 +95,5 @@ AttributeBegin
 AttributeEnd
 Material "openpbr" "rgb base_color" [ 0.05 0.051 0.055 ] "float specular_roughness" 0.16
 Shape "plymesh" "string filename" "backdrop.ply"
-Include "car.pbrt"
+CAR
 "#;
