@@ -4,6 +4,7 @@
 mod cage;
 mod car;
 mod forest;
+mod head;
 mod mesh;
 mod noise;
 mod planet;
@@ -15,8 +16,12 @@ use std::path::Path;
 /// Writes the files of a scene into a folder.
 type Make = fn(&Path) -> io::Result<()>;
 
-const SCENES: [(&str, Make); 3] =
-    [("car", |folder| car::make(folder, 5)), ("forest", forest::make), ("planet", planet::make)];
+const SCENES: [(&str, Make); 4] = [
+    ("car", |folder| car::make(folder, 5)),
+    ("forest", forest::make),
+    ("head", |folder| head::make(folder, head::Detail::WHOLE)),
+    ("planet", planet::make),
+];
 
 /// Makes the scenes of these names, or all, in `target/scenes`.
 pub fn run(workspace: &Path, names: &[&str]) -> Result<(), String> {
