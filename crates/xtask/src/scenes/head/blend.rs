@@ -17,13 +17,6 @@ pub fn carve(a: f32, b: f32, width: f32) -> f32 {
     -join(-a, b, width)
 }
 
-/// Raises (or sinks) the surface by an amount inside of a solid, fading over a width around its
-/// surface.
-pub fn raise(distance: f32, region: f32, width: f32, amount: f32) -> f32 {
-    let t = (0.5 - region / width).clamp(0.0, 1.0);
-    distance - amount * t * t * (3.0 - 2.0 * t)
-}
-
 /// About the distance to an ellipsoid with a centre and radii.
 pub fn ellipsoid(p: Vec3, centre: [f32; 3], radii: [f32; 3]) -> f32 {
     let (q, r) = (p - Vec3::from_array(centre), Vec3::from_array(radii));

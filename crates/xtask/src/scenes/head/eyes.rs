@@ -87,7 +87,8 @@ fn colour(x: f32, z: f32) -> Vec3 {
     iris = iris * (1.0 - 0.85 * smooth_step(radius, 4.9, 6.0));
     iris = iris * smooth_step(radius, PUPIL, PUPIL + 0.25);
     // The white has fine vessels towards its corners.
-    let vessels = (1.0 - 9.0 * fbm(0.5 * x + 7.0, 1.3 * z, 4).abs()).max(0.0) * smooth_step(x.abs(), 8.0, 13.0);
+    let vessels =
+        (1.0 - 9.0 * fbm(0.5 * x + 7.0, 1.3 * z, 4).abs()).max(0.0) * smooth_step(x.abs(), 8.0, 13.0);
     let red = Vec3::new(0.78, 0.6, 0.56);
     let white = Vec3::new(0.76, 0.73, 0.7).lerp(red, 0.25 * smooth_step(x.abs(), 9.0, 13.0) + 0.4 * vessels);
     iris.lerp(white, smooth_step(radius, IRIS - 0.35, IRIS + 0.55))

@@ -68,11 +68,7 @@ impl Face {
                 [26.2, 77.0, -72.8, 1.1],
             ]),
             philtrum: Tube::new(&[[0.0, 97.5, -53.0, 1.6], [0.0, 98.6, -60.0, 2.2], [0.0, 99.8, -65.5, 2.8]]),
-            fold: Tube::new(&[
-                [18.0, 92.0, -43.0, 1.6],
-                [24.0, 88.0, -56.0, 2.0],
-                [31.0, 81.0, -70.0, 1.6],
-            ]),
+            fold: Tube::new(&[[18.0, 92.0, -43.0, 1.6], [24.0, 88.0, -56.0, 2.0], [31.0, 81.0, -70.0, 1.6]]),
             crease: Tube::new(&[
                 [17.5, 82.0, 3.0, 0.7],
                 [23.0, 82.0, 8.0, 0.9],
@@ -142,11 +138,8 @@ impl Face {
         }
         let mut d = carve(head, self.fold.distance(p, -head + 7.0), 7.0);
         d = carve(d, self.philtrum.distance(p, -d + 4.5), 4.5);
-        let lips = join(
-            self.upper_lip.distance(p, f32::INFINITY),
-            self.lower_lip.distance(p, f32::INFINITY),
-            1.0,
-        );
+        let lips =
+            join(self.upper_lip.distance(p, f32::INFINITY), self.lower_lip.distance(p, f32::INFINITY), 1.0);
         d = join(d, lips, 6.0);
         carve(d, self.mouth.distance(p, -d + 2.6), 2.6)
     }

@@ -25,7 +25,7 @@ pub struct Hair {
 
 /// The height where the hair begins, by the angle about the head: 0 is ahead, π behind.
 pub fn hairline(angle: f32) -> f32 {
-    const HEIGHTS: [f32; 10] = [70.0, 66.0, 48.0, 16.0, 6.0, 16.0, -12.0, -42.0, -56.0, -58.0];
+    const HEIGHTS: [f32; 10] = [68.0, 63.0, 42.0, 8.0, -4.0, 14.0, -12.0, -42.0, -56.0, -58.0];
     let t = angle / PI * 9.0;
     let i = (t as usize).min(8);
     lerp(smooth_step(t - i as f32, 0.0, 1.0), HEIGHTS[i], HEIGHTS[i + 1])
@@ -89,8 +89,8 @@ impl Style {
         // Long above, short at the sides and the nape.
         let top = smooth_step(root.z, 10.0, 74.0);
         let vary = 0.72 + 0.5 * rng.uniform_f32();
-        let length = lerp(top, 17.0, 74.0) * vary * lerp(smooth_step(inside, 0.0, 22.0), 0.55, 1.0);
-        let height = lerp(top, 2.2, 10.5) * (0.15 + 0.85 * rng.uniform_f32());
+        let length = lerp(top, 20.0, 84.0) * vary * lerp(smooth_step(inside, 0.0, 22.0), 0.55, 1.0);
+        let height = lerp(top, 2.5, 13.0) * (0.15 + 0.85 * rng.uniform_f32());
         let mut way = || rng.uniform_f32() - 0.5;
         Self { length, height, sway: Vec3::new(way(), way(), way()) }
     }
@@ -170,14 +170,14 @@ fn rooted(points: Vec<Vec3>) -> Vec<Vec3> {
 pub fn brows(solid: &Sculpture) -> Vec<Hair> {
     let mut rng = Rng::from_sequence(11);
     let mut hairs = Vec::new();
-    for i in 0..1500 {
+    for i in 0..1100 {
         let side = if i % 2 == 0 { 1.0 } else { -1.0 };
         let t = rng.uniform_f32();
         let (u, v) = (rng.uniform_f32() - 0.5, rng.uniform_f32());
         // The line of the brow, and its breadth.
         let x = lerp(t, 12.5, 51.0);
         let z = 18.0 + 9.0 * t - 10.5 * t * t * t;
-        let breadth = 7.5 * smooth_step(t, -0.25, 0.2) * (1.0 - 0.8 * smooth_step(t, 0.45, 1.0));
+        let breadth = 5.6 * smooth_step(t, -0.25, 0.2) * (1.0 - 0.8 * smooth_step(t, 0.45, 1.0));
         let foot = solid.front(side * x, z + breadth * u);
         let normal = solid.normal(foot);
         // Upwards near the nose, then outwards and a little down.
@@ -191,7 +191,7 @@ pub fn brows(solid: &Sculpture) -> Vec<Hair> {
             let p = foot + way * (length * s);
             p + normal * (0.25 + 1.1 * s * (1.0 - 0.6 * s) - 0.9 * solid.distance(p).min(3.0) * s)
         });
-        hairs.push(Hair { points: rooted(points.collect()), width: 0.1 });
+        hairs.push(Hair { points: rooted(points.collect()), width: 0.085 });
     }
     hairs
 }

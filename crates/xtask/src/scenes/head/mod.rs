@@ -25,7 +25,7 @@ use math::Vec3;
 use sculpture::Sculpture;
 
 /// The box of the bust, in millimetres.
-const LOW_HIGH: [Vec3; 2] = [Vec3 { x: -232.0, y: -128.0, z: -262.0 }, Vec3 { x: 232.0, y: 128.0, z: 128.0 }];
+const LOW_HIGH: [Vec3; 2] = [Vec3 { x: -232.0, y: -128.0, z: -236.0 }, Vec3 { x: 232.0, y: 128.0, z: 128.0 }];
 
 /// How fine a head is.
 #[derive(Clone, Copy)]
@@ -39,7 +39,7 @@ pub struct Detail {
 
 impl Detail {
     /// Two million triangles and a hundred thousand hairs.
-    pub const WHOLE: Self = Self { cell: 0.85, steps: 2, hairs: 100_000 };
+    pub const WHOLE: Self = Self { cell: 1.15, steps: 2, hairs: 100_000 };
 }
 
 /// Makes the scenes.
@@ -69,4 +69,51 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
     add(&mut prisms, &lashes);
     prisms.write(&folder.join("hair.ply"))?;
     studio::write(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// The files of a coarse head.
+    fn files(name: &str) -> BTreeMap<String, Vec<u8>> {
+        let folder = std::env::temp_dir().join(format!("{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        make(&folder, Detail { cell: 6.0, steps: 1, hairs: 200 }).unwrap();
+        let read = |entry: io::Result<fs::DirEntry>| {
+            let entry = entry.unwrap();
+            (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())
+        };
+        let files = fs::read_dir(&folder).unwrap().map(read).collect();
+        fs::remove_dir_all(&folder).unwrap();
+        files
+    }
+
+    #[test]
+    fn the_same_files_are_made_again() {
+        let [a, b] = ["head-a", "head-b"].map(files);
+        assert!(a == b);
+        // All that scenes refer to is there.
+        for (_, text) in a.iter().filter(|(name, _)| name.starts_with("head")) {
+            let text = String::from_utf8_lossy(text);
+            let is_file = |word: &&str| [".ply", ".pfm", ".pbrt"].iter().any(|end| word.ends_with(end));
+            let mut named = text.split('"').filter(is_file);
+            assert!(named.all(|name| a.contains_key(name)));
+        }
+    }
+
+    #[test]
+    fn a_head_has_the_proportions_of_heads() {
+        let solid = Sculpture::new();
+        let is_inside = |x: f32, y: f32, z: f32| solid.distance(Vec3::new(x, y, z)) < 0.0;
+        let reach = |inside: &dyn Fn(f32) -> bool| (0..200).rev().map(|i| i as f32).find(|v| inside(*v));
+        let top = reach(&|z| is_inside(0.0, -10.0, z)).unwrap();
+        let side = reach(&|x| is_inside(x, -32.0, 42.0)).unwrap();
+        let chin = solid.front(0.0, -100.0);
+        // The eyes are at half of the height, and the head is two thirds as wide as high.
+        assert!((105.0..125.0).contains(&top) && (68.0..82.0).contains(&side), "{top} {side}");
+        assert!(chin.y > 80.0 && solid.front(0.0, -42.0).y > chin.y + 8.0, "{chin}");
+    }
 }

@@ -22,9 +22,7 @@ impl Sculpture {
 
     /// About the distance to the skin, positive outside.
     pub fn distance(&self, p: Vec3) -> f32 {
-        // Both halves are one, and meet without an edge.
-        const ROUND: f32 = 1.5;
-        let p = Vec3::new(p.x.hypot(ROUND) - 0.5 * ROUND, p.y, p.z);
+        let p = half(p);
         let bust = self.skull.bust(p);
         if p.z < -150.0 {
             return bust;
@@ -35,7 +33,7 @@ impl Sculpture {
 
     /// About the distance to the head without its face and ears.
     pub fn scalp_distance(&self, p: Vec3) -> f32 {
-        let p = Vec3::new(p.x.abs(), p.y, p.z);
+        let p = half(p);
         join(self.skull.head(p), self.skull.bust(p), 16.0)
     }
 
@@ -67,6 +65,12 @@ impl Sculpture {
     pub fn scalp_normal(&self, p: Vec3) -> Vec3 {
         gradient(p, |p| self.scalp_distance(p))
     }
+}
+
+/// The point of one half that stands for both; they meet without an edge.
+fn half(p: Vec3) -> Vec3 {
+    const ROUND: f32 = 1.5;
+    Vec3::new(p.x.hypot(ROUND) - 0.5 * ROUND, p.y, p.z)
 }
 
 fn gradient(p: Vec3, distance: impl Fn(Vec3) -> f32) -> Vec3 {

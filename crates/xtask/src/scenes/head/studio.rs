@@ -6,13 +6,13 @@ use std::path::Path;
 
 /// A name, the materials, and where the camera is, what it looks at, and its angle.
 const VIEWS: [(&str, &str, &str, &str); 5] = [
-    ("head", WALK, PORTRAIT, "15.6"),
-    ("head-diffusion", DIFFUSION, PORTRAIT, "15.6"),
-    ("head-realtime", REALTIME, PORTRAIT, "15.6"),
+    ("head", WALK, PORTRAIT, "12.2"),
+    ("head-diffusion", DIFFUSION, PORTRAIT, "12.2"),
+    ("head-realtime", REALTIME, PORTRAIT, "12.2"),
     ("head-face", WALK, "-520 960 30   2 60 -32", "8.2"),
     ("head-eye", WALK, "-420 800 10   -30 76 -2", "3.6"),
 ];
-const PORTRAIT: &str = "-560 1060 40   0 -6 -18";
+const PORTRAIT: &str = "-560 1060 40   0 0 -6";
 
 pub fn write(folder: &Path) -> io::Result<()> {
     for (name, materials, look, angle) in VIEWS {
@@ -29,7 +29,7 @@ const HEAD: &str = r#"# A head in the light of a studio.
 Film "rgb" "integer xresolution" 960 "integer yresolution" 1200 "string filename" "NAME.png"
     "float maxcomponentvalue" 4
 Sampler "zsobol" "integer pixelsamples" 256
-Integrator "path" "integer maxdepth" 12 "bool regularize" true
+Integrator "path" "integer maxdepth" 6 "bool regularize" true "string lightsampler" "power"
 
 LookAt LOOK   0 0 1
 Camera "perspective" "float fov" ANGLE
@@ -78,18 +78,18 @@ NamedMaterial "hairs" Include "hair.pbrt"
 "#;
 
 const LIGHT: &str = r#"
-LightSource "infinite" "rgb L" [ 0.03 0.033 0.04 ]
+LightSource "infinite" "rgb L" [ 0.02 0.022 0.027 ]
 # A large key light, a rim light behind, and a weak fill.
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 11 10.5 9.8 ] "bool twosided" true
+    AreaLightSource "diffuse" "rgb L" [ 16 15.4 14.5 ] "bool twosided" true
     Shape "bilinearmesh" "point3 P" [ 300 900 180  900 480 180  300 900 840  900 480 840 ]
 AttributeEnd
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 9 9.6 10.5 ] "bool twosided" true
+    AreaLightSource "diffuse" "rgb L" [ 12 12.8 14 ] "bool twosided" true
     Shape "bilinearmesh" "point3 P" [ -700 -420 -100  -480 -640 -100  -700 -420 700  -480 -640 700 ]
 AttributeEnd
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 0.7 0.74 0.8 ] "bool twosided" true
+    AreaLightSource "diffuse" "rgb L" [ 1.6 1.7 1.85 ] "bool twosided" true
     Shape "bilinearmesh" "point3 P" [ -900 300 -300  -700 900 -300  -900 300 500  -700 900 500 ]
 AttributeEnd
 "#;
