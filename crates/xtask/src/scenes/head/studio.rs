@@ -27,7 +27,7 @@ const HEAD: &str = r#"# A head in the light of a studio.
 # Made by `cargo xtask scenes head`. x is to its left, y ahead, z up; millimetres.
 
 Film "rgb" "integer xresolution" 960 "integer yresolution" 1200 "string filename" "NAME.png"
-    "float maxcomponentvalue" 4
+    "float maxcomponentvalue" 2.5
 Sampler "zsobol" "integer pixelsamples" 256
 Integrator "path" "integer maxdepth" 6 "bool regularize" true "string lightsampler" "power"
 
@@ -35,7 +35,7 @@ LookAt LOOK   0 0 1
 Camera "perspective" "float fov" ANGLE
 
 WorldBegin
-Texture "skin colour" "spectrum" "imagemap" "string filename" "skin.pfm"
+Texture "skin colour" "spectrum" "imagemap" "string filename" "skin.pfm" "string wrap" "clamp"
 Texture "eye colour" "spectrum" "imagemap" "string filename" "eyes.pfm"
 "#;
 
