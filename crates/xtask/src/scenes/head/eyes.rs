@@ -37,7 +37,7 @@ fn turn(profile: &[[f32; 2]]) -> Mesh {
 /// The opaque part: iris and pupil in the front, and the white.
 pub fn balls() -> Mesh {
     let limbus = (EYEBALL * EYEBALL - IRIS * IRIS).sqrt();
-    let mut profile = vec![[0.001, limbus - 1.1]];
+    let mut profile = vec![[0.03, limbus - 1.1]];
     // The iris is a shallow funnel.
     profile.extend((1..=24).map(|i| {
         let t = i as f32 / 24.0;
@@ -46,7 +46,7 @@ pub fn balls() -> Mesh {
     let start = (IRIS / EYEBALL).asin();
     profile.extend((0..=96).map(|i| {
         let (sin, cos) = lanes::sin_cos(start + (PI - start) * i as f32 / 96.0);
-        [EYEBALL * sin.max(1e-4), EYEBALL * cos]
+        [(EYEBALL * sin).max(0.03), EYEBALL * cos]
     }));
     turn(&profile)
 }
@@ -56,7 +56,7 @@ pub fn corneas() -> Mesh {
     let profile: Vec<[f32; 2]> = (0..=48)
         .map(|i| {
             let (sin, cos) = lanes::sin_cos(0.98 * i as f32 / 48.0);
-            [CORNEA[1] * sin.max(1e-4), CORNEA[0] + CORNEA[1] * cos]
+            [(CORNEA[1] * sin).max(0.03), CORNEA[0] + CORNEA[1] * cos]
         })
         .collect();
     turn(&profile)

@@ -93,7 +93,8 @@ fn cells(p: Vec3) -> [f32; 2] {
 fn refine(mesh: &mut Mesh, solid: &Sculpture) {
     let weights: Vec<bool> = mesh.positions.iter().map(|p| weight(*p) > 0.0).collect();
     let is_cut = |t: &[u32; 3]| t.iter().all(|&i| weights[i as usize]);
-    // The triangles of edges. A point between one that is cut and one that is not stays on the edge.
+    // The triangles of edges. Between one that is cut and one that is not, the middle stays on the
+    // edge.
     let mut uses: HashMap<[u32; 2], (u32, u32)> = HashMap::new();
     for t in mesh.triangles.iter().filter(|t| is_cut(t)) {
         (0..3).for_each(|i| uses.entry(edge(t[i], t[(i + 1) % 3])).or_insert((0, u32::MAX)).0 += 1);
