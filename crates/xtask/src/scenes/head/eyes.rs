@@ -44,6 +44,8 @@ pub fn balls() -> Mesh {
         [t * (IRIS + 0.1), limbus - 1.1 + 0.45 * smooth_step(t, 0.25, 0.5) - 0.3 * t * t]
     }));
     let start = (IRIS / EYEBALL).asin();
+    // Twice where it has an edge.
+    profile.push([IRIS, limbus]);
     profile.extend((0..=96).map(|i| {
         let (sin, cos) = lanes::sin_cos(start + (PI - start) * i as f32 / 96.0);
         [(EYEBALL * sin).max(0.03), EYEBALL * cos]
@@ -104,7 +106,9 @@ mod tests {
             let middle = |p: Vec3| Vec3::new(EYE[0] * p.x.signum(), EYE[1], EYE[2]);
             let inwards = mesh.positions.iter().zip(&mesh.normals).filter(|(p, n)| {
                 let out = **p - middle(**p);
-                out.length() > EYEBALL - 0.01 && out.dot(**n) < 0.0
+                // Not in the groove between iris and white, which the cornea covers.
+                let is_outside = out.length() > EYEBALL - 0.01 && out.y < 11.0;
+                (is_outside || out.length() > EYEBALL + 0.01) && out.dot(**n) < 0.0
             });
             assert_eq!(inwards.count(), 0);
         }
