@@ -86,8 +86,8 @@ fn colour(x: f32, z: f32) -> Vec3 {
     let inner = Vec3::new(0.2, 0.13, 0.06) * (1.0 + 0.6 * fibres);
     let collar = smooth_step(radius + 0.8 * fibres, 2.4, 3.7);
     let mut iris = inner.lerp(outer, collar);
-    iris = iris * (1.0 - 0.85 * smooth_step(radius, 4.9, 6.0));
-    iris = iris * smooth_step(radius, PUPIL, PUPIL + 0.25);
+    iris *= 1.0 - 0.85 * smooth_step(radius, 4.9, 6.0);
+    iris *= smooth_step(radius, PUPIL, PUPIL + 0.25);
     // The white has fine vessels towards its corners.
     let vessels =
         (1.0 - 9.0 * fbm(0.5 * x + 7.0, 1.3 * z, 4).abs()).max(0.0) * smooth_step(x.abs(), 8.0, 13.0);

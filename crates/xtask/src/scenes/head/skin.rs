@@ -41,9 +41,9 @@ fn colour(x: f32, z: f32) -> Vec3 {
         + 0.8 * spot([0.0, -41.0], [20.0, 20.0])
         + 0.35 * spot([0.0, -104.0], [24.0, 18.0])
         + 0.5 * spot([78.0, -18.0], [12.0, 42.0]);
-    colour = colour * (Vec3::ONE - Vec3::new(0.02, 0.17, 0.16) * (blood * (1.0 + 0.8 * (blotches - 1.0))));
-    colour = colour * (Vec3::ONE - Vec3::new(0.12, 0.17, 0.13) * spot([31.0, -8.0], [20.0, 13.0]));
-    colour = colour * (Vec3::ONE - Vec3::new(0.09, 0.14, 0.12) * spot([31.0, 7.0], [20.0, 11.0]));
+    colour *= Vec3::ONE - Vec3::new(0.02, 0.17, 0.16) * (blood * (1.0 + 0.8 * (blotches - 1.0)));
+    colour *= Vec3::ONE - Vec3::new(0.12, 0.17, 0.13) * spot([31.0, -8.0], [20.0, 13.0]);
+    colour *= Vec3::ONE - Vec3::new(0.09, 0.14, 0.12) * spot([31.0, 7.0], [20.0, 11.0]);
     let lips = lip(Vec3::new(x, 90.0, z));
     colour = colour.lerp(Vec3::new(0.62, 0.27, 0.24) * blotches, 0.8 * lips);
     // Roots of hair show through.
