@@ -208,6 +208,11 @@ impl Device {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&buffer.0, 0, &copy, 0, size);
         self.queue.submit([encoder.finish()]);
+        self.mapped(&copy)
+    }
+
+    /// The contents of a buffer that can be mapped, when all that was started is done.
+    pub(crate) fn mapped<T: bytemuck::Pod>(&self, copy: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         copy.map_async(wgpu::MapMode::Read, .., |_| ());
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.checked(())?;
@@ -216,9 +221,14 @@ impl Device {
         Ok(bytemuck::pod_collect_to_vec(&mapped))
     }
 
+    /// The device and the queue of the library.
+    pub(crate) fn wgpu(&self) -> (&wgpu::Device, &wgpu::Queue) {
+        (&self.device, &self.queue)
+    }
+
     /// A result, unless the driver has reported a fault since the last call. A device that is lost
     /// stays so.
-    fn checked<T>(&self, result: T) -> Result<T, GpuError> {
+    pub(crate) fn checked<T>(&self, result: T) -> Result<T, GpuError> {
         let mut fault = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
         match &*fault {
             None => Ok(result),

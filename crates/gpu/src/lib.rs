@@ -4,11 +4,14 @@
 //! samples of its pixels to a film. [`Device`] is the GPU, [`Bvh`] what rays are traced through
 //! there. [`shaders`] has the sources of what runs there: *laws*, which are physics and are
 //! translated from Rust, and *plumbing*, which is written in WGSL.
+//!
+//! A [`Rasterizer`] draws scenes triangle by triangle instead, by the raster pipeline.
 
 mod algorithm;
 mod bvh;
 mod device;
 mod flatten;
+mod raster;
 mod renderer;
 pub mod shaders;
 
@@ -16,4 +19,5 @@ pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
 pub use flatten::{Flat, Refusal, Subject, flatten};
+pub use raster::{DrawError, Drawing, Rasterizer};
 pub use renderer::{Kernels, PassError, Renderer};

@@ -69,3 +69,8 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
     );
     with_laws(&[&PLUMBING[..], &[direct, rays, &has]].concat())
 }
+
+/// The shaders of the raster pipeline, one module.
+pub fn raster() -> String {
+    plumbing! { "raster" "raster_surfaces" "raster_sky" "raster_water" "raster_sprites" }.join("\n")
+}

@@ -6,6 +6,7 @@
 mod faults;
 mod laws;
 mod pictures;
+mod raster;
 mod textures;
 mod trace;
 mod twins;

@@ -46,6 +46,11 @@ fn kernels_are_valid() {
 }
 
 #[test]
+fn shaders_of_the_raster_pipeline_are_valid() {
+    validate(&shaders::raster()).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
 fn what_is_wrong_is_found() {
     assert!(validate("fn f() -> f32 { return 1u; }").is_err());
 }
