@@ -13,7 +13,7 @@ use sampling::Sampler;
 use scene::texture::color_space;
 use scene::{Scene, View};
 
-pub use gpu::{Device, GpuError, Kernels};
+pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal};
 
 /// An algorithm on a device.
 struct OnDevice {

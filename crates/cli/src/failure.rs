@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use alhazen::description::{Diagnostic, SourceMap};
 use serde_json::{Value, json};
+use view::StepError;
 
 use crate::console::{Undelivered, say, warn};
 use crate::diagnostics;
@@ -30,6 +31,15 @@ pub enum Failure {
 impl From<Undelivered> for Failure {
     fn from(undelivered: Undelivered) -> Self {
         Self::Output(undelivered)
+    }
+}
+
+impl From<StepError> for Failure {
+    fn from(error: StepError) -> Self {
+        match error {
+            StepError::Problem(problem) => Self::Input(problem),
+            StepError::Cancelled => Self::Input("cancelled".into()),
+        }
     }
 }
 

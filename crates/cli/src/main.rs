@@ -26,6 +26,8 @@ mod render;
 mod results;
 mod resume;
 mod scene;
+#[cfg(feature = "gpu")]
+mod split;
 mod summary;
 mod threads;
 mod trace;

@@ -9,7 +9,7 @@ use alhazen::Overrides;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
 use view::planet::{Outing, PlanetReport, Spent};
-use view::{Renderer, Report, StepError, World};
+use view::{Renderer, Report, World};
 
 use crate::args::View;
 use crate::console::say;
@@ -29,6 +29,11 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
             "this program was built without the window, which the cargo feature `view` adds; --headless \
              renders a camera path without one"
                 .into(),
+        ));
+    }
+    if (arguments.split.is_some() || arguments.output.is_some()) && !cfg!(feature = "gpu") {
+        return Err(Failure::Usage(
+            "this program was built without the engine for GPUs, which the cargo feature `gpu` adds".into(),
         ));
     }
     start_threads(arguments.changes.threads)?;
@@ -54,11 +59,23 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     if let Some(desc) = desc {
         return window(arguments, scene, world, desc);
     }
+    #[cfg(feature = "gpu")]
+    if let Some(share) = arguments.split {
+        let report = crate::split::headless(arguments, world, share, (begin, TARGET))?;
+        if arguments.json {
+            let mut json = report.to_json();
+            json["warnings"] = diagnostics::to_json(&imported.diagnostics, &imported.sources).1;
+            say(json)?;
+        } else {
+            say(format_args!("{}\n{}", text(&report.traced), crate::split::text(&report)))?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut flight = world.flight();
     let mut renderer = Renderer::new(Arc::new(world), TARGET);
     let control = Control::default();
     let report = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
-    let report = report.map_err(failure)?;
+    let report = report?;
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
         let mut json = report.to_json();
@@ -80,20 +97,13 @@ fn planet(arguments: &View, overrides: &Overrides) -> Result<ExitCode, Failure> 
     }
     let mut outing = outing;
     let report = PlanetReport::of_walk(&mut outing, arguments.frames, &Control::default());
-    let report = report.map_err(failure)?;
+    let report = report?;
     if arguments.json {
         say(report.to_json())?
     } else {
         say(text_of_planet(&report))?
     }
     Ok(ExitCode::SUCCESS)
-}
-
-fn failure(error: StepError) -> Failure {
-    match error {
-        StepError::Problem(problem) => Failure::Input(problem),
-        StepError::Cancelled => Failure::Input("cancelled".into()),
-    }
 }
 
 #[cfg(feature = "view")]
@@ -121,7 +131,8 @@ fn window(
     desc: alhazen::description::SceneDesc,
 ) -> Result<ExitCode, Failure> {
     let title = format!("{} · alhazen", scene.display());
-    view::window::open(&title, world, desc, arguments.display.settings(), TARGET).map_err(without_window)?;
+    let (display, split) = (arguments.display.settings(), arguments.split);
+    view::window::open(&title, world, desc, display, split, TARGET).map_err(without_window)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -72,6 +72,32 @@ impl Frame {
         }
     }
 
+    /// A finished picture of the pixels in `bounds`.
+    #[cfg(feature = "gpu")]
+    pub fn of_image(
+        image: &alhazen::image::Image,
+        view: View,
+        bounds: Bounds2i,
+        color_space: &'static RgbColorSpace,
+    ) -> Self {
+        let size = [image.width(), image.height()];
+        let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| image.rgb(x, y))).collect();
+        let (first, time) = (bounds.min, Duration::ZERO);
+        Self {
+            size,
+            n: 1,
+            first,
+            view,
+            pixels,
+            layer: None,
+            color_space,
+            samples: 1,
+            planned: 1,
+            time,
+            rays: 0,
+        }
+    }
+
     /// The part that shows these pixels of the film, as fractions of width and height, from the
     /// upper left to the lower right corner: large pixels may reach beyond them.
     pub fn part(&self, bounds: &Bounds2i) -> [[f32; 2]; 2] {

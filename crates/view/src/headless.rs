@@ -68,10 +68,7 @@ impl Report {
 
     /// The time that this share of the frames does not exceed.
     pub fn quantile(&self, share: f64) -> Duration {
-        let mut times = self.frames.clone();
-        times.sort_unstable();
-        let index = (share * times.len() as f64).ceil() as usize;
-        times.get(index.saturating_sub(1)).copied().unwrap_or_default()
+        quantile(&self.frames, share)
     }
 
     /// Frames per second.
@@ -116,4 +113,12 @@ impl Report {
             "rays_per_second": self.rays_per_second(),
         })
     }
+}
+
+/// The time that this share of times does not exceed.
+pub fn quantile(times: &[Duration], share: f64) -> Duration {
+    let mut times = times.to_vec();
+    times.sort_unstable();
+    let index = (share * times.len() as f64).ceil() as usize;
+    times.get(index.saturating_sub(1)).copied().unwrap_or_default()
 }

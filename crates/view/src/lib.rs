@@ -6,6 +6,7 @@
 //! [`knobs`] change lights and materials, [`lines`] shows the paths of a pixel. All this works
 //! without a display; a [`Report`] has the frame times of a camera path.
 //!
+//! With the feature `gpu`, a [`Rasterized`] scene is drawn by a GPU beside it ([`split`]).
 //! With the feature `window` there is a window of it: [`window`].
 
 mod darkroom;
@@ -17,7 +18,11 @@ pub mod knobs;
 pub mod lines;
 mod pace;
 pub mod planet;
+#[cfg(feature = "gpu")]
+mod rasterized;
 mod renderer;
+#[cfg(feature = "gpu")]
+pub mod split;
 #[cfg(feature = "window")]
 pub mod window;
 mod world;
@@ -28,5 +33,7 @@ pub use flight::{Flight, Mode};
 pub use frame::Frame;
 pub use headless::Report;
 pub use pace::Pace;
+#[cfg(feature = "gpu")]
+pub use rasterized::{Raster, Rasterized};
 pub use renderer::{Renderer, StepError};
 pub use world::{Shot, World};

@@ -11,7 +11,9 @@ use alhazen::geometry::GeometryId;
 use alhazen::integrators::Session;
 use alhazen::math::{Bounds2i, DVec3, Point3, Vec2};
 use alhazen::scene::camera::CameraSample;
+use alhazen::scene::texture::color_space;
 use alhazen::scene::{MoveError, RayStats, Scene, View};
+use alhazen::spectrum::RgbColorSpace;
 use alhazen::{CompiledJob, Job, Overrides, draft};
 
 /// What is shown of a scene.
@@ -75,6 +77,11 @@ impl World {
     /// The pixels of its pictures.
     pub fn bounds(&self) -> Bounds2i {
         pixel_bounds(&self.desc.film)
+    }
+
+    /// The colour space of its pictures.
+    pub fn color_space(&self) -> &'static RgbColorSpace {
+        color_space(self.desc.film.color_space)
     }
 
     /// A flight that begins at the scene's camera.

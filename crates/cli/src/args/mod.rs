@@ -245,6 +245,13 @@ pub struct View {
     /// The number of frames of that path.
     #[arg(long, value_name = "N", default_value_t = 60, requires = "headless", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: u32,
+    /// Draw the scene twice with one camera: ray traced on the left of a slider, and rasterised by
+    /// the GPU on its right. SHARE is where the slider is, from 0 to 1. [without SHARE: 0.5]
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet")]
+    pub split: Option<f32>,
+    /// Write the scene's own view, with all samples per pixel on the left of the slider.
+    #[arg(short, long, value_name = "FILE", requires_all = ["headless", "split"])]
+    pub output: Option<PathBuf>,
     /// Write one JSON object to standard output instead of text.
     #[arg(long, requires = "headless")]
     pub json: bool,

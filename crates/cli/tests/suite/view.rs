@@ -48,3 +48,22 @@ fn a_walk_over_a_planet_is_reported() {
     folder.alhazen(&["view", "scene.pbrt", "--planet", "500", "--headless"]).expect(2);
     folder.alhazen(&["view", "--planet", "5", "--headless"]).expect(2);
 }
+
+#[test]
+fn a_split_view_reports_both_sides() {
+    let folder = Folder::with_scene("view");
+    folder.alhazen(&["view", "scene.pbrt", "--headless", "-o", "both.png"]).expect(2);
+    let arguments =
+        ["view", "scene.pbrt", "--headless", "--frames", "2", "--split", "-o", "both.png", "--json"];
+    let finished = folder.alhazen(&arguments);
+    if cfg!(not(feature = "gpu")) {
+        finished.expect(2);
+    } else if finished.code == Some(0) {
+        let json = finished.json();
+        assert_eq!((json["status"].as_str(), json["frames"].as_u64()), (Some("done"), Some(2)));
+        assert!(json["rasterized"]["frame_ms"]["median"].as_f64().unwrap() > 0.0);
+        assert_eq!(folder.files(), ["both.png", "scene.pbrt"]);
+    } else {
+        assert!(finished.out.contains("no GPU"), "{}", finished.out);
+    }
+}

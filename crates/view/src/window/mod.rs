@@ -4,6 +4,7 @@
 mod developer;
 mod panels;
 mod planet;
+mod split;
 mod stage;
 mod state;
 
@@ -25,13 +26,15 @@ const PANEL: f32 = 270.0;
 const BACKGROUND: Color32 = Color32::from_gray(18);
 
 /// Opens a window that shows a scene, compiled and as its description for changes, until it is
-/// closed; while the camera moves, frames take about `target`. The error says why there is no
+/// closed; while the camera moves, frames take about `target`. With `split`, the scene is
+/// rasterised to the right of a slider at this share of the width. The error says why there is no
 /// window.
 pub fn open(
     title: &str,
     world: World,
     desc: SceneDesc,
     display: DisplaySettings,
+    split: Option<f32>,
     target: Duration,
 ) -> Result<(), String> {
     let options = eframe::NativeOptions {
@@ -42,7 +45,7 @@ pub fn open(
         context.egui_ctx.set_visuals(Visuals::dark());
         let repaint = context.egui_ctx.clone();
         let wake = move || repaint.request_repaint();
-        Ok(Box::new(Window { state: State::new(world, desc, display, target, wake) }))
+        Ok(Box::new(Window { state: State::new(world, desc, (display, split), target, wake) }))
     });
     eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
 }

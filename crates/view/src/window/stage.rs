@@ -51,6 +51,10 @@ pub fn stage(ui: &mut Ui, state: &mut State) {
         ui.painter().text(place.rect.center(), Align2::CENTER_CENTER, "rendering …", font, Color32::GRAY);
     }
     paths(ui, state, &place);
+    let bounds = state.bounds();
+    if let Some(split) = &mut state.split {
+        split.paint(ui, place.rect, &bounds);
+    }
     mouse(ui, state, &place, &response);
 }
 

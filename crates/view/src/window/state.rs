@@ -11,6 +11,7 @@ use alhazen::math::Bounds2i;
 use eframe::egui::{Context, TextureHandle, TextureOptions};
 
 use super::developer::Developer;
+use super::split::Split;
 use crate::{Engine, Flight, Frame, Mode, Output, Shot, World};
 
 /// The state of the window.
@@ -23,6 +24,8 @@ pub struct State {
     pub desc: SceneDesc,
     /// What is shown.
     pub shot: Shot,
+    /// The rasterised side, if there are two.
+    pub split: Option<Split>,
     /// The camera.
     pub flight: Flight,
     /// How the camera is moved.
@@ -50,7 +53,7 @@ impl State {
     pub fn new(
         world: World,
         desc: SceneDesc,
-        display: DisplaySettings,
+        (display, split): (DisplaySettings, Option<f32>),
         target: Duration,
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Self {
@@ -61,6 +64,7 @@ impl State {
         Self {
             output: engine.output(),
             engine,
+            split: split.map(|share| Split::start(share, wake.clone())),
             developer: Developer::start(wake),
             desc,
             shot,
@@ -80,6 +84,9 @@ impl State {
     /// Takes what is new: a picture of the engine to be developed, and one that was developed.
     pub fn refresh(&mut self, context: &Context) {
         self.output = self.engine.output();
+        if let Some(split) = &mut self.split {
+            split.refresh(context, &self.output.world, &self.shot, self.display);
+        }
         if let Some(frame) = &self.output.frame {
             let is_asked = self
                 .asked
@@ -114,6 +121,9 @@ impl State {
     pub fn aim(&mut self) {
         self.shot.camera = self.flight.camera().clone();
         self.engine.show(self.shot.clone());
+        if let Some(split) = &mut self.split {
+            split.show(&self.output.world, &self.shot);
+        }
     }
 
     /// Shows the changed scene.

@@ -5,6 +5,7 @@ use alhazen::integrator_names;
 use eframe::egui::{Color32, ComboBox, Grid, ProgressBar, RichText, Ui};
 
 use super::group;
+use crate::window::split::Split;
 use crate::window::state::State;
 use crate::{Frame, layers};
 
@@ -13,6 +14,9 @@ pub fn rendering(ui: &mut Ui, state: &mut State) {
     group(ui, "Rendering", |ui| {
         if let Some((_, frame)) = &state.texture {
             numbers(ui, frame);
+        }
+        if let Some((numbers, device)) = state.split.as_ref().and_then(Split::summary) {
+            ui.label(RichText::new(format!("rasterised: {numbers}")).small()).on_hover_text(device);
         }
         if let Some(problem) = &state.output.problem {
             ui.label(RichText::new(problem).color(Color32::LIGHT_RED));

@@ -1,0 +1,66 @@
+//! `alhazen view --split --headless`: frame times of a ray traced and a rasterised scene, and a
+//! picture of both.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use alhazen::integrators::Control;
+use alhazen::write_picture;
+use view::split::{SplitReport, picture};
+use view::{Rasterized, Renderer, World};
+
+use crate::args::View;
+use crate::console::warn;
+use crate::failure::Failure;
+
+/// Finds both frame times of a camera path, and writes the picture that was asked for.
+pub fn headless(
+    arguments: &View,
+    world: World,
+    share: f32,
+    (begin, target): (Instant, Duration),
+) -> Result<SplitReport, Failure> {
+    let device = Rasterized::open()
+        .map_err(|error| Failure::Input(format!("{error}; without --split no GPU is needed")))?;
+    let start = Instant::now();
+    let world = Arc::new(world);
+    let mut rasterized = Rasterized::new(Arc::clone(&world), device).map_err(Failure::Input)?;
+    let prepared_in = start.elapsed();
+    for note in rasterized.warnings().iter().filter(|_| !arguments.json) {
+        warn(format_args!("warning: {}", note.message))?;
+    }
+    let mut flight = world.flight();
+    let mut renderer = Renderer::new(world, target);
+    let control = Control::default();
+    let report = SplitReport::of_orbit(
+        &mut renderer,
+        &mut rasterized,
+        &mut flight,
+        arguments.frames,
+        (begin, prepared_in),
+        &control,
+    );
+    let report = report?;
+    if let Some(path) = &arguments.output {
+        let picture = picture(&mut renderer, &mut rasterized, share, &control)?;
+        let written = write_picture(&picture, path, &arguments.display.settings());
+        written.map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+    }
+    Ok(report)
+}
+
+/// The times of the rasterised frames in words.
+pub fn text(report: &SplitReport) -> String {
+    let ms = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
+    format!(
+        "  rasterised       median {}, 95 % {}, at most {}, by {}; prepared in {}\n  \
+         of the last      {:.2} million triangles and {} sprites",
+        ms(report.quantile(0.5)),
+        ms(report.quantile(0.95)),
+        ms(report.quantile(1.0)),
+        report.device,
+        ms(report.prepared_in),
+        report.triangles as f64 / 1e6,
+        report.sprites,
+    )
+}
