@@ -63,37 +63,44 @@ fn run_and_keep(
 ) -> Result<Drawn, String> {
     let failed = |problem: String| format!("`{line}`: {problem}");
     let words: Vec<&str> = line.split_whitespace().collect();
-    let ["alhazen", name @ ("render" | "trace-pixel"), rest @ ..] = &words[..] else {
-        return Err(failed("it is neither `alhazen render` nor `alhazen trace-pixel`".into()));
+    let ["alhazen", name @ ("render" | "trace-pixel" | "view"), rest @ ..] = &words[..] else {
+        return Err(failed("it is none of `alhazen render`, `trace-pixel` and `view`".into()));
     };
     let folder = target(root).join("gallery");
     fs::create_dir_all(&folder).map_err(|error| failed(error.to_string()))?;
-    let file = folder.join(if *name == "render" { "picture.jpg" } else { "picture.svg" });
+    let file = folder.join(if *name == "trace-pixel" { "picture.svg" } else { "picture.jpg" });
     let mut command = Command::new(program);
     command.current_dir(root).arg(name).arg("-o").arg(&file);
     if let Some(file) = also {
         command.arg("-o").arg(file);
     }
     match (*name, size) {
-        ("render", Size::Small) => {
+        ("render" | "view", Size::Small) => {
             command.args(without_size(rest)).args(["--resolution", "36x24", "--spp", "1", "--json"]);
         }
-        ("render", Size::Whole) => {
+        ("render" | "view", Size::Whole) => {
             command.args(rest).arg("--json");
         }
         _ => {
             command.args(rest);
         }
     }
-    let text = output(&mut command).map_err(failed)?;
+    let text = match output(&mut command) {
+        Err(problem) if size == Size::Small && *name == "view" && problem.contains("no GPU: ") => {
+            println!("SKIPPED, not drawn: `{line}`: there is no GPU");
+            return Ok(Drawn { picture: String::new(), cost: String::new(), text: String::new() });
+        }
+        output => output.map_err(failed)?,
+    };
     let bytes = fs::read(&file).map_err(|error| failed(error.to_string()))?;
-    let kind = if *name == "render" { "jpeg" } else { "svg+xml" };
+    let kind = if *name == "trace-pixel" { "svg+xml" } else { "jpeg" };
     let picture = format!("data:image/{kind};base64,{}", STANDARD.encode(bytes));
     if *name == "trace-pixel" {
         return Ok(Drawn { picture, cost: String::new(), text });
     }
     let json = json(&text).map_err(failed)?;
-    Ok(Drawn { picture, cost: cost(&json), text: String::new() })
+    let cost = if *name == "view" { cost_of_split(&json) } else { cost(&json) };
+    Ok(Drawn { picture, cost, text: String::new() })
 }
 
 /// What a command writes.
@@ -136,6 +143,17 @@ fn cost(json: &Value) -> String {
         "{width} × {height} pixels, {} samples a pixel, {rays} rays with {:.1} tests of extents and {:.1} of \
          primitives each",
         json["samples_per_pixel"], tests.0, tests.1
+    )
+}
+
+/// What a split view cost in words.
+fn cost_of_split(json: &Value) -> String {
+    let [width, height] = [0, 1].map(|i| json["resolution"][i].as_u64().unwrap_or(0));
+    let count = |key: &str| json["rasterized"][key].as_f64().unwrap_or(0.0);
+    format!(
+        "{width} × {height} pixels; rasterised, {:.1} million triangles and {} sprites",
+        count("triangles") / 1e6,
+        count("sprites")
     )
 }
 

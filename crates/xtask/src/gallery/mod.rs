@@ -21,7 +21,14 @@ const PAGES: &str = "docs/gallery";
 /// Makes the pages that have one of these in their names, or all if there are none, with the
 /// program built for release.
 pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
-    super::command::succeed(super::command::cargo(root).args(["build", "--release", "-p", "alhazen-cli"]))?;
+    super::command::succeed(super::command::cargo(root).args([
+        "build",
+        "--release",
+        "-p",
+        "alhazen-cli",
+        "--features",
+        "gpu",
+    ]))?;
     let program = super::command::target(root).join("release/alhazen");
     let pages = pages(root)?;
     let is_chosen = |page: &Page| names.is_empty() || names.iter().any(|name| page.file().contains(name));
