@@ -248,7 +248,8 @@ impl<R: Real> Scatter<R> for Hair<R> {
         for p in 0..=P_MAX {
             sum += o.attenuations[p] * self.lobe(&o, p, wi, phi);
         }
-        sum / wi.z.abs()
+        // A light that is sampled from a point on it may lie exactly along the surface.
+        sum.safe_div(SampledSpectrum::splat(wi.z.abs()))
     }
 
     #[inline(always)]

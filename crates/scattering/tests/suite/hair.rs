@@ -144,6 +144,7 @@ fn degenerate_directions_give_finite_values() {
                 }
                 let wi = spherical_direction(0.6, 0.8, 1.0);
                 assert!(hair.f(wo, wi, Radiance)[0] >= 0.0, "{wo} {roughness:?} {h}");
+                assert!(hair.f(wo, Vec3::Y, Radiance)[0].is_finite(), "along the surface: {wo} {h}");
                 assert!(hair.pdf(wo, wi, Radiance, Directions::All) >= 0.0);
             }
         }
