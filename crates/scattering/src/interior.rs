@@ -5,13 +5,13 @@ use spectrum::SampledSpectrum;
 
 /// The medium under a surface, for random walks.
 #[derive(Clone, Copy, Debug)]
-pub struct Interior {
+pub struct Interior<R = f32> {
     /// The coefficient of scattering per unit of length.
-    pub sigma_s: SampledSpectrum,
+    pub sigma_s: SampledSpectrum<R>,
     /// The coefficient of extinction.
-    pub sigma_t: SampledSpectrum,
+    pub sigma_t: SampledSpectrum<R>,
     /// How it scatters.
-    pub phase: HenyeyGreenstein,
+    pub phase: HenyeyGreenstein<R>,
     /// The index of refraction by which the surface reflects from inside, below over above.
-    pub eta: f32,
+    pub eta: R,
 }

@@ -199,10 +199,10 @@ impl<'a> Batch<'a> {
                 Material::CoatedConductor(material) => {
                     self.dispatch(algorithm, (id, material), turns, rows);
                 }
+                Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
                 Material::Hair(_)
                 | Material::Measured(_)
                 | Material::Subsurface(_)
-                | Material::OpenPbr(_)
                 | Material::Mix(_)
                 | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")

@@ -50,11 +50,13 @@ impl LaneMaterials {
                 | Material::ThinDielectric(_)
                 | Material::CoatedDiffuse(_)
                 | Material::CoatedConductor(_) => (true, false),
+                Material::OpenPbr(surface) => {
+                    (!(surface.may_be_a_body(textures) || surface.has_coat_normals()), false)
+                }
                 // Curves, which hair is on, are not in lanes; nor are lookups in large tables.
                 Material::Hair(_)
                 | Material::Measured(_)
                 | Material::Subsurface(_)
-                | Material::OpenPbr(_)
                 | Material::Mix(_)
                 | Material::Interface => (false, false),
             };

@@ -87,7 +87,7 @@ impl<R: Real> Dielectric<R> {
 
     /// The density of `wi` where `facet` is sampled and reflects with probability `pr`.
     #[inline(always)]
-    fn pdf_facet(&self, wo: Vector3<R>, wi: Vector3<R>, facet: &Facet<R>, pr: R) -> R {
+    pub(super) fn pdf_facet(&self, wo: Vector3<R>, wi: Vector3<R>, facet: &Facet<R>, pr: R) -> R {
         let Facet { wm, reflects, eta } = *facet;
         let pdf_wm = self.distribution.pdf(wo, wm);
         let reflection = pr * pdf_wm / (R::splat(4.0) * wo.dot(wm).abs());

@@ -26,7 +26,7 @@ pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
-pub use openpbr::{OpenPbr, OpenPbrParameters, OpenPbrTable};
+pub use openpbr::{OpenPbr, OpenPbrParameters, OpenPbrTable, PlainOpenPbrTable};
 pub use scatter::{BsdfSample, Scatter};
 pub use subsurface::{Subsurface, SubsurfaceMethod, SubsurfacePart};
 pub use thin_dielectric::ThinDielectric;

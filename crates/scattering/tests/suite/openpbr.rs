@@ -4,9 +4,11 @@ use alhazen_scattering::{
     Bxdf, Dielectric, Directions, OpenPbr, OpenPbrParameters, OpenPbrTable, Scatter, TransportMode,
     TrowbridgeReitz, fr_dielectric,
 };
+use lanes::Real;
 use math::{Vec2, Vec3, spherical_direction};
+use sampling::warp::sample_uniform_sphere;
 use spectrum::{SampledSpectrum, SampledWavelengths};
-use testkit::Random;
+use testkit::{LaneFunction, Random, lanes_agree};
 
 const WHITE: SampledSpectrum = SampledSpectrum::ONE;
 
@@ -450,6 +452,85 @@ fn what_is_not_diffuse_does_not_depend_on_what_lies_deep() {
             let mirrored = (WHITE - share) * value(&bright);
             let error = (mirrored - value(&dark))[0].abs();
             assert!(error <= 1e-4 * value(&bright)[0], "{error} of {:?}", value(&dark));
+        }
+    }
+}
+
+/// A surface with a table that covers all that lanes have.
+struct Lanes {
+    table: OpenPbrTable,
+    most: OpenPbrParameters,
+}
+
+impl Lanes {
+    fn new(most: OpenPbrParameters) -> Self {
+        let least = OpenPbrParameters {
+            specular_roughness: 0.0,
+            coat_weight: 0.0,
+            fuzz_weight: 0.0,
+            thin_film_weight: 0.0,
+            base_metalness: 0.0,
+            transmission_weight: 0.0,
+            ..most
+        };
+        Self { table: OpenPbrTable::new(&least, &most), most }
+    }
+}
+
+impl LaneFunction for Lanes {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let c = R::splat;
+        // A third of the lanes has nothing, a third has all.
+        let part = |u: R, most: f32| ((u * c(3.0) - c(1.0)).clamp(R::zero(), R::one())) * c(most);
+        let spectrum = |s: SampledSpectrum| SampledSpectrum::<R>::broadcast(s);
+        let most = &self.most;
+        let normal = Vec3::<R>::broadcast(most.geometry_coat_normal);
+        let is_tilted = u[10].lt(c(0.5));
+        let p = OpenPbrParameters {
+            base_color: spectrum(most.base_color),
+            base_diffuse_roughness: part(u[11], 1.0),
+            base_metalness: part(u[4], most.base_metalness),
+            specular_color: spectrum(most.specular_color),
+            specular_roughness: part(u[5], most.specular_roughness),
+            transmission_weight: part(u[6], most.transmission_weight),
+            transmission_color: spectrum(most.transmission_color),
+            subsurface_weight: c(most.subsurface_weight),
+            subsurface_scatter_anisotropy: c(most.subsurface_scatter_anisotropy),
+            coat_weight: part(u[7], most.coat_weight),
+            coat_color: spectrum(most.coat_color),
+            coat_roughness: c(most.coat_roughness),
+            geometry_coat_normal: Vec3::select(is_tilted, normal, Vec3::broadcast(Vec3::Z)),
+            fuzz_weight: part(u[8], most.fuzz_weight),
+            fuzz_color: spectrum(most.fuzz_color),
+            thin_film_weight: part(u[9], most.thin_film_weight),
+            geometry_thin_walled: most.geometry_thin_walled,
+            ..OpenPbrParameters::default()
+        };
+        let surface = OpenPbr::new(&self.table, &p, &SampledWavelengths::sample_uniform(u[10]));
+        let wo = sample_uniform_sphere(Vec2::new(u[0], u[1]));
+        let wi = sample_uniform_sphere(Vec2::new(u[2], u[3]));
+        let mut results = Vec::new();
+        for mode in [TransportMode::Radiance, TransportMode::Importance] {
+            results.extend(surface.f(wo, wi, mode).0);
+            results.push(surface.pdf(wo, wi, mode, Directions::All));
+            let sample = surface.sample_f(wo, u[11], Vec2::new(u[3], u[1]), mode, Directions::All);
+            let valid = |x: R| R::select(sample.valid, x, R::zero());
+            let wi = sample.wi;
+            results.extend([sample.f[0], sample.f[3], wi.x, wi.y, wi.z, sample.pdf, sample.eta].map(valid));
+        }
+        results
+    }
+}
+
+#[test]
+fn lanes_have_the_bits_of_single_floats() {
+    for most in [everything(), tilted(everything()), thin(everything()), thin(tilted(everything()))] {
+        let opaque = OpenPbrParameters { base_metalness: 1.0, transmission_weight: 0.0, ..most };
+        let plain = OpenPbrParameters { coat_weight: 0.0, fuzz_weight: 0.0, thin_film_weight: 0.0, ..most };
+        let whole = OpenPbrParameters { base_metalness: 1.0, transmission_weight: 1.0, ..most };
+        for most in [opaque, plain, whole] {
+            lanes_agree(&Lanes::new(most), 12, 100);
         }
     }
 }

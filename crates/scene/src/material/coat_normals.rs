@@ -1,6 +1,7 @@
 //! The normal of a coat over a surface, each of which has a normal map or follows the mesh.
 
 use super::NormalMap;
+use lanes::{MAX_LANES, Mask, Real};
 use math::{Frame, Point2, Vec3, Vector3};
 use std::sync::Arc;
 
@@ -18,9 +19,21 @@ impl CoatNormals {
         (image(&coat) != image(&base)).then_some(Self { coat, base })
     }
 
-    /// The normal of the coat in the shading frame of the base; that of the base where it would be
-    /// below.
-    pub fn at(&self, uv: Point2) -> Vector3 {
+    /// The normals of the coat in the shading frame of the base, where the mask is true; that of
+    /// the base where it would be below, and elsewhere.
+    pub fn at<R: Real>(&self, uv: Point2<R>, mask: R::Mask) -> Vector3<R> {
+        let [mut x, mut y, mut z] = [[0.0; MAX_LANES], [0.0; MAX_LANES], [1.0; MAX_LANES]];
+        let (u, v) = (uv.x.to_array(), uv.y.to_array());
+        for lane in 0..R::LANES {
+            if mask.bits() >> lane & 1 == 1 {
+                let normal = self.normal(Point2::new(u[lane], v[lane]));
+                (x[lane], y[lane], z[lane]) = (normal.x, normal.y, normal.z);
+            }
+        }
+        Vec3::new(R::load(&x), R::load(&y), R::load(&z))
+    }
+
+    fn normal(&self, uv: Point2) -> Vector3 {
         let [coat, base] =
             [&self.coat, &self.base].map(|map| map.as_ref().map_or(Vec3::Z, |map| map.normal(uv)));
         let normal = Frame::from_z_and_x(base, Vec3::X).to_local(coat);
@@ -43,7 +56,7 @@ mod tests {
     #[test]
     fn a_coat_without_a_map_keeps_the_normal_of_the_mesh() {
         let base = Vec3::new(0.3, 0.4, 0.8).normalize();
-        let coat = CoatNormals::new(None, map(base)).unwrap().at(Point2::ZERO);
+        let coat = CoatNormals::new(None, map(base)).unwrap().normal(Point2::ZERO);
         let in_mesh = Frame::from_z_and_x(base, Vec3::X).from_local(coat);
         assert!((in_mesh - Vec3::Z).length() < 1e-6, "{in_mesh}");
     }
@@ -51,7 +64,7 @@ mod tests {
     #[test]
     fn a_map_of_the_coat_alone_is_its_normal() {
         let normal = Vec3::new(-0.2, 0.1, 0.9).normalize();
-        let coat = CoatNormals::new(map(normal), None).unwrap().at(Point2::ZERO);
+        let coat = CoatNormals::new(map(normal), None).unwrap().normal(Point2::ZERO);
         assert!((coat - normal).length() < 1e-6, "{coat}");
         let both = map(normal);
         assert!(CoatNormals::new(both.clone(), both).is_none());

@@ -18,7 +18,7 @@ pub struct CoatedConductorMaterial {
 }
 
 impl MaterialModel for CoatedConductorMaterial {
-    type Bxdf<R: Real> = Layered<Conductor<R>, R>;
+    type Bxdf<'a, R: Real> = Layered<Conductor<R>, R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(
@@ -26,7 +26,7 @@ impl MaterialModel for CoatedConductorMaterial {
         textures: &Textures,
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
-    ) -> Self::Bxdf<R> {
+    ) -> Self::Bxdf<'_, R> {
         let base = self.base.bxdf(textures, context, lambda);
         let index = self.coat.index(lambda);
         // Seen from within the coat.

@@ -18,7 +18,7 @@ pub struct CoatedDiffuseMaterial {
 }
 
 impl MaterialModel for CoatedDiffuseMaterial {
-    type Bxdf<R: Real> = Layered<Diffuse<R>, R>;
+    type Bxdf<'a, R: Real> = Layered<Diffuse<R>, R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(
@@ -26,7 +26,7 @@ impl MaterialModel for CoatedDiffuseMaterial {
         textures: &Textures,
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
-    ) -> Self::Bxdf<R> {
+    ) -> Self::Bxdf<'_, R> {
         let base = self.base.bxdf(textures, context, lambda);
         let index = self.coat.index(lambda);
         self.coat.over(textures, context, lambda, (index, base))

@@ -34,7 +34,7 @@ pub enum ConductorIndex {
 }
 
 impl MaterialModel for ConductorMaterial {
-    type Bxdf<R: Real> = Conductor<R>;
+    type Bxdf<'a, R: Real> = Conductor<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

@@ -19,7 +19,7 @@ pub struct DielectricMaterial {
 }
 
 impl MaterialModel for DielectricMaterial {
-    type Bxdf<R: Real> = Dielectric<R>;
+    type Bxdf<'a, R: Real> = Dielectric<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

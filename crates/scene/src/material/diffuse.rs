@@ -16,7 +16,7 @@ pub struct DiffuseMaterial {
 }
 
 impl MaterialModel for DiffuseMaterial {
-    type Bxdf<R: Real> = Diffuse<R>;
+    type Bxdf<'a, R: Real> = Diffuse<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

@@ -21,7 +21,7 @@ pub struct DiffuseTransmissionMaterial {
 }
 
 impl MaterialModel for DiffuseTransmissionMaterial {
-    type Bxdf<R: Real> = DiffuseTransmission<R>;
+    type Bxdf<'a, R: Real> = DiffuseTransmission<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

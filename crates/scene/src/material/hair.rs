@@ -75,7 +75,7 @@ impl HairMaterial {
 }
 
 impl MaterialModel for HairMaterial {
-    type Bxdf<R: Real> = Hair<R>;
+    type Bxdf<'a, R: Real> = Hair<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

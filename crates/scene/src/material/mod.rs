@@ -36,7 +36,7 @@ pub use hair::{HairAbsorption, HairMaterial};
 pub use measured::MeasuredMaterial;
 pub use mix::MixMaterial;
 pub use normal_map::NormalMap;
-pub use openpbr::OpenPbrMaterial;
+pub use openpbr::{OpenPbrMaterial, PlainOpenPbr};
 pub use roughness::Roughness;
 pub use subsurface::{SubsurfaceInside, SubsurfaceMaterial};
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -51,16 +51,18 @@ use spectrum::{SampledWavelengths, Spectrum};
 /// The interface of a kind of material.
 pub trait MaterialModel {
     /// Its BxDF.
-    type Bxdf<R: Real>: Scatter<R>;
+    type Bxdf<'a, R: Real>: Scatter<R>
+    where
+        Self: 'a;
 
     /// The BxDF at a point, for each lane. Dispersive materials terminate the secondary
     /// wavelengths.
-    fn bxdf<R: Real>(
-        &self,
+    fn bxdf<'a, R: Real>(
+        &'a self,
         textures: &Textures,
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
-    ) -> Self::Bxdf<R>;
+    ) -> Self::Bxdf<'a, R>;
 }
 
 /// One material.

@@ -4,9 +4,10 @@
 //! absorbed by the medium inside, if there is one, and not by the boundary. Dispersive glass has
 //! Cauchy's index of refraction n = A + B/λ² by its Abbe number.
 
-use super::CoatNormals;
+use super::{CoatNormals, MaterialModel};
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
 use description::OpenPbrDesc;
+use lanes::{Mask, Real};
 use math::sqr;
 use scattering::{OpenPbr, OpenPbrParameters, OpenPbrTable};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -15,7 +16,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 const LINES: [f32; 3] = [486.134, 587.562, 656.281];
 
 /// The values of [`OpenPbrDesc::NUMBERS`].
-type Numbers = [f32; OpenPbrDesc::NUMBERS.len()];
+type Numbers<R = f32> = [R; OpenPbrDesc::NUMBERS.len()];
 
 /// A principled surface.
 #[derive(Clone, Debug)]
@@ -37,10 +38,28 @@ pub struct OpenPbrMaterial {
     table: OpenPbrTable,
 }
 
+/// What a principled surface is made of.
+#[derive(Clone, Debug)]
+pub struct PlainOpenPbr<'a> {
+    /// The values of [`OpenPbrDesc::NUMBERS`] where they are the same everywhere.
+    pub constants: &'a [f32; OpenPbrDesc::NUMBERS.len()],
+    /// Those that are not, and their textures.
+    pub varying: Vec<(usize, FloatTextureId)>,
+    /// The textures of [`OpenPbrDesc::COLORS`].
+    pub colors: &'a [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    /// Whether it is a wall without an inside.
+    pub is_thin: bool,
+    /// What its layers do with light.
+    pub table: &'a OpenPbrTable,
+}
+
 /// The index of refraction at a wavelength, of a glass of index `ior` at the d line.
-fn cauchy(ior: f32, abbe_number: f32, lambda: f32) -> f32 {
-    let [f, d, c] = LINES.map(|line| 1.0 / sqr(line));
-    ior + (ior - 1.0) / (abbe_number * (f - c)) * (1.0 / sqr(lambda) - d)
+#[inline(always)]
+fn cauchy<R: Real>(ior: R, abbe_number: R, lambda: R) -> R {
+    let [f, d, c] = LINES;
+    let [f, d, c] = [1.0 / sqr(f), 1.0 / sqr(d), 1.0 / sqr(c)];
+    let scale = (ior - R::one()) / (abbe_number * R::splat(f - c));
+    ior + scale * (R::one() / sqr(lambda) - R::splat(d))
 }
 
 impl OpenPbrMaterial {
@@ -103,59 +122,110 @@ impl OpenPbrMaterial {
     }
 
     /// Whether secondary wavelengths may be terminated.
-    pub(super) fn may_disperse(&self, textures: &Textures) -> bool {
+    pub fn may_disperse(&self, textures: &Textures) -> bool {
         let is_zero = |name| self.constant(textures, name) == Some(0.0);
         !(self.is_thin || is_zero("transmission_weight") || is_zero("transmission_dispersion_scale"))
     }
 
-    /// Its BxDF.
-    #[inline]
-    pub fn bxdf(
+    /// What it is made of, for an engine that evaluates it elsewhere.
+    pub fn plain(&self) -> PlainOpenPbr<'_> {
+        let Self { numbers, constants, varying, colors, is_thin, table, .. } = self;
+        let varying = varying.iter().map(|&i| (i, numbers[i])).collect();
+        PlainOpenPbr { constants, varying, colors, is_thin: *is_thin, table }
+    }
+
+    /// Whether light may be scattered under the surface, to leave elsewhere.
+    pub fn may_be_a_body(&self, textures: &Textures) -> bool {
+        let is_zero = |name| self.constant(textures, name) == Some(0.0);
+        !(self.is_thin || is_zero("subsurface_weight") || is_zero("subsurface_radius"))
+    }
+
+    /// Whether the coat has other normals than the base.
+    pub fn has_coat_normals(&self) -> bool {
+        self.coat_normals.is_some()
+    }
+
+    /// A colour, where it is seen.
+    #[inline(always)]
+    fn color<R: Real>(
         &self,
+        (textures, context, lambda): (&Textures, &TextureContext<R>, &SampledWavelengths<R>),
+        id: SpectrumTextureId,
+        is_seen: R::Mask,
+    ) -> SampledSpectrum<R> {
+        let white = SampledSpectrum::splat(R::one());
+        if !is_seen.any() {
+            return white;
+        }
+        let color = textures.spectrum(id, context, lambda).clamp(R::zero(), R::one());
+        SampledSpectrum::select(is_seen, color, white)
+    }
+}
+
+impl MaterialModel for OpenPbrMaterial {
+    type Bxdf<'a, R: Real> = OpenPbr<'a, R>;
+
+    #[inline(always)]
+    fn bxdf<'a, R: Real>(
+        &'a self,
         textures: &Textures,
-        context: &TextureContext,
-        lambda: &mut SampledWavelengths,
-    ) -> OpenPbr<'_> {
-        let mut numbers = self.constants;
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> OpenPbr<'a, R> {
+        let zero = R::zero();
+        let mut numbers = [zero; OpenPbrDesc::NUMBERS.len()];
+        for i in 0..numbers.len() {
+            numbers[i] = R::splat(self.constants[i]);
+        }
         for &i in &self.varying {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
-            numbers[i] = textures.float(self.numbers[i], context).clamp(least, most);
+            let value = textures.float(self.numbers[i], context);
+            numbers[i] = value.clamp(R::splat(least), R::splat(most));
         }
         let (mut p, transmission, radius) = parameters(&numbers);
         p.geometry_thin_walled = self.is_thin;
-        if let Some(normals) = self.coat_normals.as_ref().filter(|_| p.coat_weight > 0.0) {
-            p.geometry_coat_normal = normals.at(context.uv);
+        let is_coated = p.coat_weight.gt(zero);
+        if let Some(normals) = &self.coat_normals
+            && is_coated.any()
+        {
+            p.geometry_coat_normal = normals.at(context.uv, is_coated);
         }
+        let has_inside = R::Mask::splat(!self.is_thin);
+        let transmits = p.transmission_weight.gt(zero);
+        let scatters = p.subsurface_weight.gt(zero);
         // Colours that are not seen are not looked up.
         let [base, specular, transmitted, subsurface, coat, fuzz] = self.colors;
-        let color = |id, is_seen| match is_seen {
-            true => textures.spectrum(id, context, lambda).clamp(0.0, 1.0),
-            false => SampledSpectrum::ONE,
-        };
-        p.base_color = color(base, true);
-        p.specular_color = color(specular, true);
-        p.transmission_color =
-            color(transmitted, p.transmission_weight > 0.0 && (self.is_thin || transmission.depth == 0.0));
-        p.subsurface_color = color(subsurface, p.subsurface_weight > 0.0);
-        if p.subsurface_weight > 0.0 && radius > 0.0 && !self.is_thin {
-            p.subsurface_radius = color(self.radius_scale, true) * radius;
+        let place = (textures, context, &*lambda);
+        p.base_color = self.color(place, base, R::Mask::splat(true));
+        p.specular_color = self.color(place, specular, R::Mask::splat(true));
+        let is_tinted = transmits & (!has_inside | transmission.depth.eq(zero));
+        p.transmission_color = self.color(place, transmitted, is_tinted);
+        p.subsurface_color = self.color(place, subsurface, scatters);
+        let is_deep = scatters & has_inside & radius.gt(zero);
+        if is_deep.any() {
+            let deep = self.color(place, self.radius_scale, is_deep) * radius;
+            p.subsurface_radius = SampledSpectrum::select(is_deep, deep, p.subsurface_radius);
         }
-        p.coat_color = color(coat, p.coat_weight > 0.0);
-        p.fuzz_color = color(fuzz, p.fuzz_weight > 0.0);
-        if transmission.dispersion_scale > 0.0 && p.transmission_weight > 0.0 && !self.is_thin {
+        p.coat_color = self.color(place, coat, is_coated);
+        p.fuzz_color = self.color(place, fuzz, p.fuzz_weight.gt(zero));
+        let disperses = has_inside & transmits & transmission.dispersion_scale.gt(zero);
+        if disperses.any() {
             let abbe_number = transmission.abbe_number / transmission.dispersion_scale;
-            p.specular_ior = cauchy(p.specular_ior, abbe_number, lambda.lambda()[0]).max(1.0);
-            lambda.terminate_secondary();
+            let index = cauchy(p.specular_ior, abbe_number, lambda.lambda()[0]).max(R::one());
+            p.specular_ior = R::select(disperses, index, p.specular_ior);
+            let mut first = *lambda;
+            first.terminate_secondary();
+            *lambda = SampledWavelengths::select(disperses, first, *lambda);
         }
         OpenPbr::new(&self.table, &p, lambda)
     }
 }
 
 /// The numbers of transmission that the BxDF does not know.
-struct Transmission {
-    depth: f32,
-    dispersion_scale: f32,
-    abbe_number: f32,
+struct Transmission<R> {
+    depth: R,
+    dispersion_scale: R,
+    abbe_number: R,
 }
 
 /// The index of a number.
@@ -165,8 +235,8 @@ fn position(name: &str) -> usize {
 }
 
 /// The parameters of the BxDF, with colours of their defaults; and the radius under the surface.
-#[inline]
-fn parameters(numbers: &Numbers) -> (OpenPbrParameters, Transmission, f32) {
+#[inline(always)]
+fn parameters<R: Real>(numbers: &Numbers<R>) -> (OpenPbrParameters<R>, Transmission<R>, R) {
     let [
         base_weight,
         base_diffuse_roughness,
@@ -225,7 +295,7 @@ mod tests {
 
     #[test]
     fn indices_follow_the_abbe_number() {
-        let [f, d, c] = LINES.map(|line| cauchy(1.6, 30.0, line));
+        let [f, d, c] = LINES.map(|line| cauchy(1.6f32, 30.0, line));
         assert!((d - 1.6).abs() < 1e-6);
         assert!(((d - 1.0) / (f - c) - 30.0).abs() < 0.01, "{f} {c}");
     }

@@ -16,7 +16,7 @@ pub struct ThinDielectricMaterial {
 }
 
 impl MaterialModel for ThinDielectricMaterial {
-    type Bxdf<R: Real> = ThinDielectric<R>;
+    type Bxdf<'a, R: Real> = ThinDielectric<R>;
 
     #[inline(always)]
     fn bxdf<R: Real>(

@@ -35,9 +35,10 @@ pub(super) fn hat_cosines() -> Hats {
 
 /// The hats at a cosine.
 pub(super) fn hats(cosine: f32) -> Hats {
-    let place = Place::new(safe_sqrt(cosine), HATS);
+    let place: Place = Place::new(safe_sqrt(cosine), HATS);
     let mut hats = [0.0; HATS];
-    hats[place.index..place.index + 2].copy_from_slice(&place.weights());
+    let first = place.index as usize;
+    hats[first..first + 2].copy_from_slice(&place.weights());
     hats
 }
 
@@ -123,10 +124,10 @@ impl Glass {
         if !facets.is_isotropic() {
             return Self::compute(eta, facets, wo);
         }
-        let place = Place::new((eta - 1.0) / (eta + 1.0) + 0.5, INDICES);
+        let place: Place = Place::new((eta - 1.0) / (eta + 1.0) + 0.5, INDICES);
         let mut sum = Self { reflected: [0.0; HATS], refracted: [0.0; HATS], total: 0.0 };
         for (i, share) in place.weights().into_iter().enumerate() {
-            for (weight, node) in TABLE[place.index + i].around(facets.mean_alpha().sqrt(), wo.z) {
+            for (weight, node) in TABLE[place.index as usize + i].around(facets.mean_alpha().sqrt(), wo.z) {
                 for k in 0..HATS {
                     sum.reflected[k] += share * weight * node.reflected[k];
                     sum.refracted[k] += share * weight * node.refracted[k];

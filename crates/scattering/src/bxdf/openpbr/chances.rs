@@ -1,175 +1,204 @@
 //! The probabilities of lobes, about what each scatters from a direction, and their densities.
 
 use super::mirror::Mirror;
-use super::{OpenPbr, View, flip};
+use super::shares::{Rests, Shares};
+use super::{OpenPbr, upright};
 use crate::{Directions, TransportMode};
+use lanes::{Callee, Int, Mask, Real};
 use math::{Vector3, same_hemisphere};
 use sampling::warp::{cosine_hemisphere_pdf, uniform_hemisphere_pdf};
 use spectrum::SampledSpectrum;
 
-/// What a sample is drawn from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Lobe {
-    /// Fuzz, evenly over the hemisphere.
-    Fuzz,
-    /// The coat, by its facets.
-    Coat,
-    /// The reflection of opaque bases, by their facets.
-    Facets,
-    /// Glass, reflected or refracted by its facets; of a sheet, what passes it.
-    Glass,
-    /// The rest, by its cosine.
-    Rest,
-    /// The rest of glass and of thin walls on their other side, by its cosine.
-    Through,
-    /// The beginning of a path under the surface.
-    Under,
-}
+// What a sample is drawn from; 4 is the rest, by its cosine.
 
-const LOBES: [Lobe; 7] =
-    [Lobe::Fuzz, Lobe::Coat, Lobe::Facets, Lobe::Glass, Lobe::Rest, Lobe::Through, Lobe::Under];
+/// Fuzz, evenly over the hemisphere.
+pub(super) const FUZZ: u32 = 0;
+/// The coat, by its facets.
+pub(super) const COAT: u32 = 1;
+/// The reflection of opaque bases, by their facets.
+pub(super) const FACETS: u32 = 2;
+/// Glass, reflected or refracted by its facets; of a sheet, what passes it.
+pub(super) const GLASS: u32 = 3;
+/// The rest of glass and of thin walls on their other side, by its cosine.
+pub(super) const THROUGH: u32 = 5;
+/// The beginning of a path under the surface.
+pub(super) const UNDER: u32 = 6;
 
 /// Lobes of less than this share are rounding errors, and not sampled.
 const NEGLIGIBLE: f32 = 1e-6;
 
 /// The probabilities of all lobes.
-pub(super) struct Chances([f32; 7]);
+pub(super) struct Chances<R = f32> {
+    pub of: [R; 7],
+}
 
-impl Chances {
+/// A lobe that is chosen.
+pub(super) struct Choice<R: Real> {
+    pub lobe: R::Int,
+    /// Its probability; zero if there is no lobe.
+    pub chance: R,
+    /// A number in [0, 1) that is left to choose with.
+    pub u: R,
+}
+
+impl<R: Real> Chances<R> {
     /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
+    #[inline(always)]
     pub fn new(
-        surface: &OpenPbr,
-        view: &View,
-        wo: Vector3,
+        surface: &OpenPbr<R>,
+        (shares, rests): (&Shares<R>, &Rests<R>),
+        wo: Vector3<R>,
         mode: TransportMode,
         directions: Directions,
     ) -> Self {
+        let (zero, one, half) = (R::zero(), R::one(), R::splat(0.5));
         let cosine = wo.z.abs();
-        let (shares, rests) = (&view.shares, &view.rests);
         let taken = &shares.taken;
         let weights = surface.weights(wo.z);
-        let mut fuzz = 0.0;
-        if surface.stack.fuzz_weight > 0.0 {
-            let upwards = taken.fuzz_once + 0.5 * taken.fuzz_more;
-            fuzz = surface.stack.fuzz_weight * upwards * surface.fuzz_color.average();
-        }
-        let (mut reflected, mut rest) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
-        if weights.diffuse > 0.0 {
+        let upwards = taken.fuzz_once + half * taken.fuzz_more;
+        let fuzz = surface.stack.fuzz_weight * upwards * surface.fuzz_color.average();
+        let (mut reflected, mut rest) = (SampledSpectrum::zero(), SampledSpectrum::zero());
+        if weights.diffuse.gt(zero).any() {
             reflected += shares.dielectric * surface.specular_color * weights.diffuse;
             rest += shares.diffuse_rest * surface.diffuse_albedo(&weights) * weights.diffuse;
         }
-        if weights.metal > 0.0 {
+        if weights.metal.gt(zero).any() {
             reflected += surface.metal(cosine) * (taken.metal * weights.metal);
-            if rests.metal > 0.0 {
-                rest += surface.metal_again * (shares.metal_rest() * weights.metal);
-            }
+            let has_rest = rests.metal.gt(zero);
+            let left = R::select(has_rest, shares.metal_rest() * weights.metal, zero);
+            rest += surface.metal_again * left;
         }
-        if surface.stack.coat_weight > 0.0 {
-            let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
-            (reflected, rest) = (reflected * opaque, rest * opaque);
+        let is_coated = surface.stack.coat_weight.gt(zero);
+        if is_coated.any() {
+            let length = R::splat(2.0) * surface.coat_length(cosine);
+            let opaque = surface.darkening * surface.absorbed(length);
+            reflected = SampledSpectrum::select(is_coated, reflected * opaque, reflected);
+            rest = SampledSpectrum::select(is_coated, rest * opaque, rest);
         }
         let mut reflected = reflected.average();
         let mut rest = rest.average();
-        let (mut facets, mut through) = (0.0, 0.0);
+        let (mut facets, mut through) = (zero, zero);
         let glass = surface.glass();
-        if glass > 0.0 {
-            let inside = (wo.z < 0.0 && !surface.stack.is_thin).then(|| surface.inside(wo));
-            let (reflects, refracts, left) = match inside {
-                Some(inside) => (inside.reflected, inside.refracted, inside.left()),
-                None => {
-                    let tint = surface.specular_color.average();
-                    (shares.reflected * tint, shares.refracted, shares.glass_rest)
-                }
-            };
-            let side = usize::from(inside.is_some());
-            let left = if rests.glass[side] > 0.0 { left } else { 0.0 };
-            rest += glass * left * (1.0 - rests.through[side]);
+        if glass.gt(zero).any() {
+            let is_inside = wo.z.lt(zero) & R::Mask::splat(!surface.stack.is_thin);
+            let outside = shares.reflected * surface.specular_color.average();
+            let reflects = R::select(is_inside, shares.inside.reflected, outside);
+            let refracts = R::select(is_inside, shares.inside.refracted, shares.refracted);
+            let left = R::select(is_inside, shares.inside.left, shares.glass_rest);
+            let mean = R::select(is_inside, rests.glass_below, rests.glass_above);
+            let passes = R::select(is_inside, rests.through_below, rests.through_above);
+            let left = R::select(mean.gt(zero), left, zero);
+            rest += glass * left * (one - passes);
             let tint = glass * surface.transmission_color.average();
-            facets = glass * reflects + tint * refracts;
-            through = tint * left * rests.through[side];
+            through = tint * left * passes;
             if surface.stack.is_thin {
                 reflected += glass * reflects;
                 facets = tint * refracts;
+            } else {
+                facets = glass * reflects + tint * refracts;
             }
         }
-        if weights.diffuse > 0.0 && surface.stack.is_thin {
+        if surface.stack.is_thin {
             let transmitted = shares.diffuse_rest * surface.scattered * surface.darkening;
             through += transmitted.average() * (surface.forward * weights.diffuse);
         }
         let coat = weights.layers * taken.coat;
-        let mut under = 0.0;
-        if weights.under > 0.0 && mode == TransportMode::Radiance {
-            under = (surface.goes_under(shares, wo) * surface.subsurface_color).average();
+        let mut under = zero;
+        if mode == TransportMode::Radiance && weights.under.gt(zero).any() {
+            let color = surface.subsurface_color;
+            let goes_under = (surface.goes_under(shares, wo) * color).average();
+            under = R::select(weights.under.gt(zero), goes_under, zero);
         }
-        let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through, under];
-        match directions {
-            Directions::All => (),
-            Directions::Reflection => {
-                (chances[5], chances[6]) = (0.0, 0.0);
-                if surface.stack.is_thin {
-                    chances[3] = 0.0;
-                }
-            }
-            Directions::Transmission => [0, 1, 2, 4].into_iter().for_each(|i| chances[i] = 0.0),
-        }
-        let sum: f32 = chances.iter().sum();
-        if sum > 0.0 {
-            for chance in &mut chances {
-                *chance = if *chance > NEGLIGIBLE * sum { *chance / sum } else { 0.0 };
+        let mut of = [weights.layers * fuzz, coat, reflected, facets, rest, through, under];
+        if directions == Directions::Reflection {
+            of[5] = zero;
+            of[6] = zero;
+            if surface.stack.is_thin {
+                of[3] = zero;
             }
         }
-        Self(chances)
+        if directions == Directions::Transmission {
+            of[0] = zero;
+            of[1] = zero;
+            of[2] = zero;
+            of[4] = zero;
+        }
+        let mut sum = zero;
+        for i in 0..7 {
+            sum += of[i];
+        }
+        for i in 0..7 {
+            let is_sampled = of[i].gt(R::splat(NEGLIGIBLE) * sum);
+            of[i] = R::select(is_sampled, of[i] / sum, zero);
+        }
+        Self { of }
     }
 
-    /// A lobe, its probability, and a number in [0, 1) that is left to choose with; `None` if there
-    /// is no lobe.
-    pub fn choose(&self, u: f32) -> Option<(Lobe, f32, f32)> {
+    /// A lobe.
+    #[inline(always)]
+    pub fn choose(&self, u: R) -> Choice<R> {
+        let mut choice = Choice { lobe: R::Int::splat(0), chance: R::zero(), u };
         let mut left = u;
-        let mut last = None;
-        for (lobe, &chance) in LOBES.into_iter().zip(&self.0) {
-            if chance > 0.0 {
-                let rest = (left / chance).min(math::ONE_MINUS_EPSILON);
-                if left < chance {
-                    return Some((lobe, chance, rest));
-                }
-                last = Some((lobe, chance, rest));
-                left -= chance;
-            }
+        let mut is_found = R::Mask::splat(false);
+        for (i, &chance) in self.of.iter().enumerate() {
+            let is_here = !is_found & chance.gt(R::zero());
+            let rest = (left / chance).min(R::splat(math::ONE_MINUS_EPSILON));
+            choice.lobe = R::Int::select(is_here, R::Int::splat(i as u32), choice.lobe);
+            choice.chance = R::select(is_here, chance, choice.chance);
+            choice.u = R::select(is_here, rest, choice.u);
+            is_found = is_found | is_here & left.lt(chance);
+            left = R::select(is_here, left - chance, left);
         }
-        last
+        choice
     }
 
     /// The density of `wi`, off the horizon.
-    pub fn pdf(
-        &self,
-        surface: &OpenPbr,
-        wo: Vector3,
-        wi: Vector3,
-        mode: TransportMode,
-        directions: Directions,
-    ) -> f32 {
-        let [fuzz, coat, facets, glass, rest, through, _] = self.0;
-        let mut pdf = 0.0;
-        if glass > 0.0 && surface.stack.is_thin {
-            if !same_hemisphere(wo, wi) {
-                pdf += glass * surface.pdf_sheet(wo, wi);
+    #[inline(always)]
+    pub fn pdf(&self, surface: &OpenPbr<R>, wo: Vector3<R>, wi: Vector3<R>, directions: Directions) -> R {
+        R::call(DensityOf { chances: self, surface, wo, wi, directions })
+    }
+}
+
+/// The density of a direction.
+struct DensityOf<'b, 'a, R: Real> {
+    chances: &'b Chances<R>,
+    surface: &'b OpenPbr<'a, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+    directions: Directions,
+}
+
+impl<R: Real> Callee<R> for DensityOf<'_, '_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self { chances, surface, wo, wi, directions } = self;
+        let zero = R::zero();
+        let [fuzz, coat, facets, glass, rest, through, _] = chances.of;
+        let is_same = same_hemisphere(wo, wi);
+        let is_below = wo.z.lt(zero);
+        let (up, out) = (upright(is_below, wo), upright(is_below, wi));
+        let mut pdf = zero;
+        if glass.gt(zero).any() {
+            if surface.stack.is_thin {
+                pdf = R::select(is_same, zero, glass * surface.pdf_sheet(up, out));
+            } else {
+                pdf = R::select(glass.gt(zero), glass * surface.pdf_glass(wo, wi, directions), zero);
             }
-        } else if glass > 0.0 {
-            pdf += glass * surface.pdf_glass(wo, wi, mode, directions);
         }
         let cosine = cosine_hemisphere_pdf(wi.z.abs());
-        if !same_hemisphere(wo, wi) {
-            return pdf + through * cosine;
+        let across = pdf + through * cosine;
+        if !is_same.any() {
+            return across;
         }
-        let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
-        if coat > 0.0 {
-            pdf += coat * surface.pdf_coat(wo, wi);
+        if coat.gt(zero).any() {
+            pdf += R::select(coat.gt(zero), coat * surface.pdf_coat(up, out), zero);
         }
-        if facets > 0.0
-            && let Some(mirror) = Mirror::new(&surface.stack.base, wo, wi)
-        {
-            pdf += facets * mirror.pdf;
+        if facets.gt(zero).any() {
+            pdf += facets * Mirror::new(&surface.stack.base, up, out).pdf;
         }
-        pdf + rest * cosine + fuzz * uniform_hemisphere_pdf()
+        let same = pdf + rest * cosine + fuzz * R::splat(uniform_hemisphere_pdf());
+        R::select(is_same, same, across)
     }
 }

@@ -10,114 +10,140 @@
 use super::mirror::Mirror;
 use super::shares::Shares;
 use super::stack::Taken;
-use super::{OpenPbr, flip, is_off_horizon, mirrored};
+use super::{OpenPbr, is_off_horizon, mirrored, upright};
 use crate::{BsdfSample, TransportMode, fr_dielectric};
+use lanes::{Mask, Real};
 use math::{Frame, Vec2, Vec3, Vector3, sqr};
 
-/// The frame of a coat with a normal other than z.
-fn frame(normal: Vector3) -> Frame {
-    Frame::from_z_and_x(normal, Vec3::X)
-}
+impl<R: Real> OpenPbr<'_, R> {
+    /// Whether the normal of the coat is another than that of the base.
+    #[inline(always)]
+    pub(super) fn is_tilted(&self) -> R::Mask {
+        let Vec3 { x, y, z } = self.coat_normal;
+        x.ne(R::zero()) | y.ne(R::zero()) | z.ne(R::one())
+    }
 
-impl OpenPbr<'_> {
-    pub(super) fn is_tilted(&self) -> bool {
-        self.coat_normal != Vec3::Z
+    /// The frame of a tilted coat.
+    #[inline(always)]
+    fn coat_frame(&self) -> Frame<R> {
+        Frame::from_z_and_x(self.coat_normal, Vec3::broadcast(Vec3::X))
     }
 
     /// A direction above, as the coat has it.
-    fn on_coat(&self, w: Vector3) -> Vector3 {
-        if self.is_tilted() { frame(self.coat_normal).to_local(w) } else { w }
-    }
-
-    /// Of two directions above: themselves as the coat has them, and the facets that mirror one
-    /// into the other. `None` for smooth coats, and where one is behind the coat.
-    fn mirror(&self, wo: Vector3, wi: Vector3) -> Option<(Mirror, [Vector3; 2])> {
-        let directions @ [wo, wi] = [wo, wi].map(|w| self.on_coat(w));
-        let is_above = directions.iter().all(|w| w.z > 0.0 && is_off_horizon(*w));
-        let mirror = is_above.then(|| Mirror::new(&self.stack.coat, wo, wi)).flatten()?;
-        Some((mirror, directions))
+    #[inline(always)]
+    fn on_coat(&self, w: Vector3<R>) -> Vector3<R> {
+        let is_tilted = self.is_tilted();
+        if !is_tilted.any() {
+            return w;
+        }
+        Vec3::select(is_tilted, self.coat_frame().to_local(w), w)
     }
 
     /// The share of light from a tilted coat that is mirrored above the base, by its cosine there.
-    fn mirrored_above(&self, z: f32) -> f32 {
-        let width = 0.5 * (1.0 - sqr(self.coat_normal.z)).sqrt();
-        (z / width.max(1e-3)).clamp(0.0, 1.0)
+    #[inline(always)]
+    fn mirrored_above(&self, z: R) -> R {
+        let width = R::splat(0.5) * (R::one() - sqr(self.coat_normal.z)).sqrt();
+        (z / width.max(R::splat(1e-3))).clamp(R::zero(), R::one())
     }
 
     /// The value for two directions above, of light that has passed the fuzz.
-    pub(super) fn coat(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> f32 {
-        let Some((mirror, [coat_wo, coat_wi])) = self.mirror(wo, wi) else { return 0.0 };
+    #[inline(always)]
+    pub(super) fn coat(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> R {
+        let (coat_wo, coat_wi) = (self.on_coat(wo), self.on_coat(wi));
+        let is_above = is_above(coat_wo) & is_above(coat_wi);
+        let mirror = Mirror::new(&self.stack.coat, coat_wo, coat_wi);
         let f = fr_dielectric(mirror.cosine, self.stack.coat_ior) * mirror.f;
-        match mode {
-            _ if !self.is_tilted() => f,
+        let f = R::select(is_above, f, R::zero());
+        let is_tilted = self.is_tilted();
+        if !is_tilted.any() {
+            return f;
+        }
+        let tilted = match mode {
             TransportMode::Radiance => f * coat_wi.z / wi.z * self.mirrored_above(wi.z),
             TransportMode::Importance => f * coat_wo.z / wo.z * self.mirrored_above(wo.z),
-        }
+        };
+        R::select(is_tilted, tilted, f)
     }
 
     /// What a smooth coat reflects of the light from a direction above into its mirror image, times
     /// the cosine of that.
-    pub(super) fn specular_coat(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> f32 {
+    #[inline(always)]
+    pub(super) fn specular_coat(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> R {
         let reflected = fr_dielectric(self.on_coat(wo).z, self.stack.coat_ior);
-        match mode {
-            _ if !self.is_tilted() => reflected,
+        let is_tilted = self.is_tilted();
+        if !is_tilted.any() {
+            return reflected;
+        }
+        let tilted = match mode {
             TransportMode::Radiance => reflected * self.mirrored_above(wi.z),
             TransportMode::Importance => reflected * wi.z / wo.z * self.mirrored_above(wo.z),
-        }
+        };
+        R::select(is_tilted, tilted, reflected)
     }
 
     /// A direction in which the coat reflects light, as `mirrored` has it, for one above.
-    pub(super) fn sample_coat(&self, wo: Vector3, u: Vec2) -> BsdfSample {
-        if !self.is_tilted() {
-            return mirrored(&self.stack.coat, wo, u);
+    #[inline(always)]
+    pub(super) fn sample_coat(&self, wo: Vector3<R>, u: Vec2<R>) -> BsdfSample<R> {
+        let is_tilted = self.is_tilted();
+        let coat_wo = self.on_coat(wo);
+        let sample = mirrored(&self.stack.coat, coat_wo, u);
+        if !is_tilted.any() {
+            return sample;
         }
-        let frame = frame(self.coat_normal);
-        let wo = frame.to_local(wo);
-        if !(wo.z > 0.0 && is_off_horizon(wo)) {
-            return BsdfSample::invalid();
-        }
-        let sample = mirrored(&self.stack.coat, wo, u);
-        let wi = frame.from_local(sample.wi);
-        BsdfSample { wi, valid: sample.valid && wi.z > 0.0 && is_off_horizon(wi), ..sample }
+        let wi = Vec3::select(is_tilted, self.coat_frame().from_local(sample.wi), sample.wi);
+        let valid = sample.valid & (!is_tilted | is_above(coat_wo) & is_above(wi));
+        BsdfSample { wi, valid, ..sample }
     }
 
     /// The density of [`Self::sample_coat`] for two directions above.
-    pub(super) fn pdf_coat(&self, wo: Vector3, wi: Vector3) -> f32 {
-        self.mirror(wo, wi).map_or(0.0, |(mirror, _)| mirror.pdf)
+    #[inline(always)]
+    pub(super) fn pdf_coat(&self, wo: Vector3<R>, wi: Vector3<R>) -> R {
+        let (wo, wi) = (self.on_coat(wo), self.on_coat(wi));
+        let mirror = Mirror::new(&self.stack.coat, wo, wi);
+        R::select(is_above(wo) & is_above(wi), mirror.pdf, R::zero())
     }
 
     /// The shares of a direction off the horizon, with those of a coat that is tilted.
-    pub(super) fn under_coat(&self, shares: Shares, w: Vector3) -> Shares {
-        if !self.is_tilted() {
+    #[inline(always)]
+    pub(super) fn under_coat(&self, shares: Shares<R>, w: Vector3<R>) -> Shares<R> {
+        let is_tilted = self.is_tilted();
+        if !is_tilted.any() {
             return shares;
         }
-        let w = flip(w.z < 0.0, w);
+        let w = upright(w.z.lt(R::zero()), w);
         let on_coat = self.on_coat(w);
-        let mut reflected = 0.0;
-        if on_coat.z > 0.0 && is_off_horizon(on_coat) {
-            let taken = self.table.taken(&self.numbers, self.waves[0], on_coat);
-            reflected = taken.coat / (taken.left + taken.coat).max(f32::MIN_POSITIVE);
-            reflected *= self.mirrored_above(2.0 * on_coat.z * self.coat_normal.z - w.z);
-        }
-        let coat = shares.below_fuzz() * reflected;
-        let left = shares.below_fuzz() - coat;
-        let taken = &shares.taken;
-        let scale = left / taken.left.max(f32::MIN_POSITIVE);
+        let least = R::splat(f32::MIN_POSITIVE);
+        let at_coat = self.table.taken(&self.location, self.waves[0], on_coat);
+        let mirrored = self.mirrored_above(R::splat(2.0) * on_coat.z * self.coat_normal.z - w.z);
+        let reflected = at_coat.coat / (at_coat.left + at_coat.coat).max(least) * mirrored;
+        let reflected = R::select(is_above(on_coat), reflected, R::zero());
+        let taken = shares.taken;
+        let coat = R::select(is_tilted, shares.below_fuzz() * reflected, taken.coat);
+        let left = R::select(is_tilted, shares.below_fuzz() - coat, taken.left);
+        let scale = R::select(is_tilted, left / taken.left.max(least), R::one());
+        let taken = Taken {
+            coat,
+            left,
+            below_coat: taken.below_coat * scale,
+            metal: taken.metal * scale,
+            dielectric: taken.dielectric * scale,
+            refracted: taken.refracted * scale,
+            ..taken
+        };
         Shares {
-            taken: Taken {
-                coat,
-                left,
-                below_coat: taken.below_coat * scale,
-                metal: taken.metal * scale,
-                dielectric: taken.dielectric * scale,
-                refracted: taken.refracted * scale,
-                ..*taken
-            },
+            taken,
             dielectric: shares.dielectric * scale,
             diffuse_rest: shares.diffuse_rest * scale,
             reflected: shares.reflected * scale,
             refracted: shares.refracted * scale,
             glass_rest: shares.glass_rest * scale,
+            ..shares
         }
     }
+}
+
+/// Whether a direction is above a surface, and off its horizon.
+#[inline(always)]
+fn is_above<R: Real>(w: Vector3<R>) -> R::Mask {
+    w.z.gt(R::zero()) & is_off_horizon(w)
 }

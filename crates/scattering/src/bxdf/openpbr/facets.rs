@@ -12,65 +12,85 @@
 
 use super::OpenPbr;
 use super::film::{Complex, film_reflectance};
+use lanes::{Callee, Mask, Real};
 use math::sqr;
-use spectrum::SampledSpectrum;
+use spectrum::{N, SampledSpectrum};
 
 /// μ (1 − μ)⁶ at the edge, μ = 1/7, where the tint is that of the model.
 const AT_EDGE: f32 = 46_656.0 / 823_543.0;
 /// (1 − μ)⁵ there.
 const SCHLICK_AT_EDGE: f32 = 7_776.0 / 16_807.0;
 
-impl OpenPbr<'_> {
+impl<R: Real> OpenPbr<'_, R> {
     /// F₀ + (1 − F₀) x.
-    #[inline]
-    fn schlick(&self, x: f32) -> SampledSpectrum {
-        self.metal_color.map(|f| f + (1.0 - f) * x)
+    #[inline(always)]
+    fn schlick(&self, x: R) -> SampledSpectrum<R> {
+        let mut schlick = self.metal_color;
+        for f in &mut schlick.0 {
+            *f = *f + (R::one() - *f) * x;
+        }
+        schlick
     }
 
-    /// b of the tint, where there is one.
-    #[inline]
-    fn dip(&self) -> Option<SampledSpectrum> {
-        let tint = self.specular_color;
-        (tint != SampledSpectrum::ONE)
-            .then(|| self.schlick(SCHLICK_AT_EDGE) * (SampledSpectrum::ONE - tint) * (1.0 / AT_EDGE))
+    /// b of the tint; zero where there is none.
+    #[inline(always)]
+    fn dip(&self) -> SampledSpectrum<R> {
+        let untinted = SampledSpectrum::splat(R::one()) - self.specular_color;
+        self.schlick(R::splat(SCHLICK_AT_EDGE)) * untinted * R::splat(1.0 / AT_EDGE)
     }
 
     /// The reflectance of metal.
-    #[inline]
-    pub(super) fn metal(&self, cosine: f32) -> SampledSpectrum {
-        let grazing = 1.0 - cosine;
+    #[inline(always)]
+    pub(super) fn metal(&self, cosine: R) -> SampledSpectrum<R> {
+        let grazing = R::one() - cosine;
         let power = sqr(sqr(grazing)) * grazing;
         let plain = self.schlick(power);
-        let mut bare = plain;
-        if let Some(dip) = self.dip() {
-            bare = (bare - dip * (cosine * power * grazing)).clamp_zero();
-        }
-        if self.stack.film_weight > 0.0 {
-            let inner = self.stack.inner_cosine(cosine);
-            let mut filmed = self.waves;
-            for i in 0..filmed.0.len() {
-                let reflected = self.metal_color[i].min(0.9999);
-                let below = Complex { re: 1.0, im: 2.0 * (reflected / (1.0 - reflected)).sqrt() };
-                filmed[i] =
-                    film_reflectance(inner, self.stack.above, self.stack.film_ior, below, self.waves[i]);
-            }
-            bare = bare.lerp(filmed * bare.safe_div(plain), self.stack.film_weight);
+        let mut bare = (plain - self.dip() * (cosine * power * grazing)).clamp_zero();
+        let is_filmed = self.stack.film_weight.gt(R::zero());
+        if is_filmed.any() {
+            let filmed = R::call(FilmedMetal { surface: self, cosine });
+            let filmed = bare.lerp(filmed * bare.safe_div(plain), self.stack.film_weight);
+            bare = SampledSpectrum::select(is_filmed, filmed, bare);
         }
         bare * self.metal_weight
     }
 
     /// The mean of [`Self::metal`] over directions by their cosine; under a film about that of the
     /// mean cosine.
-    #[inline]
-    pub(super) fn mean_metal(&self) -> SampledSpectrum {
-        if self.stack.film_weight > 0.0 {
-            return self.metal(2.0 / 3.0);
+    #[inline(always)]
+    pub(super) fn mean_metal(&self) -> SampledSpectrum<R> {
+        let bare = self.schlick(R::splat(1.0 / 21.0)) - self.dip() * R::splat(1.0 / 126.0);
+        let mean = bare.clamp_zero() * self.metal_weight;
+        let is_filmed = self.stack.film_weight.gt(R::zero());
+        if !is_filmed.any() {
+            return mean;
         }
-        let mut mean = self.schlick(1.0 / 21.0);
-        if let Some(dip) = self.dip() {
-            mean = (mean - dip * (1.0 / 126.0)).clamp_zero();
+        SampledSpectrum::select(is_filmed, self.metal(R::splat(2.0 / 3.0)), mean)
+    }
+}
+
+/// The reflectance of the index that metal has under a film.
+struct FilmedMetal<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    cosine: R,
+}
+
+impl<R: Real> Callee<R> for FilmedMetal<'_, '_, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let Self { surface, cosine } = self;
+        let stack = &surface.stack;
+        let inner = stack.inner_cosine(cosine);
+        let mut filmed = surface.waves;
+        for i in 0..N {
+            let reflected = surface.metal_color[i].min(R::splat(0.9999));
+            let root = (reflected / (R::one() - reflected)).sqrt();
+            let below = Complex { re: R::one(), im: R::splat(2.0) * root };
+            filmed[i] = film_reflectance(inner, stack.above, stack.film_ior, below, surface.waves[i]);
         }
-        mean * self.metal_weight
+        filmed
     }
 }
 

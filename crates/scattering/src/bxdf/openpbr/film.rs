@@ -12,95 +12,98 @@
 //! of |r|². Complex indices and q, where the film reflects all light inside, need no other formula.
 //! Source: [Born 1999 §1.6.4].
 
+use lanes::{Real, exp, sin_cos};
 use math::sqr;
 use std::f32::consts::PI;
-use std::ops::{Add, Div, Mul, Sub};
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Complex {
-    pub re: f32,
-    pub im: f32,
+pub(super) struct Complex<R = f32> {
+    pub re: R,
+    pub im: R,
 }
 
-impl Complex {
-    pub fn real(re: f32) -> Self {
-        Self { re, im: 0.0 }
+impl<R: Real> Complex<R> {
+    #[inline(always)]
+    pub fn real(re: R) -> Self {
+        Self { re, im: R::zero() }
     }
 
-    fn norm2(self) -> f32 {
+    #[inline(always)]
+    fn norm2(self) -> R {
         sqr(self.re) + sqr(self.im)
     }
 
     /// The root with no negative part, of a number with no negative imaginary part.
-    fn sqrt(self) -> Self {
-        let modulus = self.norm2().sqrt();
-        let [re, im] = [modulus + self.re, modulus - self.re].map(|twice| (0.5 * twice).max(0.0).sqrt());
+    #[inline(always)]
+    fn root(self) -> Self {
+        let (modulus, half) = (self.norm2().sqrt(), R::splat(0.5));
+        let re = (half * (modulus + self.re)).max(R::zero()).sqrt();
+        let im = (half * (modulus - self.re)).max(R::zero()).sqrt();
         Self { re, im }
     }
 
     /// e^{i self}.
+    #[inline(always)]
     fn exp_i(self) -> Self {
-        let (sin, cos) = lanes::sin_cos(self.re);
-        let scale = lanes::exp(-self.im);
+        let (sin, cos) = sin_cos(self.re);
+        let scale = exp(-self.im);
         Self { re: scale * cos, im: scale * sin }
     }
-}
 
-impl Add for Complex {
-    type Output = Self;
-
-    fn add(self, b: Self) -> Self {
+    #[inline(always)]
+    fn plus(self, b: Self) -> Self {
         Self { re: self.re + b.re, im: self.im + b.im }
     }
-}
 
-impl Sub for Complex {
-    type Output = Self;
-
-    fn sub(self, b: Self) -> Self {
+    #[inline(always)]
+    fn minus(self, b: Self) -> Self {
         Self { re: self.re - b.re, im: self.im - b.im }
     }
-}
 
-impl Mul for Complex {
-    type Output = Self;
-
-    fn mul(self, b: Self) -> Self {
+    #[inline(always)]
+    fn times(self, b: Self) -> Self {
         Self { re: self.re * b.re - self.im * b.im, im: self.re * b.im + self.im * b.re }
     }
-}
 
-impl Div for Complex {
-    type Output = Self;
-
-    fn div(self, b: Self) -> Self {
-        let product = self * Self { re: b.re, im: -b.im };
+    #[inline(always)]
+    fn over(self, b: Self) -> Self {
+        let product = self.times(Self { re: b.re, im: -b.im });
         Self { re: product.re / b.norm2(), im: product.im / b.norm2() }
     }
+
+    /// (a − b)/(a + b).
+    #[inline(always)]
+    fn contrast(self, b: Self) -> Self {
+        self.minus(b).over(self.plus(b))
+    }
+}
+
+/// |r|² of both sides by their own r, with what a way through the film and back turns.
+#[inline(always)]
+fn both_sides<R: Real>(first: Complex<R>, second: Complex<R>, turn: Complex<R>) -> R {
+    let again = second.times(turn);
+    let ratio = first.plus(again).over(Complex::real(R::one()).plus(first.times(again)));
+    ratio.norm2()
 }
 
 /// The reflectance of a film of `thickness` wavelengths of vacuum and index `film`, between the
 /// indices `above` and `below`, for light from above with the cosine `cosine`.
-pub(super) fn film_reflectance(cosine: f32, above: f32, film: f32, below: Complex, thickness: f32) -> f32 {
+#[inline(always)]
+pub(super) fn film_reflectance<R: Real>(cosine: R, above: R, film: R, below: Complex<R>, thickness: R) -> R {
     // Nearer to the horizon both ratios tend to −1 and 1, and their sum over the difference to 0/0.
-    let cosine = cosine.max(1e-3);
-    let indices = [Complex::real(above), Complex::real(film), below];
-    let across2 = Complex::real(sqr(above) * (1.0 - sqr(cosine)));
-    let squares = indices.map(|n| n * n);
-    let q = [Complex::real(above * cosine), (squares[1] - across2).sqrt(), (squares[2] - across2).sqrt()];
-    let turn = (q[1] * Complex::real(4.0 * PI * thickness)).exp_i();
-    let whole = |first: Complex, second: Complex| {
-        let ratio = (first + second * turn) / (Complex::real(1.0) + first * second * turn);
-        ratio.norm2()
-    };
-    let perpendicular = |i: usize| (q[i] - q[i + 1]) / (q[i] + q[i + 1]);
-    let parallel = |i: usize| {
-        let (a, b) = (squares[i + 1] * q[i], squares[i] * q[i + 1]);
-        (a - b) / (a + b)
-    };
-    let sum = whole(perpendicular(0), perpendicular(1)) + whole(parallel(0), parallel(1));
-    (0.5 * sum).clamp(0.0, 1.0)
+    let cosine = cosine.max(R::splat(1e-3));
+    let across2 = Complex::real(sqr(above) * (R::one() - sqr(cosine)));
+    let (s0, s1) = (Complex::real(sqr(above)), Complex::real(sqr(film)));
+    let s2 = below.times(below);
+    let q0 = Complex::real(above * cosine);
+    let q1 = s1.minus(across2).root();
+    let q2 = s2.minus(across2).root();
+    let turn = q1.times(Complex::real(R::splat(4.0 * PI) * thickness)).exp_i();
+    let perpendicular = both_sides(q0.contrast(q1), q1.contrast(q2), turn);
+    let (above_film, below_film) = (s1.times(q0).contrast(s0.times(q1)), s2.times(q1).contrast(s1.times(q2)));
+    let parallel = both_sides(above_film, below_film, turn);
+    (R::splat(0.5) * (perpendicular + parallel)).clamp(R::zero(), R::one())
 }
 
 #[cfg(test)]

@@ -14,29 +14,34 @@
 //! [Zeltner 2022], which is fitted to simulations of such layers.
 
 use super::grid::Grid;
+use lanes::{Each, Real, exp};
 use math::{Vector3, spherical_direction, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::{PI, TAU};
 use std::sync::LazyLock;
 
 /// σ², of a direction with a cosine.
-fn area2(width: f32, cosine: f32) -> f32 {
-    1.0 - sqr(cosine) * (1.0 - sqr(width))
+#[inline(always)]
+fn area2<R: Real>(width: R, cosine: R) -> R {
+    R::one() - sqr(cosine) * (R::one() - sqr(width))
 }
 
 /// ς of a roughness in [0, 1].
-fn width(roughness: f32) -> f32 {
-    roughness.clamp(0.1, 1.0)
+#[inline(always)]
+fn width<R: Real>(roughness: R) -> R {
+    roughness.clamp(R::splat(0.1), R::one())
 }
 
 /// The value of single scattering, for two directions above.
-fn single(width: f32, wo: Vector3, wi: Vector3) -> f32 {
-    let Some(h) = (wo + wi).try_normalize() else { return 0.0 };
-    let ellipse = 1.0 - sqr(h.z) + sqr(h.z / width);
-    let [o, i] = [wo, wi].map(|w| area2(width, w.z).sqrt());
+#[inline(always)]
+fn single<R: Real>(width: R, wo: Vector3<R>, wi: Vector3<R>) -> R {
+    let (h, is_found) = (wo + wi).normalize_masked();
+    let ellipse = R::one() - sqr(h.z) + sqr(h.z / width);
+    let [o, i] = [wo.z, wi.z].each(|cosine| area2(width, cosine).sqrt());
     let depth = o / wo.z + i / wi.z;
-    let scattered = 1.0 - lanes::exp(-depth);
-    scattered / (4.0 * PI * width * sqr(ellipse) * (o * wi.z + i * wo.z))
+    let scattered = R::one() - exp(-depth);
+    let single = scattered / (R::splat(4.0 * PI) * width * sqr(ellipse) * (o * wi.z + i * wo.z));
+    R::select(is_found, single, R::zero())
 }
 
 /// What fuzz of a roughness scatters of light from one direction.
@@ -54,7 +59,7 @@ impl Scattered {
         static TABLE: LazyLock<Grid<f32>> = LazyLock::new(|| Grid::new(|r, c| albedo(width(r), c)));
         let nodes = TABLE.around(roughness, cosine);
         let once = nodes.map(|(weight, once)| weight * once).into_iter().sum::<f32>();
-        let met = 1.0 - lanes::exp(-area2(width(roughness), cosine).sqrt() / cosine.max(1e-6));
+        let met = 1.0 - exp(-area2(width(roughness), cosine).sqrt() / cosine.max(1e-6));
         Self { once, more: (met - once).max(0.0) }
     }
 
@@ -64,15 +69,16 @@ impl Scattered {
     }
 }
 
-/// The value for two directions above; `mean` is X̄.
-pub(super) fn value(
-    color: SampledSpectrum,
-    roughness: f32,
-    mean: f32,
-    [wo, wi]: [Vector3; 2],
-    [o, i]: [Scattered; 2],
-) -> SampledSpectrum {
-    let again = 0.5 * o.more * i.more / (PI * mean);
+/// The value for two directions above, of which fibres scatter `more` than once; `mean` is X̄.
+#[inline(always)]
+pub(super) fn value<R: Real>(
+    color: SampledSpectrum<R>,
+    roughness: R,
+    mean: R,
+    [wo, wi]: [Vector3<R>; 2],
+    more: [R; 2],
+) -> SampledSpectrum<R> {
+    let again = R::splat(0.5) * more[0] * more[1] / (R::splat(PI) * mean);
     color * (color * again + SampledSpectrum::splat(single(width(roughness), wo, wi)))
 }
 

@@ -1,6 +1,7 @@
 //! The nodes of the tables: roughnesses evenly from 0 to 1, and cosines that are squares, as
 //! everything is steep at grazing angles.
 
+use lanes::{Int, Real};
 use math::{safe_sqrt, sqr};
 
 /// Cosines, the squares of 0, 1/18, … 1.
@@ -25,7 +26,7 @@ impl<T> Grid<T> {
         let [r, c] = [Place::new(roughness, ROUGHNESSES), Place::new(safe_sqrt(cosine), COSINES)];
         let node = |i: usize, j: usize| {
             let weight = r.weights()[i] * c.weights()[j];
-            (weight, &self.0[(r.index + i) * COSINES + c.index + j])
+            (weight, &self.0[(r.index as usize + i) * COSINES + c.index as usize + j])
         };
         [node(0, 0), node(0, 1), node(1, 0), node(1, 1)]
     }
@@ -33,23 +34,40 @@ impl<T> Grid<T> {
 
 /// An interval between nodes, and where in it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Place<R: Real = f32> {
     /// Its first node.
-    pub index: usize,
-    t: f32,
+    pub index: R::Int,
+    /// The weight of the second node.
+    pub t: R,
 }
 
-impl Place {
+impl<R: Real> Place<R> {
     /// Of `x` in [0, 1] among `len` nodes.
-    pub fn new(x: f32, len: usize) -> Self {
-        let x = x.clamp(0.0, 1.0) * (len - 1) as f32;
-        let index = (x as usize).min(len - 2);
-        Self { index, t: x - index as f32 }
+    #[inline(always)]
+    pub fn new(x: R, len: usize) -> Self {
+        Self::among(x.clamp(R::zero(), R::one()) * R::splat((len - 1) as f32), len)
+    }
+
+    /// Of a place given in nodes, of which there are `len`.
+    #[inline(always)]
+    pub fn among(x: R, len: usize) -> Self {
+        let lower = x.floor().min(R::splat((len - 2) as f32));
+        Self { index: lower.to_int(), t: x - lower }
+    }
+
+    /// The first node, or the next one, and its weight.
+    #[inline(always)]
+    pub fn node(self, is_second: bool) -> (R::Int, R) {
+        match is_second {
+            true => (self.index.wrapping_add(R::Int::splat(1)), self.t),
+            false => (self.index, R::one() - self.t),
+        }
     }
 
     /// The weights of both nodes.
-    pub fn weights(self) -> [f32; 2] {
-        [1.0 - self.t, self.t]
+    #[inline(always)]
+    pub fn weights(self) -> [R; 2] {
+        [R::one() - self.t, self.t]
     }
 }
 

@@ -1,29 +1,34 @@
 //! Reflection in microfacets, for two directions above.
 
 use crate::TrowbridgeReitz;
+use lanes::Real;
 use math::Vector3;
 
-/// The facets that mirror one direction into another.
-pub(super) struct Mirror {
+/// The facets that mirror one direction into another. All is zero where the surface is smooth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mirror<R> {
     /// The value, if they reflect all light.
-    pub f: f32,
+    pub f: R,
     /// The density of their sampling, by what the first direction sees.
-    pub pdf: f32,
+    pub pdf: R,
     /// The cosine at which light meets them.
-    pub cosine: f32,
+    pub cosine: R,
 }
 
-impl Mirror {
-    /// `None` for the facets of a smooth surface.
-    #[inline]
-    pub fn new(facets: &TrowbridgeReitz, wo: Vector3, wi: Vector3) -> Option<Self> {
-        if facets.effectively_smooth() {
-            return None;
-        }
-        let wm = (wo + wi).try_normalize()?;
-        let quarter = 0.25 * facets.d(wm) / wo.z;
-        let visible = 1.0 + facets.lambda(wo);
+impl<R: Real> Mirror<R> {
+    /// The facets of a surface for two directions.
+    #[inline(always)]
+    pub fn new(facets: &TrowbridgeReitz<R>, wo: Vector3<R>, wi: Vector3<R>) -> Self {
+        let (wm, is_found) = (wo + wi).normalize_masked();
+        let is_found = is_found & !facets.effectively_smooth();
+        let quarter = R::splat(0.25) * facets.d(wm) / wo.z;
+        let visible = R::one() + facets.lambda(wo);
         let f = quarter / (wi.z * (visible + facets.lambda(wi)));
-        Some(Self { f, pdf: quarter / visible, cosine: wo.dot(wm) })
+        let zero = R::zero();
+        Self {
+            f: R::select(is_found, f, zero),
+            pdf: R::select(is_found, quarter / visible, zero),
+            cosine: R::select(is_found, wo.dot(wm), zero),
+        }
     }
 }

@@ -32,13 +32,13 @@
 mod albedo;
 mod chances;
 mod coat;
-mod diffuse;
 mod facets;
 mod film;
 mod fuzz;
 mod glass;
 mod grid;
 mod mirror;
+mod oren_nayar;
 mod parameters;
 mod shares;
 mod stack;
@@ -48,19 +48,20 @@ mod under;
 mod value;
 
 pub use parameters::OpenPbrParameters;
-pub use table::OpenPbrTable;
+pub use table::{OpenPbrTable, PlainOpenPbrTable};
 
 use super::{BsdfSample, Dielectric, Scatter};
 use crate::fresnel::mean_fresnel;
 use crate::{BxdfFlags, Directions, Interior, TransportMode, TrowbridgeReitz, reflect};
-use chances::{Chances, Lobe};
+use chances::{COAT, Chances, Choice, FACETS, FUZZ, GLASS, THROUGH, UNDER};
+use lanes::{Callee, Int, Mask, Real};
 use math::{Vec2, Vec3, Vector3, lerp, sqr};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere, sample_uniform_hemisphere};
-use shares::{Rests, Shares};
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use shares::Shares;
+use spectrum::{N, SampledSpectrum, SampledWavelengths};
 use stack::Stack;
 use std::f32::consts::FRAC_1_PI;
-use table::Numbers;
+use table::Location;
 use under::Part;
 
 /// Directions nearer to the horizon scatter nothing.
@@ -68,329 +69,467 @@ const HORIZON: f32 = 1e-6;
 
 /// A principled surface.
 #[derive(Clone, Copy, Debug)]
-pub struct OpenPbr<'a> {
+pub struct OpenPbr<'a, R: Real = f32> {
     table: &'a OpenPbrTable,
     /// The place in the table.
-    numbers: Numbers,
-    stack: Stack,
+    location: Location<R>,
+    stack: Stack<R>,
     /// The thickness of the film in wavelengths.
-    waves: SampledSpectrum,
-    metalness: f32,
-    transmission: f32,
+    waves: SampledSpectrum<R>,
+    metalness: R,
+    transmission: R,
     /// Factor on the reflectance of metal.
-    metal_weight: f32,
-    diffuse_roughness: f32,
+    metal_weight: R,
+    diffuse_roughness: R,
     /// F₀ of metal.
-    metal_color: SampledSpectrum,
+    metal_color: SampledSpectrum<R>,
     /// The share of light that metal keeps between its facets.
-    metal_again: SampledSpectrum,
-    specular_color: SampledSpectrum,
-    transmission_color: SampledSpectrum,
-    diffuse_color: SampledSpectrum,
+    metal_again: SampledSpectrum<R>,
+    specular_color: SampledSpectrum<R>,
+    transmission_color: SampledSpectrum<R>,
+    diffuse_color: SampledSpectrum<R>,
     /// The share of the diffuse base that has this colour.
-    diffuse_weight: f32,
+    diffuse_weight: R,
     /// The diffuse colour without what is scattered under the surface.
-    base_color: SampledSpectrum,
-    subsurface_color: SampledSpectrum,
-    subsurface_weight: f32,
-    /// The medium under the surface.
-    interior: Option<Interior>,
+    base_color: SampledSpectrum<R>,
+    subsurface_color: SampledSpectrum<R>,
+    subsurface_weight: R,
+    /// The medium under the surface; black where there is none.
+    interior: Interior<R>,
     part: Part,
     /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
-    scattered: SampledSpectrum,
-    forward: f32,
-    coat_color: SampledSpectrum,
+    scattered: SampledSpectrum<R>,
+    forward: R,
+    coat_color: SampledSpectrum<R>,
     /// Its normal.
-    coat_normal: Vector3,
+    coat_normal: Vector3<R>,
     /// Factor on opaque bases.
-    darkening: SampledSpectrum,
-    fuzz_color: SampledSpectrum,
-}
-
-/// What all values and densities of one direction share.
-struct View {
-    /// Of the direction or, if it is below, of its opposite.
-    shares: Shares,
-    rests: Rests,
-}
-
-impl View {
-    /// For a direction off the horizon.
-    #[inline]
-    fn new(surface: &OpenPbr, wo: Vector3) -> Self {
-        Self { shares: surface.shares(wo), rests: surface.rests() }
-    }
+    darkening: SampledSpectrum<R>,
+    fuzz_color: SampledSpectrum<R>,
 }
 
 /// Weights of the lobes that directions on one side of the surface meet.
-struct Weights {
+struct Weights<R = f32> {
     /// Fuzz and coat.
-    layers: f32,
-    metal: f32,
-    diffuse: f32,
+    layers: R,
+    metal: R,
+    diffuse: R,
     /// The share of the diffuse base that paths go under.
-    under: f32,
-    glass: f32,
+    under: R,
+    glass: R,
 }
 
-impl<'a> OpenPbr<'a> {
+impl<'a, R: Real> OpenPbr<'a, R> {
     /// The surface at the wavelengths of a path, of a material with a table for its numbers.
-    #[inline]
-    pub fn new(table: &'a OpenPbrTable, p: &OpenPbrParameters, lambda: &SampledWavelengths) -> Self {
+    #[inline(always)]
+    pub fn new(table: &'a OpenPbrTable, p: &OpenPbrParameters<R>, lambda: &SampledWavelengths<R>) -> Self {
+        let (zero, one) = (R::zero(), R::one());
+        let (black, white) = (SampledSpectrum::zero(), SampledSpectrum::splat(one));
+        let base_color = p.base_color * p.base_weight;
         let mut surface = Self {
             table,
-            numbers: table.place(p),
-            stack: table.stack(p),
-            waves: SampledSpectrum::ZERO,
+            location: table.locate(p),
+            stack: Stack::new(p),
+            waves: black,
             metalness: p.base_metalness,
             transmission: p.transmission_weight,
-            metal_weight: p.specular_weight.min(1.0),
+            metal_weight: p.specular_weight.min(one),
             diffuse_roughness: p.base_diffuse_roughness,
-            metal_color: p.base_color * p.base_weight,
-            metal_again: SampledSpectrum::ZERO,
+            metal_color: base_color,
+            metal_again: black,
             specular_color: p.specular_color,
             transmission_color: p.transmission_color,
-            diffuse_color: (p.base_color * p.base_weight).lerp(p.subsurface_color, p.subsurface_weight),
-            diffuse_weight: 1.0,
-            base_color: p.base_color * p.base_weight,
+            diffuse_color: base_color.lerp(p.subsurface_color, p.subsurface_weight),
+            diffuse_weight: one,
+            base_color,
             subsurface_color: p.subsurface_color,
             subsurface_weight: p.subsurface_weight,
             interior: under::interior(p),
             part: Part::Whole,
-            scattered: SampledSpectrum::ZERO,
-            forward: 0.0,
+            scattered: black,
+            forward: zero,
             coat_color: p.coat_color,
             coat_normal: p.geometry_coat_normal,
-            darkening: SampledSpectrum::ONE,
+            darkening: white,
             fuzz_color: p.fuzz_color,
         };
         if p.geometry_thin_walled {
-            surface.diffuse_color = surface.metal_color;
-            surface.diffuse_weight = 1.0 - p.subsurface_weight;
+            surface.diffuse_color = base_color;
+            surface.diffuse_weight = one - p.subsurface_weight;
             surface.scattered = p.subsurface_color * p.subsurface_weight;
-            surface.forward = 0.5 * (1.0 + p.subsurface_scatter_anisotropy);
+            surface.forward = R::splat(0.5) * (one + p.subsurface_scatter_anisotropy);
         }
-        if surface.stack.film_weight > 0.0 {
-            let thickness = SampledSpectrum::splat(1000.0 * p.thin_film_thickness);
-            surface.waves = thickness / SampledSpectrum::new(*lambda.lambda());
+        let is_filmed = p.thin_film_weight.gt(zero);
+        if is_filmed.any() {
+            let thickness = R::splat(1000.0) * p.thin_film_thickness;
+            for i in 0..N {
+                surface.waves[i] = R::select(is_filmed, thickness / lambda.lambda()[i], zero);
+            }
         }
-        if p.coat_weight > 0.0 && p.coat_darkening > 0.0 {
-            let amount = p.coat_weight * p.coat_darkening;
-            surface.darkening = SampledSpectrum::ONE.lerp(surface.darkened(), amount);
+        let is_darkened = p.coat_weight.gt(zero) & p.coat_darkening.gt(zero);
+        if is_darkened.any() {
+            let darkened = white.lerp(surface.darkened(), p.coat_weight * p.coat_darkening);
+            surface.darkening = SampledSpectrum::select(is_darkened, darkened, white);
         }
-        if p.base_metalness > 0.0 && surface.stack.spreads() {
-            let kept = table.means(&surface.numbers, surface.waves[0]).white;
-            surface.metal_again = surface.mean_metal().map(|f| sqr(f) * kept / (1.0 - f * (1.0 - kept)));
+        let has_rest = p.base_metalness.gt(zero) & surface.stack.spreads();
+        if has_rest.any() {
+            let kept = table.means(&surface.location, surface.waves[0]).white;
+            let mut again = surface.mean_metal();
+            for f in &mut again.0 {
+                *f = sqr(*f) * kept / (one - *f * (one - kept));
+            }
+            surface.metal_again = SampledSpectrum::select(has_rest, again, black);
         }
         surface
     }
 
-    /// Index of refraction of the glass that it is or could be; 1 for thin walls.
-    pub fn eta(&self) -> f32 {
-        if self.stack.is_thin { 1.0 } else { self.stack.index }
-    }
-
     /// The share of light that reflections in the coat leave of an opaque base.
-    fn darkened(&self) -> SampledSpectrum {
-        let one = SampledSpectrum::ONE;
+    #[inline(always)]
+    fn darkened(&self) -> SampledSpectrum<R> {
+        let (zero, one) = (R::zero(), R::one());
         let stack = &self.stack;
-        let reflected = SampledSpectrum::splat(mean_fresnel(stack.below / stack.above).max(0.0));
-        let dielectric =
-            reflected + (one - reflected) * (self.diffuse_color * self.diffuse_weight + self.scattered);
-        let albedo = dielectric.lerp(self.metal_color, self.metalness);
+        let mean = mean_fresnel(stack.below / stack.above).max(zero);
+        let diffuse = self.diffuse_color * self.diffuse_weight + self.scattered;
+        let dielectric = SampledSpectrum::splat(mean) + diffuse * (one - mean);
         // Inside, light is reflected as outside where the base keeps its directions, and beyond the
         // critical angle, too, where it spreads them.
         let outer = mean_fresnel(stack.coat_ior);
-        let inner = 1.0 - (1.0 - outer) / sqr(stack.coat_ior);
-        let roughness = lerp(self.metalness, 1.0, stack.base.mean_alpha().sqrt());
+        let inner = one - (one - outer) / sqr(stack.coat_ior);
+        let roughness = lerp(self.metalness, one, stack.base.mean_alpha().sqrt());
         let k = lerp(roughness, outer, inner);
-        albedo.map(|albedo| (1.0 - k) / (1.0 - k * albedo))
+        let mut darkened = dielectric.lerp(self.metal_color, self.metalness);
+        for albedo in &mut darkened.0 {
+            *albedo = (one - k) / (one - k * *albedo);
+        }
+        darkened
     }
 
     /// Whether the diffuse base is that of a thin wall which transmits light.
-    fn transmits_diffusely(&self) -> bool {
-        self.forward > 0.0 && !self.scattered.is_black()
+    #[inline(always)]
+    fn transmits_diffusely(&self) -> R::Mask {
+        self.forward.gt(R::zero()) & !self.scattered.is_black()
     }
 
     /// What the diffuse base reflects of the light that is left for it.
-    #[inline]
-    fn diffuse_albedo(&self, weights: &Weights) -> SampledSpectrum {
-        match self.stack.is_thin {
-            true => self.diffuse_color * self.diffuse_weight + self.scattered * (1.0 - self.forward),
-            false if weights.under > 0.0 => self.base_color * (1.0 - weights.under),
-            false => self.diffuse_color,
+    #[inline(always)]
+    fn diffuse_albedo(&self, weights: &Weights<R>) -> SampledSpectrum<R> {
+        if self.stack.is_thin {
+            let reflected = self.scattered * (R::one() - self.forward);
+            return self.diffuse_color * self.diffuse_weight + reflected;
         }
+        let over = self.base_color * (R::one() - weights.under);
+        SampledSpectrum::select(weights.under.gt(R::zero()), over, self.diffuse_color)
     }
 
     /// The share of the surface that is glass.
-    #[inline]
-    fn glass(&self) -> f32 {
-        (1.0 - self.metalness) * self.transmission
+    #[inline(always)]
+    fn glass(&self) -> R {
+        (R::one() - self.metalness) * self.transmission
     }
 
     /// The boundary of the base.
-    fn boundary(&self) -> Dielectric {
+    #[inline(always)]
+    fn boundary(&self) -> Dielectric<R> {
         Dielectric { eta: self.stack.index, distribution: self.stack.base }
     }
 
     /// What is met from the side of `z`.
-    fn weights(&self, z: f32) -> Weights {
-        let glass = self.glass();
-        let diffuse = (1.0 - self.metalness) * (1.0 - self.transmission);
-        if z > 0.0 || self.stack.is_thin {
-            let under = self.share_under(z);
-            return Weights { layers: 1.0, metal: self.metalness, diffuse, under, glass };
+    #[inline(always)]
+    fn weights(&self, z: R) -> Weights<R> {
+        let (zero, one, glass) = (R::zero(), R::one(), self.glass());
+        let diffuse = (one - self.metalness) * (one - self.transmission);
+        let whole = z.gt(zero) | R::Mask::splat(self.stack.is_thin);
+        Weights {
+            layers: R::select(whole, one, one - glass),
+            metal: self.metalness,
+            diffuse,
+            under: self.share_under(z),
+            glass: R::select(whole, glass, zero),
         }
-        Weights { layers: 1.0 - glass, metal: self.metalness, diffuse, under: 0.0, glass: 0.0 }
+    }
+}
+
+impl OpenPbr<'_> {
+    /// Index of refraction of the glass that it is or could be; 1 for thin walls.
+    pub fn eta(&self) -> f32 {
+        self.outer_index()
+    }
+}
+
+impl<R: Real> OpenPbr<'_, R> {
+    /// The index of refraction that light meets from above.
+    #[inline(always)]
+    fn outer_index(&self) -> R {
+        if self.stack.is_thin { R::one() } else { self.stack.index }
     }
 }
 
 /// `w` on the side of z > 0 where `below`.
-fn flip(below: bool, w: Vector3) -> Vector3 {
-    if below { -w } else { w }
+#[inline(always)]
+fn upright<R: Real>(below: R::Mask, w: Vector3<R>) -> Vector3<R> {
+    Vec3::select(below, -w, w)
 }
 
 /// A sample of the mirror images of a direction above in facets, without its value, and of the
 /// density only that of a smooth surface.
-fn mirrored(facets: &TrowbridgeReitz, wo: Vector3, u: Vec2) -> BsdfSample {
-    let (wi, lobe) = match facets.effectively_smooth() {
-        true => (Vec3::new(-wo.x, -wo.y, wo.z), BxdfFlags::SPECULAR_REFLECTION),
-        false => (reflect(wo, facets.sample_wm(wo, u)), BxdfFlags::GLOSSY_REFLECTION),
-    };
-    BsdfSample { valid: wi.z > 0.0, ..BsdfSample::new(SampledSpectrum::ZERO, wi, 1.0, lobe) }
+#[inline(always)]
+fn mirrored<R: Real>(facets: &TrowbridgeReitz<R>, wo: Vector3<R>, u: Vec2<R>) -> BsdfSample<R> {
+    let is_smooth = facets.effectively_smooth();
+    let turned = Vec3::new(-wo.x, -wo.y, wo.z);
+    let wi = Vec3::select(is_smooth, turned, reflect(wo, facets.sample_wm(wo, u)));
+    let lobe = BxdfFlags::choose(is_smooth, BxdfFlags::SPECULAR_REFLECTION, BxdfFlags::GLOSSY_REFLECTION);
+    BsdfSample { valid: wi.z.gt(R::zero()), ..BsdfSample::new(SampledSpectrum::zero(), wi, R::one(), lobe) }
 }
 
 /// Whether a direction is off the horizon.
-fn is_off_horizon(w: Vector3) -> bool {
-    w.z.abs() > HORIZON
+#[inline(always)]
+fn is_off_horizon<R: Real>(w: Vector3<R>) -> R::Mask {
+    w.z.abs().gt(R::splat(HORIZON))
 }
 
-impl Scatter for OpenPbr<'_> {
-    fn flags(&self) -> BxdfFlags {
+/// The width of facets.
+#[inline(always)]
+fn width<R: Real>(facets: &TrowbridgeReitz<R>) -> BxdfFlags<R> {
+    BxdfFlags::choose(facets.effectively_smooth(), BxdfFlags::SPECULAR, BxdfFlags::GLOSSY)
+}
+
+/// `flags` where the mask is true, else no scattering.
+#[inline(always)]
+fn only<R: Real>(mask: R::Mask, flags: BxdfFlags<R>) -> BxdfFlags<R> {
+    BxdfFlags::select(mask, flags, BxdfFlags::splat(BxdfFlags::NONE))
+}
+
+impl<R: Real> Scatter<R> for OpenPbr<'_, R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
         if self.is_lobe() {
-            return BxdfFlags::DIFFUSE_REFLECTION;
+            return BxdfFlags::splat(BxdfFlags::DIFFUSE_REFLECTION);
         }
-        let kind = |facets: &TrowbridgeReitz| match facets.effectively_smooth() {
-            true => BxdfFlags::SPECULAR,
-            false => BxdfFlags::GLOSSY,
-        };
-        let mut flags = BxdfFlags::REFLECTION | kind(&self.stack.base);
-        if self.stack.coat_weight > 0.0 {
-            flags |= kind(&self.stack.coat);
+        let zero = R::zero();
+        let weights = self.weights(R::one());
+        let is_glass = self.glass().gt(zero);
+        let mut flags = BxdfFlags::splat(BxdfFlags::REFLECTION) | width(&self.stack.base);
+        flags |= only(self.stack.coat_weight.gt(zero), width(&self.stack.coat));
+        if self.stack.is_thin {
+            flags |= only(is_glass, width(&self.stack.sheet()));
         }
-        if self.glass() > 0.0 {
-            flags |= BxdfFlags::TRANSMISSION;
-            if self.stack.is_thin {
-                flags |= kind(&self.stack.sheet());
-            }
-        }
-        if self.weights(1.0).diffuse > 0.0 && self.transmits_diffusely() {
-            flags |= BxdfFlags::TRANSMISSION;
-        }
-        if self.stack.spreads() {
-            flags |= BxdfFlags::GLOSSY;
-        }
-        let weights = self.weights(1.0);
-        if weights.diffuse * (1.0 - weights.under) > 0.0 || self.stack.fuzz_weight > 0.0 {
-            flags |= BxdfFlags::DIFFUSE;
-        }
-        flags
+        let transmits = is_glass | weights.diffuse.gt(zero) & self.transmits_diffusely();
+        flags |= BxdfFlags::only_where(transmits, BxdfFlags::TRANSMISSION);
+        flags |= BxdfFlags::only_where(self.stack.spreads(), BxdfFlags::GLOSSY);
+        let over = weights.diffuse * (R::one() - weights.under);
+        let is_diffuse = over.gt(zero) | self.stack.fuzz_weight.gt(zero);
+        flags | BxdfFlags::only_where(is_diffuse, BxdfFlags::DIFFUSE)
     }
 
-    fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
-        if !(is_off_horizon(wo) && is_off_horizon(wi)) {
-            return SampledSpectrum::ZERO;
-        }
-        if self.is_lobe() {
-            return if wo.z > 0.0 && wi.z > 0.0 { self.lobe(wi) } else { SampledSpectrum::ZERO };
-        }
-        self.value(&View::new(self, wo), wo, wi, mode)
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> SampledSpectrum<R> {
+        R::call(OpenPbrValue { surface: self, wo, wi, mode })
     }
 
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        uc: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        uc: R,
+        u: Vec2<R>,
         mode: TransportMode,
         directions: Directions,
-    ) -> BsdfSample {
-        if !is_off_horizon(wo) {
-            return BsdfSample::invalid();
-        }
-        if self.is_lobe() {
-            let wi = sample_cosine_hemisphere(u);
-            let pdf = self.pdf(wo, wi, mode, directions);
-            let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, BxdfFlags::DIFFUSE_REFLECTION);
-            return BsdfSample { valid: pdf > 0.0, ..sample };
-        }
-        let view = View::new(self, wo);
-        let chances = Chances::new(self, &view, wo, mode, directions);
-        let Some((lobe, chance, uc)) = chances.choose(uc) else { return BsdfSample::invalid() };
-        let below = wo.z < 0.0;
-        let rest = match self.weights(1.0).diffuse > 0.0 {
-            true => BxdfFlags::DIFFUSE,
-            false => BxdfFlags::GLOSSY,
-        };
-        let above = |w: Vector3, kind| (flip(below, w), BxdfFlags::REFLECTION | kind);
-        let facets = match lobe {
-            Lobe::Coat => Some(self.sample_coat(flip(below, wo), u)),
-            Lobe::Facets => Some(mirrored(&self.stack.base, flip(below, wo), u)),
-            Lobe::Glass if self.stack.is_thin => Some(self.sample_sheet(wo, u)),
-            Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),
-            Lobe::Under => {
-                let wi = -sample_cosine_hemisphere(u);
-                let f = self.goes_under(&view.shares, wo) * FRAC_1_PI;
-                let pdf = chance * cosine_hemisphere_pdf(-wi.z);
-                let sample = BsdfSample::new(f, wi, pdf, BxdfFlags::DIFFUSE_TRANSMISSION);
-                return BsdfSample { valid: is_off_horizon(wi), ..sample };
-            }
-            Lobe::Fuzz | Lobe::Rest | Lobe::Through => None,
-        };
-        let (wi, flags, eta) = match facets {
-            Some(sample) if !sample.valid => return BsdfSample::invalid(),
-            Some(sample) => {
-                let turned = if lobe == Lobe::Glass { sample.wi } else { flip(below, sample.wi) };
-                let sample = BsdfSample { wi: turned, pdf: sample.pdf * chance, ..sample };
-                if sample.flags.is_specular() {
-                    return self.specular(&view.shares, wo, (lobe, sample), mode);
-                }
-                (sample.wi, sample.flags, sample.eta)
-            }
-            None if lobe == Lobe::Through => {
-                let wi = flip(!below, sample_cosine_hemisphere(u));
-                let eta = if below { 1.0 / self.eta() } else { self.eta() };
-                let kind = if self.transmits_diffusely() { rest } else { BxdfFlags::GLOSSY };
-                (wi, BxdfFlags::TRANSMISSION | kind, eta)
-            }
-            None => {
-                let (wi, flags) = match lobe {
-                    Lobe::Fuzz => above(sample_uniform_hemisphere(u), BxdfFlags::DIFFUSE),
-                    _ => above(sample_cosine_hemisphere(u), rest),
-                };
-                (wi, flags, 1.0)
-            }
-        };
-        let pdf = chances.pdf(self, wo, wi, mode, directions);
-        let sample = BsdfSample::new(self.value(&view, wo, wi, mode), wi, pdf, flags);
-        BsdfSample { eta, valid: pdf > 0.0 && is_off_horizon(wi), ..sample }
+    ) -> BsdfSample<R> {
+        R::call(OpenPbrSample { surface: self, wo, uc, u, mode, directions })
     }
 
-    fn pdf(&self, wo: Vector3, wi: Vector3, mode: TransportMode, directions: Directions) -> f32 {
-        if !(is_off_horizon(wo) && is_off_horizon(wi)) {
-            return 0.0;
-        }
-        if self.is_lobe() {
-            let is_above = wo.z > 0.0 && wi.z > 0.0 && directions.reflection();
-            return if is_above { cosine_hemisphere_pdf(wi.z) } else { 0.0 };
-        }
-        let chances = Chances::new(self, &View::new(self, wo), wo, mode, directions);
-        chances.pdf(self, wo, wi, mode, directions)
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode, directions: Directions) -> R {
+        R::call(OpenPbrDensity { surface: self, wo, wi, mode, directions })
     }
 
     /// The layers pass on what they did before: what is wider loses a little.
-    fn regularize(&mut self, mask: bool) {
+    #[inline(always)]
+    fn regularize(&mut self, mask: R::Mask) {
         self.stack.base.regularize(mask);
         self.stack.coat.regularize(mask);
+    }
+}
+
+/// The value for two directions.
+struct OpenPbrValue<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+    mode: TransportMode,
+}
+
+impl<R: Real> Callee<R> for OpenPbrValue<'_, '_, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let Self { surface, wo, wi, mode } = self;
+        let black = SampledSpectrum::zero();
+        let mut valid = is_off_horizon(wo) & is_off_horizon(wi);
+        if surface.is_lobe() {
+            valid = valid & wo.z.gt(R::zero()) & wi.z.gt(R::zero());
+        }
+        if !valid.any() {
+            return black;
+        }
+        if surface.is_lobe() {
+            return SampledSpectrum::select(valid, surface.lobe(wi), black);
+        }
+        let (o, i, rests) = (surface.shares(wo), surface.shares(wi), surface.rests());
+        SampledSpectrum::select(valid, surface.value([&o, &i], &rests, [wo, wi], mode), black)
+    }
+}
+
+/// The density of a direction.
+struct OpenPbrDensity<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+    mode: TransportMode,
+    directions: Directions,
+}
+
+impl<R: Real> Callee<R> for OpenPbrDensity<'_, '_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self { surface, wo, wi, mode, directions } = self;
+        let valid = is_off_horizon(wo) & is_off_horizon(wi);
+        if !valid.any() {
+            return R::zero();
+        }
+        if surface.is_lobe() {
+            if directions == Directions::Transmission {
+                return R::zero();
+            }
+            let valid = valid & wo.z.gt(R::zero()) & wi.z.gt(R::zero());
+            return R::select(valid, cosine_hemisphere_pdf(wi.z), R::zero());
+        }
+        let (shares, rests) = (surface.shares(wo), surface.rests());
+        let chances = Chances::new(surface, (&shares, &rests), wo, mode, directions);
+        R::select(valid, chances.pdf(surface, wo, wi, directions), R::zero())
+    }
+}
+
+/// A sample of directions.
+struct OpenPbrSample<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    wo: Vector3<R>,
+    uc: R,
+    u: Vec2<R>,
+    mode: TransportMode,
+    directions: Directions,
+}
+
+impl<R: Real> Callee<R> for OpenPbrSample<'_, '_, R> {
+    type Output = BsdfSample<R>;
+
+    #[inline(always)]
+    fn run(self) -> BsdfSample<R> {
+        let Self { surface, wo, uc, u, mode, directions } = self;
+        let mut valid = is_off_horizon(wo);
+        if !valid.any() {
+            return BsdfSample::invalid();
+        }
+        if surface.is_lobe() {
+            let wi = sample_cosine_hemisphere(u);
+            valid = valid & is_off_horizon(wi) & wo.z.gt(R::zero());
+            if directions == Directions::Transmission {
+                return BsdfSample::invalid();
+            }
+            let lobe = BxdfFlags::splat(BxdfFlags::DIFFUSE_REFLECTION);
+            let sample = BsdfSample::new(surface.lobe(wi), wi, cosine_hemisphere_pdf(wi.z), lobe);
+            return BsdfSample { valid, ..sample };
+        }
+        let (shares, rests) = (surface.shares(wo), surface.rests());
+        let chances = Chances::new(surface, (&shares, &rests), wo, mode, directions);
+        let choice = chances.choose(uc);
+        let sample = surface.direction(wo, &choice, u, directions);
+        valid = valid & choice.chance.gt(R::zero()) & sample.valid;
+        let is_under = choice.lobe.eq(R::Int::splat(UNDER));
+        let is_specular = sample.flags.is_specular();
+        let (mut f, mut pdf) = (sample.f, sample.pdf * choice.chance);
+        if (valid & is_specular).any() {
+            let specular = surface.specular(&shares, wo, choice.lobe, &sample, mode);
+            f = SampledSpectrum::select(is_specular, specular, f);
+        }
+        if (valid & is_under).any() {
+            let under = surface.goes_under(&shares, wo) * R::splat(FRAC_1_PI);
+            f = SampledSpectrum::select(is_under, under, f);
+            pdf = R::select(is_under, choice.chance * cosine_hemisphere_pdf(sample.wi.z.abs()), pdf);
+            valid = valid & (!is_under | is_off_horizon(sample.wi));
+        }
+        let is_wide = valid & !(is_specular | is_under);
+        if is_wide.any() {
+            let there = surface.shares(sample.wi);
+            let value = surface.value([&shares, &there], &rests, [wo, sample.wi], mode);
+            f = SampledSpectrum::select(is_wide, value, f);
+            pdf = R::select(is_wide, chances.pdf(surface, wo, sample.wi, directions), pdf);
+            valid = valid & (!is_wide | pdf.gt(R::zero()) & is_off_horizon(sample.wi));
+        }
+        BsdfSample { f, pdf, valid, ..sample }
+    }
+}
+
+impl<R: Real> OpenPbr<'_, R> {
+    /// A direction of the lobe that is chosen, without its value, and of the density only that of
+    /// a smooth surface.
+    #[inline(always)]
+    fn direction(
+        &self,
+        wo: Vector3<R>,
+        choice: &Choice<R>,
+        u: Vec2<R>,
+        directions: Directions,
+    ) -> BsdfSample<R> {
+        let is_below = wo.z.lt(R::zero());
+        let up = upright(is_below, wo);
+        let is_fuzz = choice.lobe.eq(R::Int::splat(FUZZ));
+        let is_coat = choice.lobe.eq(R::Int::splat(COAT));
+        let is_facets = choice.lobe.eq(R::Int::splat(FACETS));
+        let is_glass = choice.lobe.eq(R::Int::splat(GLASS));
+        let is_through = choice.lobe.eq(R::Int::splat(THROUGH));
+        let is_under = choice.lobe.eq(R::Int::splat(UNDER));
+        // The rest, and what else is by the cosine; with `wo` above.
+        let is_diffuse = self.weights(R::one()).diffuse.gt(R::zero());
+        let wi = sample_cosine_hemisphere(u);
+        let rest = BxdfFlags::choose(is_diffuse, BxdfFlags::DIFFUSE_REFLECTION, BxdfFlags::GLOSSY_REFLECTION);
+        let mut sample = BsdfSample::new(SampledSpectrum::zero(), wi, R::one(), rest);
+        if is_fuzz.any() {
+            sample.wi = Vec3::select(is_fuzz, sample_uniform_hemisphere(u), sample.wi);
+            let lobe = BxdfFlags::splat(BxdfFlags::DIFFUSE_REFLECTION);
+            sample.flags = BxdfFlags::select(is_fuzz, lobe, sample.flags);
+        }
+        if (is_through | is_under).any() {
+            let is_diffuse = is_under | is_diffuse & self.transmits_diffusely();
+            let lobe = BxdfFlags::choose(
+                is_diffuse,
+                BxdfFlags::DIFFUSE_TRANSMISSION,
+                BxdfFlags::GLOSSY_TRANSMISSION,
+            );
+            let index = self.outer_index();
+            let met = R::select(is_below, R::one() / index, index);
+            sample.wi = Vec3::select(is_through | is_under, -wi, sample.wi);
+            sample.flags = BxdfFlags::select(is_through | is_under, lobe, sample.flags);
+            sample.eta = R::select(is_through, met, sample.eta);
+        }
+        if is_coat.any() {
+            sample = BsdfSample::select(is_coat, self.sample_coat(up, u), sample);
+        }
+        if is_facets.any() {
+            sample = BsdfSample::select(is_facets, mirrored(&self.stack.base, up, u), sample);
+        }
+        if is_glass.any() {
+            if self.stack.is_thin {
+                sample = BsdfSample::select(is_glass, self.sample_sheet(up, u), sample);
+            } else {
+                let glass = self.sample_glass(wo, choice.u, u, directions);
+                let wi = upright(is_below, glass.wi);
+                sample = BsdfSample::select(is_glass, BsdfSample { wi, ..glass }, sample);
+            }
+        }
+        BsdfSample { wi: upright(is_below, sample.wi), ..sample }
     }
 }

@@ -3,129 +3,161 @@
 use super::OpenPbr;
 use super::stack::{Inside, Taken};
 use crate::fresnel::mean_fresnel;
-use math::{Vector3, sqr};
-use spectrum::SampledSpectrum;
+use lanes::{Callee, Mask, Real};
+use math::{Vec3, Vector3, safe_sqrt, sqr};
+use spectrum::{N, SampledSpectrum};
 
 /// Shares of the light from one direction above, as they were if nothing absorbed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shares {
+pub(super) struct Shares<R = f32> {
     /// What layers take; of what a film changes, at one wavelength.
-    pub taken: Taken,
+    pub taken: Taken<R>,
     /// What the facets of the dielectric reflect.
-    pub dielectric: SampledSpectrum,
+    pub dielectric: SampledSpectrum<R>,
     /// What is left for the diffuse base.
-    pub diffuse_rest: SampledSpectrum,
+    pub diffuse_rest: SampledSpectrum<R>,
     /// What the facets of glass reflect, on average.
-    pub reflected: f32,
+    pub reflected: R,
     /// What they refract.
-    pub refracted: f32,
+    pub refracted: R,
     /// What is left for scattering between the facets of glass.
-    pub glass_rest: f32,
+    pub glass_rest: R,
+    /// What glass does with light from the direction itself, if it is below.
+    pub inside: Inside<R>,
 }
 
-impl Shares {
+impl<R: Real> Shares<R> {
     /// What passes the fuzz.
-    #[inline]
-    pub fn below_fuzz(&self) -> f32 {
+    #[inline(always)]
+    pub fn below_fuzz(&self) -> R {
         self.taken.left + self.taken.coat
     }
 
     /// What is left for scattering between the facets of metal.
-    #[inline]
-    pub fn metal_rest(&self) -> f32 {
-        (self.taken.left - self.taken.metal).max(0.0)
+    #[inline(always)]
+    pub fn metal_rest(&self) -> R {
+        (self.taken.left - self.taken.metal).max(R::zero())
     }
 }
 
 /// Means of what is left for the last layer, over directions by their cosine; zero where nothing
 /// spreads light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rests {
-    pub fuzz: f32,
-    pub metal: f32,
-    pub diffuse: SampledSpectrum,
-    pub glass: [f32; 2],
+pub(super) struct Rests<R = f32> {
+    pub fuzz: R,
+    pub metal: R,
+    pub diffuse: SampledSpectrum<R>,
+    pub glass_above: R,
+    pub glass_below: R,
     /// The share of the rest of glass that passes to the other side, from above and from below.
-    pub through: [f32; 2],
+    pub through_above: R,
+    pub through_below: R,
 }
 
-impl OpenPbr<'_> {
+/// The shares of a direction.
+struct SharesAt<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    w: Vector3<R>,
+}
+
+impl<R: Real> Callee<R> for SharesAt<'_, '_, R> {
+    type Output = Shares<R>;
+
+    #[inline(always)]
+    fn run(self) -> Shares<R> {
+        let Self { surface, w } = self;
+        let mut shares = surface.bulk_shares(w);
+        let is_glass = surface.glass().gt(R::zero());
+        if surface.stack.is_thin {
+            if is_glass.any() {
+                let sheet = surface.table.inside(&surface.location, &surface.waves, w);
+                shares.reflected = sheet.reflected;
+                shares.refracted = sheet.refracted;
+                shares.glass_rest = sheet.left;
+            }
+        } else if (is_glass & w.z.lt(R::zero())).any() {
+            shares.inside = surface.table.inside(&surface.location, &surface.waves, w);
+        }
+        surface.under_coat(shares, w)
+    }
+}
+
+impl<R: Real> OpenPbr<'_, R> {
     /// The shares of a direction above or, if it is below, of its opposite.
-    #[inline]
-    pub(super) fn shares(&self, w: Vector3) -> Shares {
-        let mut shares = self.bulk_shares(w);
-        if self.stack.is_thin && self.glass() > 0.0 {
-            let sheet = self.inside(w);
-            let (reflected, refracted, glass_rest) = (sheet.reflected, sheet.refracted, sheet.left());
-            shares = Shares { reflected, refracted, glass_rest, ..shares };
-        }
-        self.under_coat(shares, w)
+    #[inline(always)]
+    pub(super) fn shares(&self, w: Vector3<R>) -> Shares<R> {
+        R::call(SharesAt { surface: self, w })
     }
 
-    /// The same where glass is no sheet.
-    #[inline]
-    fn bulk_shares(&self, w: Vector3) -> Shares {
-        if !self.table.has_film() {
-            let taken = self.table.taken(&self.numbers, 0.0, w);
-            return Shares {
-                taken,
-                dielectric: SampledSpectrum::splat(taken.dielectric),
-                diffuse_rest: SampledSpectrum::splat((taken.left - taken.dielectric).max(0.0)),
-                reflected: taken.dielectric,
-                refracted: taken.refracted,
-                glass_rest: (taken.left - taken.dielectric - taken.refracted).max(0.0),
-            };
+    /// The same where glass is no sheet, without what is inside.
+    #[inline(always)]
+    fn bulk_shares(&self, w: Vector3<R>) -> Shares<R> {
+        let zero = R::zero();
+        let taken = self.table.taken(&self.location, self.waves[0], w);
+        let mut shares = Shares {
+            taken,
+            dielectric: SampledSpectrum::splat(taken.dielectric),
+            diffuse_rest: SampledSpectrum::splat((taken.left - taken.dielectric).max(zero)),
+            reflected: taken.dielectric,
+            refracted: taken.refracted,
+            glass_rest: (taken.left - taken.dielectric - taken.refracted).max(zero),
+            inside: Inside { reflected: zero, refracted: zero, left: zero },
+        };
+        if self.table.has_film() {
+            let (mut refracted, mut rest) = (shares.diffuse_rest, shares.diffuse_rest);
+            for i in 0..N {
+                let taken = self.table.taken(&self.location, self.waves[i], w);
+                shares.dielectric[i] = taken.dielectric;
+                shares.diffuse_rest[i] = (taken.left - taken.dielectric).max(zero);
+                refracted[i] = taken.refracted;
+                rest[i] = (taken.left - taken.dielectric - taken.refracted).max(zero);
+            }
+            shares.reflected = shares.dielectric.average();
+            shares.refracted = refracted.average();
+            shares.glass_rest = rest.average();
         }
-        let each = self.waves.0.map(|waves| self.table.taken(&self.numbers, waves, w));
-        let of = |value: fn(&Taken) -> f32| SampledSpectrum::new(each.each_ref().map(value));
-        let dielectric = of(|taken| taken.dielectric);
-        Shares {
-            taken: each[0],
-            dielectric,
-            reflected: dielectric.average(),
-            diffuse_rest: of(|taken| (taken.left - taken.dielectric).max(0.0)),
-            refracted: of(|taken| taken.refracted).average(),
-            glass_rest: of(|taken| (taken.left - taken.dielectric - taken.refracted).max(0.0)).average(),
-        }
+        shares
     }
 
-    /// What glass does with light from a direction below or, if it is a sheet, from either side.
-    pub(super) fn inside(&self, w: Vector3) -> Inside {
-        self.table.inside(&self.numbers, &self.waves, w)
-    }
-
-    /// What the layers above the base let pass at a cosine.
-    pub(super) fn passed(&self, cosine: f32) -> f32 {
-        self.table.passed(&self.numbers, cosine)
+    /// What the layers over the base pass on at a cosine, for a middle azimuth.
+    #[inline(always)]
+    pub(super) fn passed(&self, cosine: R) -> R {
+        let across = safe_sqrt(R::splat(0.5) * (R::one() - sqr(cosine)));
+        self.table.taken(&self.location, R::zero(), Vec3::new(across, across, cosine)).below_coat
     }
 
     /// The means of what is left.
-    #[inline]
-    pub(super) fn rests(&self) -> Rests {
-        let means = self.table.means(&self.numbers, self.waves[0]);
+    #[inline(always)]
+    pub(super) fn rests(&self) -> Rests<R> {
+        let zero = R::zero();
+        let means = self.table.means(&self.location, self.waves[0]);
+        let spreads = self.stack.spreads();
+        let above = R::select(spreads, means.glass_above, zero);
+        let below = R::select(spreads, means.glass_below, zero);
         let mut rests = Rests {
             fuzz: means.fuzz,
-            metal: means.metal,
+            metal: R::select(spreads, means.metal, zero),
             diffuse: SampledSpectrum::splat(means.diffuse),
-            glass: means.glass,
-            through: [0.0; 2],
+            glass_above: above,
+            glass_below: below,
+            through_above: zero,
+            through_below: zero,
         };
         if self.table.has_film() {
-            let others = self.waves.map(|waves| self.table.means(&self.numbers, waves).diffuse);
-            rests.diffuse = others;
-        }
-        if !self.stack.spreads() {
-            (rests.metal, rests.glass) = (0.0, [0.0; 2]);
+            for i in 0..N {
+                rests.diffuse[i] = self.table.means(&self.location, self.waves[i]).diffuse;
+            }
         }
         if self.stack.is_thin {
-            rests.through = [0.5; 2];
-            return rests;
+            let half = R::splat(0.5);
+            return Rests { through_above: half, through_below: half, ..rests };
         }
-        let [above, below] = rests.glass;
-        if above > 0.0 && below > 0.0 && self.glass() > 0.0 {
+        let is_glass = above.gt(zero) & below.gt(zero) & self.glass().gt(zero);
+        if is_glass.any() {
             let most = sqr(self.stack.index) * below / above;
-            let through = (1.0 - mean_fresnel(self.stack.index)).min(most);
-            rests.through = [through, through / most];
+            let through = (R::one() - mean_fresnel(self.stack.index)).min(most);
+            rests.through_above = R::select(is_glass, through, zero);
+            rests.through_below = R::select(is_glass, through / most, zero);
         }
         rests
     }

@@ -11,94 +11,66 @@ use super::albedo::{Glass, HATS, Hats, White, dot, hat_cosines, hats};
 use super::film::{Complex, film_reflectance};
 use super::fuzz::Scattered;
 use crate::{TrowbridgeReitz, fr_dielectric};
+use lanes::{Callee, Mask, Real};
 use math::{Vec3, Vector3, lerp, safe_sqrt, sqr};
-use spectrum::SampledSpectrum;
+use spectrum::{N, SampledSpectrum};
+use std::f32::consts::FRAC_1_SQRT_2;
 
 /// The numbers of the layers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stack {
+pub(super) struct Stack<R = f32> {
     /// The facets of the base.
-    pub base: TrowbridgeReitz,
+    pub base: TrowbridgeReitz<R>,
     /// Those of the coat.
-    pub coat: TrowbridgeReitz,
-    pub coat_weight: f32,
-    pub coat_ior: f32,
-    pub fuzz_weight: f32,
-    pub fuzz_roughness: f32,
+    pub coat: TrowbridgeReitz<R>,
+    pub coat_weight: R,
+    pub coat_ior: R,
+    pub fuzz_weight: R,
+    pub fuzz_roughness: R,
     /// Index of refraction above the base: that of the coat where there is one.
-    pub above: f32,
+    pub above: R,
     /// Index of refraction of the dielectric for its reflection.
-    pub below: f32,
+    pub below: R,
     /// Index of refraction of glass.
-    pub index: f32,
+    pub index: R,
     /// Presence of a film on the base.
-    pub film_weight: f32,
+    pub film_weight: R,
     /// Its index of refraction.
-    pub film_ior: f32,
+    pub film_ior: R,
     /// Whether glass is a sheet.
     pub is_thin: bool,
 }
 
 /// What the layers do with light from one direction above, as if nothing absorbed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Taken {
+pub(super) struct Taken<R = f32> {
     /// What a whole layer of fuzz scatters once upwards.
-    pub fuzz_once: f32,
+    pub fuzz_once: R,
     /// What it scatters more often.
-    pub fuzz_more: f32,
+    pub fuzz_more: R,
     /// What the coat reflects.
-    pub coat: f32,
+    pub coat: R,
     /// What passes the fuzz and the coat.
-    pub below_coat: f32,
+    pub below_coat: R,
     /// What the facets of metal reflect, as if there were no other base.
-    pub metal: f32,
+    pub metal: R,
     /// The same of the dielectric.
-    pub dielectric: f32,
+    pub dielectric: R,
     /// What the facets of glass refract.
-    pub refracted: f32,
+    pub refracted: R,
     /// What is left by the fuzz and the coat for the base.
-    pub left: f32,
-}
-
-/// The numbers of [`Taken`], as tables have them.
-pub(super) type Row = [f32; 8];
-
-impl Taken {
-    #[inline]
-    pub fn from_row(row: Row) -> Self {
-        let [fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left] = row;
-        Self { fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left }
-    }
-
-    pub fn to_row(self) -> Row {
-        let Self { fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left } = self;
-        [fuzz_once, fuzz_more, coat, below_coat, metal, dielectric, refracted, left]
-    }
+    pub left: R,
 }
 
 /// What glass does with light from one direction below or, if it is a sheet, from either side.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Inside {
+pub(super) struct Inside<R = f32> {
     /// What facets reflect; from below, with what the layers above send back.
-    pub reflected: f32,
+    pub reflected: R,
     /// What passes.
-    pub refracted: f32,
-    /// What is left for scattering between facets, before it is cut off at zero.
-    left: f32,
-}
-
-impl Inside {
-    #[inline]
-    pub fn add(&mut self, weight: f32, inside: &Self) {
-        self.reflected += weight * inside.reflected;
-        self.refracted += weight * inside.refracted;
-        self.left += weight * inside.left;
-    }
-
-    /// What is left for scattering between facets.
-    pub fn left(&self) -> f32 {
-        self.left.max(0.0)
-    }
+    pub refracted: R,
+    /// What is left for scattering between facets; of rows of tables, before it is cut off at zero.
+    pub left: R,
 }
 
 /// What the layers over the base pass on, at the cosines of hats.
@@ -132,15 +104,18 @@ impl Seen {
 }
 
 /// α both ways, of a roughness and anisotropy in [0, 1].
-fn distribution(roughness: f32, anisotropy: f32) -> TrowbridgeReitz {
-    let narrow = 1.0 - anisotropy;
-    let alpha_x = sqr(roughness) * (2.0 / (1.0 + sqr(narrow))).sqrt();
+#[inline(always)]
+fn distribution<R: Real>(roughness: R, anisotropy: R) -> TrowbridgeReitz<R> {
+    let narrow = R::one() - anisotropy;
+    let alpha_x = sqr(roughness) * (R::splat(2.0) / (R::one() + sqr(narrow))).sqrt();
     TrowbridgeReitz::new(alpha_x, narrow * alpha_x)
 }
 
 /// The roughness of a base under a coat, by the variance that refraction in it adds.
-fn roughened(p: &OpenPbrParameters) -> f32 {
-    let under = (p.specular_roughness.powi(4) + 2.0 * p.coat_roughness.powi(4)).min(1.0).sqrt().sqrt();
+#[inline(always)]
+fn roughened<R: Real>(p: &OpenPbrParameters<R>) -> R {
+    let (base, coat) = (sqr(sqr(p.specular_roughness)), sqr(sqr(p.coat_roughness)));
+    let under = (base + R::splat(2.0) * coat).min(R::one()).sqrt().sqrt();
     lerp(p.coat_weight, p.specular_roughness, under)
 }
 
@@ -152,12 +127,14 @@ fn albedo(white: &White, own: &Hats, at_hats: &Hats, here: f32) -> f32 {
     (here * white.albedo + correction).clamp(0.0, 1.0)
 }
 
-impl Stack {
-    pub fn new(p: &OpenPbrParameters) -> Self {
-        let above = lerp(p.coat_weight, 1.0, p.coat_ior);
+impl<R: Real> Stack<R> {
+    #[inline(always)]
+    pub fn new(p: &OpenPbrParameters<R>) -> Self {
+        let one = R::one();
+        let above = lerp(p.coat_weight, one, p.coat_ior);
         // The weight scales the reflectance at normal incidence, ((η − 1)/(η + 1))².
         let root = (p.specular_ior - above) / (p.specular_ior + above);
-        let root = (root * p.specular_weight.sqrt()).clamp(-0.999, 0.999);
+        let root = (root * p.specular_weight.sqrt()).clamp(R::splat(-0.999), R::splat(0.999));
         Self {
             base: distribution(roughened(p), p.specular_roughness_anisotropy),
             coat: distribution(p.coat_roughness, p.coat_roughness_anisotropy),
@@ -166,8 +143,8 @@ impl Stack {
             fuzz_weight: p.fuzz_weight,
             fuzz_roughness: p.fuzz_roughness,
             above,
-            below: above * (1.0 + root) / (1.0 - root),
-            index: p.specular_ior.max(1.001),
+            below: above * (one + root) / (one - root),
+            index: p.specular_ior.max(R::splat(1.001)),
             film_weight: p.thin_film_weight,
             film_ior: p.thin_film_ior,
             is_thin: p.geometry_thin_walled,
@@ -175,41 +152,80 @@ impl Stack {
     }
 
     /// Whether there is something over the base.
-    pub fn has_layers(&self) -> bool {
-        self.coat_weight > 0.0 || self.fuzz_weight > 0.0
+    #[inline(always)]
+    pub fn has_layers(&self) -> R::Mask {
+        self.coat_weight.gt(R::zero()) | self.fuzz_weight.gt(R::zero())
     }
 
     /// Whether some layer spreads light, so that there is a rest to scatter.
-    pub fn spreads(&self) -> bool {
-        let rough = |facets: &TrowbridgeReitz| !facets.effectively_smooth();
-        rough(&self.base) || self.coat_weight > 0.0 && rough(&self.coat) || self.fuzz_weight > 0.0
+    #[inline(always)]
+    pub fn spreads(&self) -> R::Mask {
+        let has_rough_coat = self.coat_weight.gt(R::zero()) & !self.coat.effectively_smooth();
+        !self.base.effectively_smooth() | has_rough_coat | self.fuzz_weight.gt(R::zero())
     }
 
     /// The cosine at which the base is met by light that meets the surface at `cosine` in air.
-    pub fn inner_cosine(&self, cosine: f32) -> f32 {
-        if self.above == 1.0 { cosine } else { safe_sqrt(1.0 - (1.0 - sqr(cosine)) / sqr(self.above)) }
+    #[inline(always)]
+    pub fn inner_cosine(&self, cosine: R) -> R {
+        let inner = safe_sqrt(R::one() - (R::one() - sqr(cosine)) / sqr(self.above));
+        R::select(self.above.eq(R::one()), cosine, inner)
     }
 
     /// The reflectance of the dielectric met at a cosine in air, under a film of so many
     /// wavelengths.
-    pub fn dielectric(&self, cosine: f32, waves: f32) -> f32 {
+    #[inline(always)]
+    pub fn dielectric(&self, cosine: R, waves: R) -> R {
         let cosine = self.inner_cosine(cosine);
         let bare = fr_dielectric(cosine, self.below / self.above);
-        if self.film_weight == 0.0 {
+        let is_filmed = self.film_weight.gt(R::zero());
+        if !is_filmed.any() {
             return bare;
         }
         let below = Complex::real(self.below);
-        lerp(self.film_weight, bare, film_reflectance(cosine, self.above, self.film_ior, below, waves))
+        let filmed = film_reflectance(cosine, self.above, self.film_ior, below, waves);
+        R::select(is_filmed, lerp(self.film_weight, bare, filmed), bare)
     }
 
     /// The same at all wavelengths of a path.
-    pub fn dielectrics(&self, cosine: f32, waves: &SampledSpectrum) -> SampledSpectrum {
-        match self.film_weight {
-            0.0 => SampledSpectrum::splat(self.dielectric(cosine, 0.0)),
-            _ => waves.map(|waves| self.dielectric(cosine, waves)),
+    #[inline(always)]
+    pub fn dielectrics(&self, cosine: R, waves: &SampledSpectrum<R>) -> SampledSpectrum<R> {
+        if self.film_weight.gt(R::zero()).any() {
+            return R::call(FilmedDielectric { stack: self, cosine, waves });
         }
+        SampledSpectrum::splat(fr_dielectric(self.inner_cosine(cosine), self.below / self.above))
     }
 
+    /// The facets that mirror light, turned over, as a sheet with rough sides refracts it.
+    ///
+    /// A facet of slope m mirrors light by an angle of 2m and refracts it by (η − 1) m; the two
+    /// sides are independent, so that their variances add.
+    #[inline(always)]
+    pub fn sheet(&self) -> TrowbridgeReitz<R> {
+        self.base.scaled(((self.index - R::one()) * R::splat(FRAC_1_SQRT_2)).min(R::one()))
+    }
+}
+
+/// The reflectance of the dielectric under a film.
+struct FilmedDielectric<'b, R: Real> {
+    stack: &'b Stack<R>,
+    cosine: R,
+    waves: &'b SampledSpectrum<R>,
+}
+
+impl<R: Real> Callee<R> for FilmedDielectric<'_, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let mut reflected = *self.waves;
+        for i in 0..N {
+            reflected[i] = self.stack.dielectric(self.cosine, self.waves[i]);
+        }
+        reflected
+    }
+}
+
+impl Stack {
     /// The reflectances of the dielectric and of the coat at the cosines of hats.
     pub fn facing(&self, waves: f32) -> [Hats; 2] {
         let cosines = hat_cosines();
@@ -314,14 +330,6 @@ impl Stack {
                 Inside { reflected, refracted, left: taken.left - reflected - refracted }
             }
         }
-    }
-
-    /// The facets that mirror light, turned over, as a sheet with rough sides refracts it.
-    ///
-    /// A facet of slope m mirrors light by an angle of 2m and refracts it by (η − 1) m; the two
-    /// sides are independent, so that their variances add.
-    pub fn sheet(&self) -> TrowbridgeReitz {
-        self.base.scaled(((self.index - 1.0) * std::f32::consts::FRAC_1_SQRT_2).min(1.0))
     }
 }
 

@@ -7,9 +7,10 @@
 
 use super::OpenPbrParameters;
 use super::grid::{Place, nodes};
-use super::stack::{Inside, Row, Seen, Stack, Taken};
+use super::stack::{Inside, Seen, Stack, Taken};
+use lanes::{Int, Real};
 use math::{Vec3, Vector3, safe_sqrt, sqr};
-use spectrum::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum};
+use spectrum::{LAMBDA_MAX, LAMBDA_MIN, N, SampledSpectrum};
 use std::f32::consts::FRAC_PI_2;
 use std::fmt;
 
@@ -28,27 +29,43 @@ const MOST_WAVES: f32 = 8.0;
 /// Nodes for each wavelength of a film's thickness, which is 2n periods of its reflectance.
 const NODES_PER_WAVE: f32 = 40.0;
 
-/// A number on which the layers depend.
-type Number = fn(&mut OpenPbrParameters) -> &mut f32;
+/// How many numbers the layers depend on.
+const NUMBERS: usize = 12;
 
-/// How many such numbers there are.
-pub(super) const NUMBERS: usize = 12;
-
-/// A number and how its range is made [0, 1].
-const AXES: [(Number, Scale); NUMBERS] = [
-    (|p| &mut p.specular_roughness, Scale::Share),
-    (|p| &mut p.specular_weight, Scale::Weight),
-    (|p| &mut p.specular_ior, Scale::Index),
-    (|p| &mut p.specular_roughness_anisotropy, Scale::Share),
-    (|p| &mut p.coat_weight, Scale::Presence(3)),
-    (|p| &mut p.coat_roughness, Scale::Share),
-    (|p| &mut p.coat_ior, Scale::Index),
-    (|p| &mut p.coat_roughness_anisotropy, Scale::Share),
-    (|p| &mut p.fuzz_weight, Scale::Presence(2)),
-    (|p| &mut p.fuzz_roughness, Scale::Share),
-    (|p| &mut p.thin_film_weight, Scale::Presence(2)),
-    (|p| &mut p.thin_film_ior, Scale::Index),
+/// How the range of each is made [0, 1].
+const SCALES: [Scale; NUMBERS] = [
+    Scale::Share,
+    Scale::Weight,
+    Scale::Index,
+    Scale::Share,
+    Scale::Presence(3),
+    Scale::Share,
+    Scale::Index,
+    Scale::Share,
+    Scale::Presence(2),
+    Scale::Share,
+    Scale::Presence(2),
+    Scale::Index,
 ];
+
+/// One of these numbers.
+#[inline(always)]
+fn number<R>(p: &mut OpenPbrParameters<R>, number: usize) -> &mut R {
+    match number {
+        0 => &mut p.specular_roughness,
+        1 => &mut p.specular_weight,
+        2 => &mut p.specular_ior,
+        3 => &mut p.specular_roughness_anisotropy,
+        4 => &mut p.coat_weight,
+        5 => &mut p.coat_roughness,
+        6 => &mut p.coat_ior,
+        7 => &mut p.coat_roughness_anisotropy,
+        8 => &mut p.fuzz_weight,
+        9 => &mut p.fuzz_roughness,
+        10 => &mut p.thin_film_weight,
+        _ => &mut p.thin_film_ior,
+    }
+}
 
 /// How a number is made one in [0, 1] that its effect is about linear in.
 #[derive(Clone, Copy, Debug)]
@@ -72,11 +89,12 @@ impl Scale {
         }
     }
 
-    fn to_unit(self, value: f32) -> f32 {
+    #[inline(always)]
+    fn to_unit<R: Real>(self, value: R) -> R {
         match self {
             Self::Share | Self::Presence(_) => value,
-            Self::Weight => value.sqrt() / (1.0 + value.sqrt()),
-            Self::Index => (value - 1.0) / (value + 1.0),
+            Self::Weight => value.sqrt() / (R::one() + value.sqrt()),
+            Self::Index => (value - R::one()) / (value + R::one()),
         }
     }
 
@@ -99,33 +117,40 @@ struct Axis {
 
 impl Axis {
     /// The place of a value, in nodes.
-    fn place(&self, value: f32) -> f32 {
+    #[inline(always)]
+    fn place<R: Real>(&self, value: R) -> R {
         let [least, most] = self.range;
-        let unit = AXES[self.number].1.to_unit(value);
-        ((unit - least) / (most - least)).clamp(0.0, 1.0) * (self.len - 1) as f32
+        let unit = (SCALES[self.number].to_unit(value) - R::splat(least)) / R::splat(most - least);
+        unit.clamp(R::zero(), R::one()) * R::splat((self.len - 1) as f32)
     }
 
     /// The value of a node.
     fn value(&self, node: usize) -> f32 {
         let t = node as f32 / (self.len - 1) as f32;
-        AXES[self.number].1.value(math::lerp(t, self.range[0], self.range[1]))
+        SCALES[self.number].value(math::lerp(t, self.range[0], self.range[1]))
     }
 }
 
 /// Means of what is left for the last layer, over directions by their cosine.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Means {
+pub(super) struct Means<R = f32> {
     /// Of what fuzz scatters again.
-    pub fuzz: f32,
+    pub fuzz: R,
     /// Of what is left for metal.
-    pub metal: f32,
+    pub metal: R,
     /// Of what is left for the diffuse base.
-    pub diffuse: f32,
-    /// Of what is left for glass, above and below.
-    pub glass: [f32; 2],
+    pub diffuse: R,
     /// Of what white facets of the base reflect.
-    pub white: f32,
+    pub white: R,
+    /// Of what is left for glass, above and below.
+    pub glass_above: R,
+    pub glass_below: R,
 }
+
+/// The numbers of a row of `taken`, of `inside`, and of `means`.
+const TAKEN: usize = 8;
+const INSIDE: usize = 3;
+const MEANS: usize = 6;
 
 /// What the layers of a material do with light, for all values of its numbers.
 #[derive(Clone)]
@@ -135,16 +160,55 @@ pub struct OpenPbrTable {
     /// The thickness of films in wavelengths, and the number of its nodes.
     waves: [f32; 2],
     films: usize,
-    /// Whether only the cosine and the film vary.
-    is_plain: bool,
-    /// The layers, if their numbers are the same everywhere.
-    fixed: Option<Stack>,
-    /// By axes, film, azimuth and cosine.
-    taken: Vec<Row>,
+    /// The numbers of a [`Taken`] by axes, film, azimuth and cosine.
+    taken: Vec<f32>,
     /// The same for glass; else empty.
-    inside: Vec<Inside>,
-    /// By axes and film.
-    means: Vec<Means>,
+    inside: Vec<f32>,
+    /// The numbers of a [`Means`] by axes and film.
+    means: Vec<f32>,
+}
+
+/// A table as plain data, for an engine that looks it up elsewhere.
+#[derive(Clone, Debug)]
+pub struct PlainOpenPbrTable<'a> {
+    /// The numbers that vary: which of the twelve, whether as it is (0), as a weight
+    /// (1) or as an index (2), the nodes, and the range.
+    pub axes: Vec<(u32, u32, u32, [f32; 2])>,
+    /// How many azimuths there are, and how many films, by their thickness in wavelengths.
+    pub azimuths: u32,
+    /// See `azimuths`.
+    pub films: u32,
+    /// The range of their thickness.
+    pub waves: [f32; 2],
+    /// Rows of eight numbers by axes, film, azimuth and cosine.
+    pub taken: &'a [f32],
+    /// Rows of three; empty without glass.
+    pub inside: &'a [f32],
+    /// Rows of six by axes and film.
+    pub means: &'a [f32],
+}
+
+impl OpenPbrTable {
+    /// The table as plain data.
+    pub fn plain(&self) -> PlainOpenPbrTable<'_> {
+        let axis = |axis: &Axis| {
+            let scale = match SCALES[axis.number] {
+                Scale::Share | Scale::Presence(_) => 0,
+                Scale::Weight => 1,
+                Scale::Index => 2,
+            };
+            (axis.number as u32, scale, axis.len as u32, axis.range)
+        };
+        PlainOpenPbrTable {
+            axes: self.axes.iter().map(axis).collect(),
+            azimuths: self.azimuths as u32,
+            films: self.films as u32,
+            waves: self.waves,
+            taken: &self.taken,
+            inside: &self.inside,
+            means: &self.means,
+        }
+    }
 }
 
 impl fmt::Debug for OpenPbrTable {
@@ -154,7 +218,29 @@ impl fmt::Debug for OpenPbrTable {
 }
 
 /// A place among the numbers that vary, in nodes of each.
-pub(super) type Numbers = [f32; NUMBERS];
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Location<R = f32>([R; 12]);
+
+/// The rows of a node around a direction.
+struct Rows<R: Real> {
+    across: Place<R>,
+    around: Place<R>,
+    /// How many.
+    count: usize,
+}
+
+impl<R: Real> Rows<R> {
+    /// One of them, and its weight.
+    #[inline(always)]
+    fn get(&self, i: usize) -> (R::Int, R) {
+        let (row, weight) = self.across.node(i & 1 == 1);
+        if self.count == 2 {
+            return (row, weight);
+        }
+        let (azimuth, share) = self.around.node(i & 2 == 2);
+        (azimuth.wrapping_mul(R::Int::splat(COSINES as u32)).wrapping_add(row), weight * share)
+    }
+}
 
 impl OpenPbrTable {
     /// Of a material whose numbers lie between those of `least` and of `most`. Colours do not
@@ -168,16 +254,16 @@ impl OpenPbrTable {
             !(has(|p| p.specular_roughness_anisotropy) || has_coat && has(|p| p.coat_roughness_anisotropy));
         let (mut low, mut high) = (*least, *most);
         let mut axes = Vec::new();
-        for (number, (value, scale)) in AXES.into_iter().enumerate() {
-            let range = [*value(&mut low), *value(&mut high)].map(|value| scale.to_unit(value));
-            let matters = match number {
+        for (axis, scale) in SCALES.into_iter().enumerate() {
+            let range = [*number(&mut low, axis), *number(&mut high, axis)].map(|value| scale.to_unit(value));
+            let matters = match axis {
                 4..8 => has_coat,
                 8..10 => has_fuzz,
                 10.. => has_film,
                 _ => true,
             };
             if matters && range[0] < range[1] {
-                axes.push(Axis { number, range, len: 0 });
+                axes.push(Axis { number: axis, range, len: 0 });
             }
         }
         let mut waves = [0.0; 2];
@@ -191,15 +277,13 @@ impl OpenPbrTable {
             films = films.min(FEW_FILMS);
         }
         let azimuths = if is_round { 1 } else { AZIMUTHS };
-        let few: usize = axes.iter().filter_map(|axis| AXES[axis.number].1.nodes()).product();
-        let others = axes.iter().filter(|axis| AXES[axis.number].1.nodes().is_none()).count();
+        let few: usize = axes.iter().filter_map(|axis| SCALES[axis.number].nodes()).product();
+        let others = axes.iter().filter(|axis| SCALES[axis.number].nodes().is_none()).count();
         let each = (MOST_NODES / (films * azimuths * few)).max(1) as f64;
         let len = (each.powf(1.0 / others.max(1) as f64) as usize).clamp(NODES[0], NODES[1]);
-        axes.iter_mut().for_each(|axis| axis.len = AXES[axis.number].1.nodes().unwrap_or(len));
-        let fixed = axes.is_empty().then(|| Stack::new(least));
-        let is_plain = axes.is_empty() && azimuths == 1;
+        axes.iter_mut().for_each(|axis| axis.len = SCALES[axis.number].nodes().unwrap_or(len));
         let (taken, inside, means) = (Vec::new(), Vec::new(), Vec::new());
-        let mut table = Self { axes, azimuths, waves, films, is_plain, fixed, taken, inside, means };
+        let mut table = Self { axes, azimuths, waves, films, taken, inside, means };
         table.fill(least, has_fuzz, has_glass);
         table
     }
@@ -209,7 +293,7 @@ impl OpenPbrTable {
         for cell in 0..cells {
             let (mut p, mut rest) = (*parameters, cell);
             for axis in &self.axes {
-                *AXES[axis.number].0(&mut p) = axis.value(rest % axis.len);
+                *number(&mut p, axis.number) = axis.value(rest % axis.len);
                 rest /= axis.len;
             }
             if has_fuzz {
@@ -229,11 +313,20 @@ impl OpenPbrTable {
             for film in 0..self.films {
                 let waves = math::lerp(part(film, self.films), self.waves[0], self.waves[1]);
                 let facing = stack.facing(waves);
-                self.taken.extend(seen.iter().map(|seen| stack.taken(seen, &above, &facing, waves).to_row()));
-                if has_glass {
-                    self.inside.extend(seen.iter().map(|seen| stack.inside(seen, &above, &facing, waves)));
+                for seen in &seen {
+                    let taken = stack.taken(seen, &above, &facing, waves);
+                    self.taken.extend([taken.fuzz_once, taken.fuzz_more, taken.coat, taken.below_coat]);
+                    self.taken.extend([taken.metal, taken.dielectric, taken.refracted, taken.left]);
+                    if has_glass {
+                        let Inside { reflected, refracted, left } =
+                            stack.inside(seen, &above, &facing, waves);
+                        self.inside.extend([reflected, refracted, left]);
+                    }
                 }
-                self.means.push(self.mean(self.means.len(), &seen, stack.is_thin));
+                let node = self.means.len() / MEANS;
+                let means = self.mean(node, &seen, stack.is_thin);
+                let Means { fuzz, metal, diffuse, white, glass_above, glass_below } = means;
+                self.means.extend([fuzz, metal, diffuse, white, glass_above, glass_below]);
             }
         }
     }
@@ -247,195 +340,192 @@ impl OpenPbrTable {
             let cos_phi = (FRAC_PI_2 * (i as f32 + 0.5) / steps as f32).cos();
             for (cosine, weight) in nodes() {
                 let weight = weight / steps as f32;
-                let (mut taken, mut inside) = (Row::default(), Inside::default());
-                for (row, share) in self.rows(cos_phi, cosine) {
-                    means.white += weight * share * seen[row].white();
-                    add(&mut taken, share, &self.taken[node * self.rows_of_node() + row]);
-                    if let Some(row) = self.inside.get(node * self.rows_of_node() + row) {
-                        inside.add(share, row);
+                let (mut taken, mut inside) = (Taken::default(), Inside::default());
+                let rows: Rows<f32> = self.rows(cos_phi, cosine);
+                for i in 0..rows.count {
+                    let (row, share) = rows.get(i);
+                    means.white += weight * share * seen[row as usize].white();
+                    let row = node as u32 * self.rows_of_node() + row;
+                    self.add_taken(&mut taken, row, share);
+                    if !self.inside.is_empty() {
+                        self.add_inside(&mut inside, row, share);
                     }
                 }
-                let taken = Taken::from_row(taken);
                 means.fuzz += weight * taken.fuzz_more;
                 means.metal += weight * (taken.left - taken.metal).max(0.0);
                 means.diffuse += weight * (taken.left - taken.dielectric).max(0.0);
                 let above = (taken.left - taken.dielectric - taken.refracted).max(0.0);
-                means.glass[0] += weight * if is_thin { inside.left() } else { above };
-                means.glass[1] += weight * inside.left();
+                let below = inside.left.max(0.0);
+                means.glass_above += weight * if is_thin { below } else { above };
+                means.glass_below += weight * below;
             }
         }
         means
     }
 
-    /// The layers of a point's parameters.
-    #[inline]
-    pub(super) fn stack(&self, p: &OpenPbrParameters) -> Stack {
-        self.fixed.unwrap_or_else(|| Stack::new(p))
-    }
-
     /// The place of a point's parameters.
-    #[inline]
-    pub(super) fn place(&self, p: &OpenPbrParameters) -> Numbers {
-        let mut places = [0.0; NUMBERS];
+    #[inline(always)]
+    pub(super) fn locate<R: Real>(&self, p: &OpenPbrParameters<R>) -> Location<R> {
+        let mut places = [R::zero(); 12];
         if !self.axes.is_empty() {
             let mut p = *p;
-            for (axis, place) in self.axes.iter().zip(&mut places) {
-                *place = axis.place(*AXES[axis.number].0(&mut p));
+            for i in 0..self.axes.len() {
+                let axis = &self.axes[i];
+                places[i] = axis.place(*number(&mut p, axis.number));
             }
         }
-        places
+        Location(places)
     }
 
-    /// The place of a film of so many wavelengths, if there is one.
-    #[inline]
-    fn film(&self, waves: f32) -> Option<Place> {
+    /// The place of a film of so many wavelengths.
+    #[inline(always)]
+    fn film<R: Real>(&self, waves: R) -> Place<R> {
         let [least, most] = self.waves;
-        (self.films > 1).then(|| Place::new((waves - least) / (most - least), self.films))
+        Place::new((waves - R::splat(least)) / R::splat(most - least), self.films.max(2))
     }
 
-    /// The nodes around a place and a film of so many wavelengths, with their weights.
-    #[inline]
-    fn around(&self, numbers: &Numbers, waves: f32, mut node: impl FnMut(usize, f32)) {
-        let film = self.film(waves);
-        for corner in 0..1usize << self.axes.len() {
-            let (mut index, mut stride, mut weight) = (0, self.films, 1.0);
-            for (i, axis) in self.axes.iter().enumerate() {
-                let lower = (numbers[i] as usize).min(axis.len - 2);
-                let t = numbers[i] - lower as f32;
-                let upper = corner >> i & 1;
-                index += (lower + upper) * stride;
-                stride *= axis.len;
-                weight *= if upper == 1 { t } else { 1.0 - t };
-            }
-            match film {
-                None => node(index, weight),
-                Some(film) => {
-                    let [lower, upper] = film.weights();
-                    node(index + film.index, weight * lower);
-                    node(index + film.index + 1, weight * upper);
-                }
-            }
+    /// The number of nodes around a place.
+    #[inline(always)]
+    fn corners(&self) -> usize {
+        let films = if self.has_film() { 2 } else { 1 };
+        films << self.axes.len()
+    }
+
+    /// One of the nodes around a place and a film, and its weight.
+    #[inline(always)]
+    fn corner<R: Real>(&self, location: &Location<R>, film: Place<R>, corner: usize) -> (R::Int, R) {
+        let (mut node, mut weight) = (R::Int::splat(0), R::one());
+        let mut corner = corner;
+        if self.has_film() {
+            (node, weight) = film.node(corner & 1 == 1);
+            corner >>= 1;
+        }
+        let mut stride = self.films;
+        for i in 0..self.axes.len() {
+            let len = self.axes[i].len;
+            let (index, share) = Place::among(location.0[i], len).node(corner >> i & 1 == 1);
+            node = node.wrapping_add(index.wrapping_mul(R::Int::splat(stride as u32)));
+            weight *= share;
+            stride *= len;
+        }
+        (node, weight)
+    }
+
+    /// The rows of a node around a direction.
+    #[inline(always)]
+    fn rows<R: Real>(&self, cos_phi: R, cosine: R) -> Rows<R> {
+        Rows {
+            across: Place::new(safe_sqrt(cosine), COSINES),
+            around: Place::new(cos_phi, self.azimuths.max(2)),
+            count: if self.azimuths > 1 { 4 } else { 2 },
         }
     }
 
-    /// The rows of a node around a direction, with their weights.
-    #[inline]
-    fn rows(&self, cos_phi: f32, cosine: f32) -> impl Iterator<Item = (usize, f32)> + use<> {
-        let across = Place::new(safe_sqrt(cosine), COSINES);
-        let azimuth = (self.azimuths > 1).then(|| Place::new(cos_phi, self.azimuths));
-        (0..if azimuth.is_some() { 4 } else { 2 }).map(move |i| {
-            let weight = across.weights()[i & 1];
-            let row = across.index + (i & 1);
-            match azimuth {
-                None => (row, weight),
-                Some(azimuth) => {
-                    ((azimuth.index + (i >> 1)) * COSINES + row, weight * azimuth.weights()[i >> 1])
-                }
-            }
-        })
-    }
-
-    fn rows_of_node(&self) -> usize {
-        self.azimuths * COSINES
+    #[inline(always)]
+    fn rows_of_node(&self) -> u32 {
+        (self.azimuths * COSINES) as u32
     }
 
     /// |cos φ| of a direction, where it matters.
-    #[inline]
-    fn cos_phi(&self, w: Vector3) -> f32 {
+    #[inline(always)]
+    fn cos_phi<R: Real>(&self, w: Vector3<R>) -> R {
         if self.azimuths == 1 {
-            return 0.0;
+            return R::zero();
         }
-        w.x.abs() / (sqr(w.x) + sqr(w.y)).sqrt().max(f32::MIN_POSITIVE)
+        w.x.abs() / (sqr(w.x) + sqr(w.y)).sqrt().max(R::splat(f32::MIN_POSITIVE))
+    }
+
+    #[inline(always)]
+    fn add_taken<R: Real>(&self, sum: &mut Taken<R>, row: R::Int, weight: R) {
+        let first = row.wrapping_mul(R::Int::splat(TAKEN as u32));
+        let [fuzz_once, fuzz_more, coat, below_coat] = R::gather_rows(&self.taken, first);
+        sum.fuzz_once += weight * fuzz_once;
+        sum.fuzz_more += weight * fuzz_more;
+        sum.coat += weight * coat;
+        sum.below_coat += weight * below_coat;
+        let [metal, dielectric, refracted, left] =
+            R::gather_rows(&self.taken, first.wrapping_add(R::Int::splat(4)));
+        sum.metal += weight * metal;
+        sum.dielectric += weight * dielectric;
+        sum.refracted += weight * refracted;
+        sum.left += weight * left;
+    }
+
+    #[inline(always)]
+    fn add_inside<R: Real>(&self, sum: &mut Inside<R>, row: R::Int, weight: R) {
+        let first = row.wrapping_mul(R::Int::splat(INSIDE as u32));
+        let [reflected, refracted, left] = R::gather_rows(&self.inside, first);
+        sum.reflected += weight * reflected;
+        sum.refracted += weight * refracted;
+        sum.left += weight * left;
     }
 
     /// What the layers take of the light from a direction above, or from its opposite.
-    #[inline]
-    pub(super) fn taken(&self, numbers: &Numbers, waves: f32, w: Vector3) -> Taken {
-        if self.is_plain {
-            let place = Place::new(safe_sqrt(w.z.abs()), COSINES);
-            let row = |film: usize| {
-                let rows = &self.taken[film * COSINES + place.index..][..2];
-                mix(place.weights(), &rows[0], &rows[1])
-            };
-            let Some(film) = self.film(waves) else { return Taken::from_row(row(0)) };
-            return Taken::from_row(mix(film.weights(), &row(film.index), &row(film.index + 1)));
-        }
-        let mut sum = Row::default();
-        let (cosine, cos_phi) = (w.z.abs(), self.cos_phi(w));
-        self.around(numbers, waves, |node, weight| {
-            for (row, share) in self.rows(cos_phi, cosine) {
-                add(&mut sum, weight * share, &self.taken[node * self.rows_of_node() + row]);
+    #[inline(always)]
+    pub(super) fn taken<R: Real>(&self, location: &Location<R>, waves: R, w: Vector3<R>) -> Taken<R> {
+        let rows = self.rows(self.cos_phi(w), w.z.abs());
+        let film = self.film(waves);
+        let mut sum = Taken::default();
+        for corner in 0..self.corners() {
+            let (node, weight) = self.corner(location, film, corner);
+            let first = node.wrapping_mul(R::Int::splat(self.rows_of_node()));
+            for i in 0..rows.count {
+                let (row, share) = rows.get(i);
+                self.add_taken(&mut sum, first.wrapping_add(row), weight * share);
             }
-        });
-        Taken::from_row(sum)
-    }
-
-    /// What glass does with light from a direction below or, if it is a sheet, from either side.
-    pub(super) fn inside(&self, numbers: &Numbers, waves: &SampledSpectrum, w: Vector3) -> Inside {
-        let mut sum = Inside::default();
-        let (cosine, cos_phi) = (w.z.abs(), self.cos_phi(w));
-        let mut add = |waves: f32, part: f32| {
-            self.around(numbers, waves, |node, weight| {
-                for (row, share) in self.rows(cos_phi, cosine) {
-                    sum.add(part * weight * share, &self.inside[node * self.rows_of_node() + row]);
-                }
-            });
-        };
-        if self.films == 1 {
-            add(0.0, 1.0);
-        } else {
-            waves.0.into_iter().for_each(|waves| add(waves, 1.0 / spectrum::N as f32));
         }
         sum
     }
 
-    /// What the layers over the base pass on at a cosine, for a middle azimuth.
-    pub(super) fn passed(&self, numbers: &Numbers, cosine: f32) -> f32 {
-        let across = safe_sqrt(0.5 * (1.0 - sqr(cosine)));
-        self.taken(numbers, self.waves[0], Vec3::new(across, across, cosine)).below_coat
+    /// What glass does with light from a direction below or, if it is a sheet, from either side.
+    #[inline(always)]
+    pub(super) fn inside<R: Real>(
+        &self,
+        location: &Location<R>,
+        waves: &SampledSpectrum<R>,
+        w: Vector3<R>,
+    ) -> Inside<R> {
+        let rows = self.rows(self.cos_phi(w), w.z.abs());
+        let mut sum = Inside::default();
+        let count = if self.has_film() { N } else { 1 };
+        let part = R::splat(1.0 / count as f32);
+        for wave in 0..count {
+            let film = self.film(waves[wave]);
+            for corner in 0..self.corners() {
+                let (node, weight) = self.corner(location, film, corner);
+                let first = node.wrapping_mul(R::Int::splat(self.rows_of_node()));
+                for i in 0..rows.count {
+                    let (row, share) = rows.get(i);
+                    self.add_inside(&mut sum, first.wrapping_add(row), part * weight * share);
+                }
+            }
+        }
+        Inside { left: sum.left.max(R::zero()), ..sum }
     }
 
     /// The means at a place.
-    #[inline]
-    pub(super) fn means(&self, numbers: &Numbers, waves: f32) -> Means {
+    #[inline(always)]
+    pub(super) fn means<R: Real>(&self, location: &Location<R>, waves: R) -> Means<R> {
+        let film = self.film(waves);
         let mut sum = Means::default();
-        if self.is_plain {
-            let Some(film) = self.film(waves) else { return self.means[0] };
-            let [lower, upper] = film.weights();
-            sum.add(lower, &self.means[film.index]);
-            sum.add(upper, &self.means[film.index + 1]);
-            return sum;
+        for corner in 0..self.corners() {
+            let (node, weight) = self.corner(location, film, corner);
+            let first = node.wrapping_mul(R::Int::splat(MEANS as u32));
+            let [fuzz, metal, diffuse, white] = R::gather_rows(&self.means, first);
+            sum.fuzz += weight * fuzz;
+            sum.metal += weight * metal;
+            sum.diffuse += weight * diffuse;
+            sum.white += weight * white;
+            let [above, below] = R::gather_rows(&self.means, first.wrapping_add(R::Int::splat(4)));
+            sum.glass_above += weight * above;
+            sum.glass_below += weight * below;
         }
-        self.around(numbers, waves, |node, weight| sum.add(weight, &self.means[node]));
         sum
     }
 
     /// Whether there may be a film.
-    #[inline]
+    #[inline(always)]
     pub(super) fn has_film(&self) -> bool {
         self.films > 1
-    }
-}
-
-/// The weighted sum of two rows.
-#[inline]
-fn mix([lower, upper]: [f32; 2], a: &Row, b: &Row) -> Row {
-    std::array::from_fn(|i| lower * a[i] + upper * b[i])
-}
-
-#[inline]
-fn add(sum: &mut Row, weight: f32, row: &Row) {
-    sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
-}
-
-impl Means {
-    #[inline]
-    fn add(&mut self, weight: f32, means: &Self) {
-        self.fuzz += weight * means.fuzz;
-        self.metal += weight * means.metal;
-        self.diffuse += weight * means.diffuse;
-        self.glass[0] += weight * means.glass[0];
-        self.glass[1] += weight * means.glass[1];
-        self.white += weight * means.white;
     }
 }

@@ -13,88 +13,88 @@
 //! opaque. Coat and fuzz lie on both sides, but take light only once, as for reflection: by what
 //! they pass on in the direction in which they pass less. Source: [OpenPBR 2024].
 
-use super::diffuse::oren_nayar;
 use super::mirror::Mirror;
-use super::{OpenPbr, View, flip};
-use crate::{BsdfSample, BxdfFlags, TransportMode};
-use math::{Vec2, Vector3, same_hemisphere};
+use super::oren_nayar::oren_nayar;
+use super::shares::{Rests, Shares};
+use super::{OpenPbr, mirrored};
+use crate::{BsdfSample, BxdfFlags};
+use lanes::{Mask, Real};
+use math::{Vec2, Vec3, Vector3};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
 
 /// A direction mirrored by the sheet.
-fn turned(w: Vector3) -> Vector3 {
-    Vector3::new(w.x, w.y, -w.z)
+#[inline(always)]
+fn turned<R: Real>(w: Vector3<R>) -> Vector3<R> {
+    Vec3::new(w.x, w.y, -w.z)
 }
 
-impl OpenPbr<'_> {
+impl<R: Real> OpenPbr<'_, R> {
     /// What a smooth sheet reflects and transmits of light at a cosine.
-    pub(super) fn sheet_shares(&self, cosine: f32) -> [SampledSpectrum; 2] {
-        let one = SampledSpectrum::ONE;
+    #[inline(always)]
+    pub(super) fn sheet_shares(&self, cosine: R) -> [SampledSpectrum<R>; 2] {
+        let one = SampledSpectrum::splat(R::one());
         let f = self.stack.dielectrics(cosine, &self.waves);
         let a = self.transmission_color;
         let passed = (one - f) * (one - f);
         // Both are 1 where a side reflects everything.
-        let sum = (one - a * a * f * f).map(|x| x.max(1e-6));
+        let sum = (one - a * a * f * f).max(SampledSpectrum::splat(R::splat(1e-6)));
         [f + a * a * f * passed / sum, a * passed / sum]
     }
 
     /// The value of a share of what is scattered within the wall, for two directions above.
-    pub(super) fn scattered(&self, share: f32, wo: Vector3, wi: Vector3) -> SampledSpectrum {
-        self.scattered * oren_nayar(SampledSpectrum::ONE, self.diffuse_roughness, wo, wi) * share
+    #[inline(always)]
+    pub(super) fn scattered(&self, share: R, wo: Vector3<R>, wi: Vector3<R>) -> SampledSpectrum<R> {
+        let white = SampledSpectrum::splat(R::one());
+        self.scattered * oren_nayar(white, self.diffuse_roughness, wo, wi) * share
     }
 
-    /// The value of a thin wall for two directions off the horizon.
-    pub(super) fn thin_value(
+    /// The value of a thin wall for a direction above and one below.
+    #[inline(always)]
+    pub(super) fn passed_through(
         &self,
-        view: &View,
-        wo: Vector3,
-        wi: Vector3,
-        mode: TransportMode,
-    ) -> SampledSpectrum {
-        let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
-        match same_hemisphere(wo, wi) {
-            true => self.reflected(view, wo, wi, mode, &self.weights(1.0)),
-            false => self.passed_through(view, wo, turned(wi)),
+        [o, i]: [&Shares<R>; 2],
+        rests: &Rests<R>,
+        wo: Vector3<R>,
+        wi: Vector3<R>,
+    ) -> SampledSpectrum<R> {
+        let wi = turned(wi);
+        let weights = self.weights(R::one());
+        let mut f = SampledSpectrum::zero();
+        if weights.glass.gt(R::zero()).any() {
+            let mirror = Mirror::new(&self.stack.sheet(), wo, wi);
+            let white = mirror.f * o.taken.below_coat.min(i.taken.below_coat);
+            let [_, passed] = self.sheet_shares(mirror.cosine);
+            f += passed * (white * weights.glass);
+            let has_rest = rests.glass_above.gt(R::zero());
+            let left = o.glass_rest * i.glass_rest / (R::splat(PI) * rests.glass_above);
+            let again = R::select(has_rest, left * rests.through_above, R::zero());
+            f += self.transmission_color * (again * weights.glass);
         }
-    }
-
-    /// The value for directions on both sides, of which the second is mirrored by the sheet.
-    fn passed_through(&self, view: &View, wo: Vector3, wi: Vector3) -> SampledSpectrum {
-        let (o, i, rests) = (&view.shares, &self.shares(-turned(wi)), &view.rests);
-        let weights = self.weights(1.0);
-        let mut f = SampledSpectrum::ZERO;
-        if weights.glass > 0.0 {
-            if let Some(mirror) = Mirror::new(&self.stack.sheet(), wo, wi) {
-                let white = mirror.f * o.taken.below_coat.min(i.taken.below_coat);
-                f += self.sheet_shares(mirror.cosine)[1] * (white * weights.glass);
-            }
-            if rests.glass[0] > 0.0 {
-                let left = o.glass_rest * i.glass_rest / (PI * rests.glass[0]);
-                f += self.transmission_color * (left * rests.through[0] * weights.glass);
-            }
-        }
-        if weights.diffuse > 0.0 && self.transmits_diffusely() {
+        let is_diffuse = weights.diffuse.gt(R::zero()) & self.transmits_diffusely();
+        if is_diffuse.any() {
             let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
             f += self.scattered(self.forward, wo, wi) * left * self.darkening * weights.diffuse;
         }
         f * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
     }
 
-    /// A direction in which a sheet of glass transmits light, without its value, and of the density
-    /// only that of a smooth sheet.
-    pub(super) fn sample_sheet(&self, wo: Vector3, u: Vec2) -> BsdfSample {
-        let below = wo.z < 0.0;
-        let sample = super::mirrored(&self.stack.sheet(), flip(below, wo), u);
-        let flags = match sample.flags.is_specular() {
-            true => BxdfFlags::SPECULAR_TRANSMISSION,
-            false => BxdfFlags::GLOSSY_TRANSMISSION,
-        };
-        BsdfSample { wi: flip(below, turned(sample.wi)), flags, ..sample }
+    /// A direction in which a sheet of glass transmits light from one above, without its value, and
+    /// of the density only that of a smooth sheet.
+    #[inline(always)]
+    pub(super) fn sample_sheet(&self, wo: Vector3<R>, u: Vec2<R>) -> BsdfSample<R> {
+        let sample = mirrored(&self.stack.sheet(), wo, u);
+        let flags = BxdfFlags::choose(
+            sample.flags.is_specular(),
+            BxdfFlags::SPECULAR_TRANSMISSION,
+            BxdfFlags::GLOSSY_TRANSMISSION,
+        );
+        BsdfSample { wi: turned(sample.wi), flags, ..sample }
     }
 
-    /// The density of [`Self::sample_sheet`] for directions on both sides.
-    pub(super) fn pdf_sheet(&self, wo: Vector3, wi: Vector3) -> f32 {
-        let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
-        Mirror::new(&self.stack.sheet(), wo, turned(wi)).map_or(0.0, |mirror| mirror.pdf)
+    /// The density of [`Self::sample_sheet`] for a direction above and one below.
+    #[inline(always)]
+    pub(super) fn pdf_sheet(&self, wo: Vector3<R>, wi: Vector3<R>) -> R {
+        Mirror::new(&self.stack.sheet(), wo, turned(wi)).pdf
     }
 }

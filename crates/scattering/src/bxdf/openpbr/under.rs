@@ -13,6 +13,7 @@
 
 use super::{OpenPbr, OpenPbrParameters, Shares};
 use crate::{HenyeyGreenstein, Interior};
+use lanes::{Mask, Real};
 use math::Vector3;
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
@@ -33,34 +34,54 @@ pub(super) enum Part {
 }
 
 /// The albedo of single scattering of a half space that reflects `albedo` of uniform light.
-fn single_scattering(albedo: f32, g: f32) -> f32 {
-    let a = albedo.clamp(0.0, 1.0);
-    let s = 4.09712 + 4.20863 * a - (9.59217 + 41.6808 * a + 17.7126 * a * a).sqrt();
-    ((1.0 - s * s) / (1.0 - g * s * s)).clamp(0.0, 1.0)
+#[inline(always)]
+fn single_scattering<R: Real>(albedo: R, g: R) -> R {
+    let c = R::splat;
+    let a = albedo.clamp(R::zero(), R::one());
+    let s = c(4.09712) + c(4.20863) * a - (c(9.59217) + c(41.6808) * a + c(17.7126) * a * a).sqrt();
+    ((R::one() - s * s) / (R::one() - g * s * s)).clamp(R::zero(), R::one())
 }
 
-/// The medium under a surface; `None` if nothing is scattered there, or at once.
-pub(super) fn interior(p: &OpenPbrParameters) -> Option<Interior> {
-    let share = (1.0 - p.base_metalness) * (1.0 - p.transmission_weight) * p.subsurface_weight;
-    if share == 0.0 || p.geometry_thin_walled || p.subsurface_radius.is_black() {
-        return None;
+/// The medium under a surface, which does nothing if nothing is scattered there, or at once.
+#[inline(always)]
+pub(super) fn interior<R: Real>(p: &OpenPbrParameters<R>) -> Interior<R> {
+    let zero = SampledSpectrum::zero();
+    let phase = HenyeyGreenstein { g: R::zero() };
+    let nothing = Interior { sigma_s: zero, sigma_t: zero, phase, eta: R::one() };
+    if p.geometry_thin_walled {
+        return nothing;
     }
-    let sigma_t = p.subsurface_radius.map(|l| 1.0 / l.max(1e-6));
-    let g = p.subsurface_scatter_anisotropy.clamp(-0.99, 0.99);
-    let albedo = p.subsurface_color.map(|albedo| single_scattering(albedo, g));
-    Some(Interior { sigma_s: albedo * sigma_t, sigma_t, phase: HenyeyGreenstein { g }, eta: 1.0 })
+    let opaque = (R::one() - p.base_metalness) * (R::one() - p.transmission_weight);
+    let is_body = (opaque * p.subsurface_weight).gt(R::zero()) & !p.subsurface_radius.is_black();
+    if !is_body.any() {
+        return nothing;
+    }
+    let g = p.subsurface_scatter_anisotropy.clamp(R::splat(-0.99), R::splat(0.99));
+    let (mut albedo, mut sigma_t) = (p.subsurface_color, p.subsurface_radius);
+    for value in &mut albedo.0 {
+        *value = single_scattering(*value, g);
+    }
+    for value in &mut sigma_t.0 {
+        *value = R::one() / value.max(R::splat(1e-6));
+    }
+    Interior {
+        sigma_s: SampledSpectrum::select(is_body, albedo * sigma_t, zero),
+        sigma_t: SampledSpectrum::select(is_body, sigma_t, zero),
+        phase: HenyeyGreenstein { g },
+        eta: R::one(),
+    }
 }
 
 impl<'a> OpenPbr<'a> {
     /// The medium under the surface, if light is followed there.
     pub fn interior(&self) -> Option<&Interior> {
-        self.interior.as_ref()
+        (!self.interior.sigma_t.is_black()).then_some(&self.interior)
     }
 
     /// The surface without what is scattered under it. From above, samples for radiance may lead
     /// there; these are [diffuse and transmitted](crate::BxdfFlags::DIFFUSE_TRANSMISSION).
     pub(in super::super) fn boundary_part(&self) -> Self {
-        let part = if self.interior.is_some() { Part::Boundary } else { Part::Whole };
+        let part = if self.interior().is_some() { Part::Boundary } else { Part::Whole };
         Self { part, ..*self }
     }
 
@@ -74,36 +95,46 @@ impl<'a> OpenPbr<'a> {
         Self { part: Part::Leaving, ..*self }
     }
 
-    /// The share of the diffuse base that paths go under, from the side of `z`.
-    pub(super) fn share_under(&self, z: f32) -> f32 {
-        if self.part == Part::Boundary && z > 0.0 { self.subsurface_weight } else { 0.0 }
-    }
-
-    /// What of the light to `wo`, above, comes from under the surface, over what does of all.
-    pub(super) fn goes_under(&self, shares: &Shares, wo: Vector3) -> SampledSpectrum {
-        let weight = self.weights(1.0).diffuse * self.subsurface_weight;
-        shares.diffuse_rest * self.darkening * self.absorbed(self.coat_length(wo.z)) * weight
-    }
-
     /// The probability with which a path to `wo`, above, goes on under the surface.
     pub fn chance_under(&self, wo: Vector3) -> f32 {
         let under = self.goes_under(&self.shares(wo), wo) * self.subsurface_color;
         under.average().clamp(0.05, 0.95)
     }
+}
 
-    /// The value of one of the two lobes for light on the way between the surface and `w`, above.
-    pub(super) fn lobe(&self, w: Vector3) -> SampledSpectrum {
-        let shares = self.shares(w);
+impl<R: Real> OpenPbr<'_, R> {
+    /// The share of the diffuse base that paths go under, from the side of `z`.
+    #[inline(always)]
+    pub(super) fn share_under(&self, z: R) -> R {
         match self.part {
-            Part::Entering => {
-                let left = shares.diffuse_rest.safe_div(self.rests().diffuse);
-                left * self.absorbed(self.coat_length(w.z)) * FRAC_1_PI
-            }
-            _ => self.goes_under(&shares, w) * FRAC_1_PI,
+            Part::Boundary => R::select(z.gt(R::zero()), self.subsurface_weight, R::zero()),
+            _ => R::zero(),
         }
     }
 
+    /// What of the light to `wo`, above, comes from under the surface, over what does of all.
+    #[inline(always)]
+    pub(super) fn goes_under(&self, shares: &Shares<R>, wo: Vector3<R>) -> SampledSpectrum<R> {
+        let weight = self.weights(R::one()).diffuse * self.subsurface_weight;
+        shares.diffuse_rest * self.darkening * self.absorbed(self.coat_length(wo.z)) * weight
+    }
+
+    /// The value of one of the two lobes for light on the way between the surface and `w`, above.
+    #[inline(always)]
+    pub(super) fn lobe(&self, w: Vector3<R>) -> SampledSpectrum<R> {
+        let shares = self.shares(w);
+        let value = match self.part {
+            Part::Entering => {
+                let left = shares.diffuse_rest.safe_div(self.rests().diffuse);
+                left * self.absorbed(self.coat_length(w.z))
+            }
+            _ => self.goes_under(&shares, w),
+        };
+        value * R::splat(FRAC_1_PI)
+    }
+
     /// Whether it is one of the two lobes.
+    #[inline(always)]
     pub(super) fn is_lobe(&self) -> bool {
         matches!(self.part, Part::Entering | Part::Leaving)
     }

@@ -1,120 +1,308 @@
 //! Values of the lobes from above, and of specular ones.
 
-use super::chances::Lobe;
-use super::diffuse::oren_nayar;
-use super::fuzz::{self, Scattered};
+use super::chances::{COAT, GLASS};
+use super::fuzz;
 use super::mirror::Mirror;
+use super::oren_nayar::oren_nayar;
 use super::shares::{Rests, Shares};
-use super::{OpenPbr, View, Weights, flip, is_off_horizon};
+use super::{OpenPbr, Weights, is_off_horizon, upright};
 use crate::{BsdfSample, Scatter, TransportMode};
+use lanes::{Callee, Int, Mask, Real, pow};
 use math::{Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
 
-impl OpenPbr<'_> {
+impl<R: Real> OpenPbr<'_, R> {
     /// Absorption in the coat on paths of these lengths, in units of its thickness.
-    pub(super) fn absorbed(&self, lengths: f32) -> SampledSpectrum {
-        if self.stack.coat_weight == 0.0 || self.coat_color == SampledSpectrum::ONE {
-            return SampledSpectrum::ONE;
+    #[inline(always)]
+    pub(super) fn absorbed(&self, lengths: R) -> SampledSpectrum<R> {
+        let one = SampledSpectrum::splat(R::one());
+        let is_clear = (self.coat_color - one).is_black();
+        let absorbs = self.stack.coat_weight.gt(R::zero()) & !is_clear;
+        if !absorbs.any() {
+            return one;
         }
-        SampledSpectrum::ONE.lerp(self.coat_color.powf(0.5 * lengths), self.stack.coat_weight)
+        let passed = R::call(Absorption { color: self.coat_color, lengths });
+        SampledSpectrum::select(absorbs, one.lerp(passed, self.stack.coat_weight), one)
     }
 
     /// The length of a path through the coat.
-    pub(super) fn coat_length(&self, cosine: f32) -> f32 {
-        1.0 / (1.0 - (1.0 - sqr(cosine)) / sqr(self.stack.coat_ior)).sqrt().max(1e-3)
+    #[inline(always)]
+    pub(super) fn coat_length(&self, cosine: R) -> R {
+        let squared = R::one() - (R::one() - sqr(cosine)) / sqr(self.stack.coat_ior);
+        R::one() / squared.sqrt().max(R::splat(1e-3))
     }
 
     /// The reflectance of the facets of the base met from above at a cosine.
-    pub(super) fn reflectance(&self, cosine: f32, weights: &Weights) -> SampledSpectrum {
-        let mut reflected = SampledSpectrum::ZERO;
-        if weights.glass > 0.0 && self.stack.is_thin {
-            reflected += self.sheet_shares(cosine)[0] * self.specular_color * weights.glass;
-            return reflected + self.reflectance(cosine, &Weights { glass: 0.0, ..*weights });
+    #[inline(always)]
+    pub(super) fn reflectance(&self, cosine: R, weights: &Weights<R>) -> SampledSpectrum<R> {
+        let zero = R::zero();
+        let mut reflected = SampledSpectrum::zero();
+        let mut glass = weights.glass;
+        if self.stack.is_thin {
+            if glass.gt(zero).any() {
+                let [sheet, _] = self.sheet_shares(cosine);
+                reflected += sheet * self.specular_color * glass;
+            }
+            glass = zero;
         }
-        if weights.metal > 0.0 {
+        if weights.metal.gt(zero).any() {
             reflected += self.metal(cosine) * self.darkening * weights.metal;
         }
-        if weights.diffuse + weights.glass > 0.0 {
+        if (weights.diffuse + glass).gt(zero).any() {
             let dielectric = self.stack.dielectrics(cosine, &self.waves) * self.specular_color;
-            reflected +=
-                dielectric * (self.darkening * weights.diffuse + SampledSpectrum::splat(weights.glass));
+            reflected += dielectric * (self.darkening * weights.diffuse + SampledSpectrum::splat(glass));
         }
         reflected
     }
 
     /// The value for two directions above of what `weights` say.
+    #[inline(always)]
     pub(super) fn reflected(
         &self,
-        view: &View,
-        wo: Vector3,
-        wi: Vector3,
+        [o, i]: [&Shares<R>; 2],
+        rests: &Rests<R>,
+        [wo, wi]: [Vector3<R>; 2],
         mode: TransportMode,
-        weights: &Weights,
-    ) -> SampledSpectrum {
-        let (o, i, rests) = (&view.shares, &self.shares(wi), &view.rests);
-        let mut f = SampledSpectrum::ZERO;
-        if self.stack.fuzz_weight > 0.0 {
-            f += self.fuzz([o, i], rests, [wo, wi], weights);
+        weights: &Weights<R>,
+    ) -> SampledSpectrum<R> {
+        let (zero, black) = (R::zero(), SampledSpectrum::zero());
+        let mut f = black;
+        let has_fuzz = self.stack.fuzz_weight.gt(zero);
+        if has_fuzz.any() {
+            let fuzz = self.fuzz([o, i], rests, [wo, wi], weights);
+            f += SampledSpectrum::select(has_fuzz, fuzz, black);
         }
-        if self.stack.coat_weight > 0.0 {
+        let is_coated = self.stack.coat_weight.gt(zero);
+        if is_coated.any() {
             let coat = self.coat(wo, wi, mode) * o.below_fuzz().min(i.below_fuzz());
-            f += SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers);
+            let coat = coat * self.stack.coat_weight * weights.layers;
+            f += SampledSpectrum::splat(R::select(is_coated, coat, zero));
         }
-        let mut base = SampledSpectrum::ZERO;
-        if let Some(mirror) = Mirror::new(&self.stack.base, wo, wi) {
-            let white = mirror.f * o.taken.below_coat.min(i.taken.below_coat);
+        let mirror = Mirror::new(&self.stack.base, wo, wi);
+        let white = mirror.f * o.taken.below_coat.min(i.taken.below_coat);
+        let mut base = black;
+        if white.gt(zero).any() {
             base += self.reflectance(mirror.cosine, weights) * white;
         }
-        if weights.diffuse > 0.0 {
+        if weights.diffuse.gt(zero).any() {
             base += self.diffuse([o, i], rests, [wo, wi], weights);
         }
-        if weights.metal > 0.0 && rests.metal > 0.0 {
-            let left = o.metal_rest() * i.metal_rest() / (PI * rests.metal);
-            base += self.metal_again * self.darkening * (left * weights.metal);
+        let has_metal_rest = weights.metal.gt(zero) & rests.metal.gt(zero);
+        if has_metal_rest.any() {
+            let left = o.metal_rest() * i.metal_rest() / (R::splat(PI) * rests.metal);
+            let left = R::select(has_metal_rest, left * weights.metal, zero);
+            base += self.metal_again * self.darkening * left;
         }
-        if weights.glass > 0.0 && rests.glass[0] > 0.0 {
-            let left = o.glass_rest * i.glass_rest / (PI * rests.glass[0]);
-            base += SampledSpectrum::splat(left * (1.0 - rests.through[0]) * weights.glass);
+        let has_glass_rest = weights.glass.gt(zero) & rests.glass_above.gt(zero);
+        if has_glass_rest.any() {
+            let left = o.glass_rest * i.glass_rest / (R::splat(PI) * rests.glass_above);
+            let again = left * (R::one() - rests.through_above) * weights.glass;
+            base += SampledSpectrum::splat(R::select(has_glass_rest, again, zero));
         }
-        if self.stack.coat_weight > 0.0 {
-            base *= self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z));
-        }
-        f + base
+        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
     }
 
     /// The value of the fibres.
-    #[inline]
+    #[inline(always)]
     fn fuzz(
         &self,
-        shares: [&Shares; 2],
-        rests: &Rests,
-        directions: [Vector3; 2],
-        weights: &Weights,
-    ) -> SampledSpectrum {
-        let fibres = shares.map(|w| Scattered { once: w.taken.fuzz_once, more: w.taken.fuzz_more });
-        let fuzz = fuzz::value(self.fuzz_color, self.stack.fuzz_roughness, rests.fuzz, directions, fibres);
+        [o, i]: [&Shares<R>; 2],
+        rests: &Rests<R>,
+        directions: [Vector3<R>; 2],
+        weights: &Weights<R>,
+    ) -> SampledSpectrum<R> {
+        let more = [o.taken.fuzz_more, i.taken.fuzz_more];
+        let fuzz = fuzz::value(self.fuzz_color, self.stack.fuzz_roughness, rests.fuzz, directions, more);
         fuzz * (self.stack.fuzz_weight * weights.layers)
     }
 
     /// The value of the diffuse base, below the coat.
-    #[inline]
+    #[inline(always)]
     fn diffuse(
         &self,
-        [o, i]: [&Shares; 2],
-        rests: &Rests,
-        [wo, wi]: [Vector3; 2],
-        weights: &Weights,
-    ) -> SampledSpectrum {
+        [o, i]: [&Shares<R>; 2],
+        rests: &Rests<R>,
+        [wo, wi]: [Vector3<R>; 2],
+        weights: &Weights<R>,
+    ) -> SampledSpectrum<R> {
         let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
-        let color = if weights.under > 0.0 { self.base_color } else { self.diffuse_color };
-        let mut diffuse = oren_nayar(color, self.diffuse_roughness, wo, wi) * (1.0 - weights.under);
+        let goes_under = weights.under.gt(R::zero());
+        let color = SampledSpectrum::select(goes_under, self.base_color, self.diffuse_color);
+        let over = R::one() - weights.under;
+        let mut diffuse = oren_nayar(color, self.diffuse_roughness, wo, wi) * over;
         if self.stack.is_thin {
-            diffuse = diffuse * self.diffuse_weight + self.scattered(1.0 - self.forward, wo, wi);
+            let reflected = self.scattered(R::one() - self.forward, wo, wi);
+            diffuse = diffuse * self.diffuse_weight + reflected;
         }
         diffuse * left * self.darkening * weights.diffuse
     }
 
+    /// The value for two directions off the horizon, of which `shares` are.
+    #[inline(always)]
+    pub(super) fn value(
+        &self,
+        shares: [&Shares<R>; 2],
+        rests: &Rests<R>,
+        directions: [Vector3<R>; 2],
+        mode: TransportMode,
+    ) -> SampledSpectrum<R> {
+        R::call(ValueOf { surface: self, shares, rests, directions, mode })
+    }
+
+    /// The value of the lobe that a specular sample has chosen.
+    #[inline(always)]
+    pub(super) fn specular(
+        &self,
+        shares: &Shares<R>,
+        wo: Vector3<R>,
+        lobe: R::Int,
+        sample: &BsdfSample<R>,
+        mode: TransportMode,
+    ) -> SampledSpectrum<R> {
+        let (zero, wi) = (R::zero(), sample.wi);
+        let cosine = wo.z.abs();
+        let is_above = wo.z.gt(zero);
+        let is_coat = lobe.eq(R::Int::splat(COAT));
+        let is_glass = lobe.eq(R::Int::splat(GLASS));
+        let Weights { layers, metal, diffuse, under, glass } = self.weights(wo.z);
+        let mut glass_here = glass;
+        if !self.stack.is_thin {
+            glass_here = R::select(is_glass, glass, zero);
+        }
+        let here = Weights {
+            layers,
+            metal: R::select(is_glass, zero, metal),
+            diffuse: R::select(is_glass, zero, diffuse),
+            under,
+            glass: glass_here,
+        };
+        let tint = self.absorbed(R::splat(2.0) * self.coat_length(cosine));
+        let mut value = self.reflectance(cosine, &here) * (tint * shares.taken.below_coat);
+        if is_glass.any() {
+            if self.stack.is_thin {
+                let [_, passed] = self.sheet_shares(cosine);
+                let through = passed * tint * (shares.taken.below_coat * self.glass());
+                value = SampledSpectrum::select(is_glass, through, value);
+            } else {
+                let is_inside = is_glass & !is_above;
+                if is_inside.any() {
+                    let inside = self.inner_reflectance(cosine) * self.glass();
+                    value = SampledSpectrum::select(is_inside, inside, value);
+                }
+                let is_refracted = is_glass & sample.flags.is_transmissive();
+                if is_refracted.any() {
+                    let refracted = self.refracted(shares, wo, wi);
+                    value = SampledSpectrum::select(is_refracted, refracted, value);
+                }
+            }
+        }
+        if is_coat.any() {
+            let (up, out) = (upright(!is_above, wo), upright(!is_above, wi));
+            let coat = self.specular_coat(up, out, mode) * shares.below_fuzz();
+            let coat = SampledSpectrum::splat(coat * self.stack.coat_weight * layers);
+            value = SampledSpectrum::select(is_coat, coat, value);
+        }
+        let scale = match mode {
+            TransportMode::Radiance => R::one() / sqr(sample.eta),
+            TransportMode::Importance => R::one(),
+        };
+        value * (scale / wi.z.abs())
+    }
+
+    /// The share of light that smooth glass refracts from one direction into another.
+    #[inline(always)]
+    fn refracted(&self, shares: &Shares<R>, wo: Vector3<R>, wi: Vector3<R>) -> SampledSpectrum<R> {
+        let is_above = wo.z.gt(R::zero());
+        let outside = R::select(is_above, wo.z, wi.z);
+        let reflected = self.stack.dielectrics(outside, &self.waves);
+        let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
+        let mut passed = shares.taken.below_coat;
+        if !is_above.all() {
+            let mut outwards = self.passed(outside);
+            let is_tilted = self.is_tilted();
+            if is_tilted.any() {
+                outwards = R::select(is_tilted, self.shares(wi).taken.below_coat, outwards);
+            }
+            passed = R::select(is_above, passed, outwards);
+        }
+        (SampledSpectrum::splat(R::one()) - reflected) * tint * (passed * self.glass())
+    }
+}
+
+/// Light that is left after ways through the coat.
+struct Absorption<R: Real> {
+    color: SampledSpectrum<R>,
+    lengths: R,
+}
+
+impl<R: Real> Callee<R> for Absorption<R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let mut passed = self.color;
+        for value in &mut passed.0 {
+            *value = pow(*value, R::splat(0.5) * self.lengths);
+        }
+        passed
+    }
+}
+
+/// The value for two directions off the horizon.
+struct ValueOf<'b, 'a, R: Real> {
+    surface: &'b OpenPbr<'a, R>,
+    shares: [&'b Shares<R>; 2],
+    rests: &'b Rests<R>,
+    directions: [Vector3<R>; 2],
+    mode: TransportMode,
+}
+
+impl<R: Real> Callee<R> for ValueOf<'_, '_, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let Self { surface, shares, rests, directions, mode } = self;
+        let [wo, wi] = directions;
+        let (zero, black) = (R::zero(), SampledSpectrum::zero());
+        let is_below = wo.z.lt(zero);
+        let is_same = same_hemisphere(wo, wi);
+        let up = [upright(is_below, wo), upright(is_below, wi)];
+        let glass = surface.glass();
+        let is_glass = glass.gt(zero);
+        let mut f = black;
+        if surface.stack.is_thin {
+            if is_same.any() {
+                f = surface.reflected(shares, rests, up, mode, &surface.weights(R::one()));
+            }
+            if !is_same.all() {
+                let [wo, wi] = up;
+                let through = surface.passed_through(shares, rests, wo, wi);
+                f = SampledSpectrum::select(is_same, f, through);
+            }
+            return f;
+        }
+        let reflects = is_same & (!is_below | glass.lt(R::one()));
+        if reflects.any() {
+            let reflected = surface.reflected(shares, rests, up, mode, &surface.weights(wo.z));
+            f = SampledSpectrum::select(reflects, reflected, black);
+        }
+        let reflects_inside = is_same & is_below & is_glass;
+        if reflects_inside.any() {
+            let inside = surface.reflected_inside(shares, rests, wo, wi);
+            f += SampledSpectrum::select(reflects_inside, inside, black);
+        }
+        let transmits = !is_same & is_glass;
+        if transmits.any() {
+            let through = surface.transmitted(shares, rests, [wo, wi], mode);
+            f = SampledSpectrum::select(transmits, through, f);
+        }
+        f
+    }
+}
+
+impl OpenPbr<'_> {
     /// The value of fibres and the diffuse base alone, for two directions on the same side.
     pub(in super::super) fn diffused(&self, wo: Vector3, wi: Vector3) -> SampledSpectrum {
         if !(is_off_horizon(wo) && is_off_horizon(wi)) {
@@ -124,7 +312,7 @@ impl OpenPbr<'_> {
             return self.f(wo, wi, TransportMode::Radiance);
         }
         let (below, weights) = (wo.z < 0.0, self.weights(wo.z));
-        let directions @ [wo, wi] = [flip(below, wo), flip(below, wi)];
+        let directions @ [wo, wi] = [upright(below, wo), upright(below, wi)];
         let (o, i, rests) = (self.shares(wo), self.shares(wi), self.rests());
         let absorbed = self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z));
         let mut f = SampledSpectrum::ZERO;
@@ -135,80 +323,5 @@ impl OpenPbr<'_> {
             f += self.diffuse([&o, &i], &rests, directions, &weights) * absorbed;
         }
         f
-    }
-
-    /// The value for two directions off the horizon.
-    pub(super) fn value(
-        &self,
-        view: &View,
-        wo: Vector3,
-        wi: Vector3,
-        mode: TransportMode,
-    ) -> SampledSpectrum {
-        if self.stack.is_thin {
-            return self.thin_value(view, wo, wi, mode);
-        }
-        let glass = self.glass() > 0.0;
-        match (same_hemisphere(wo, wi), wo.z > 0.0) {
-            (true, true) => self.reflected(view, wo, wi, mode, &self.weights(1.0)),
-            (true, false) => {
-                let mut f = SampledSpectrum::ZERO;
-                if self.glass() < 1.0 {
-                    f += self.reflected(view, -wo, -wi, mode, &self.weights(-1.0));
-                }
-                if glass { f + self.reflected_inside(view, wo, wi) } else { f }
-            }
-            (false, _) if glass => self.transmitted(view, wo, wi, mode),
-            (false, _) => SampledSpectrum::ZERO,
-        }
-    }
-
-    /// A specular sample with the value of the lobe that it chose.
-    pub(super) fn specular(
-        &self,
-        shares: &Shares,
-        wo: Vector3,
-        (lobe, sample): (Lobe, BsdfSample),
-        mode: TransportMode,
-    ) -> BsdfSample {
-        let cosine = wo.z.abs();
-        let weights = self.weights(wo.z);
-        let value = match lobe {
-            Lobe::Coat => {
-                let [wo, wi] = [wo, sample.wi].map(|w| flip(wo.z < 0.0, w));
-                let coat = self.specular_coat(wo, wi, mode) * shares.below_fuzz();
-                SampledSpectrum::splat(coat * self.stack.coat_weight * weights.layers)
-            }
-            Lobe::Glass if self.stack.is_thin => {
-                let tint = self.absorbed(2.0 * self.coat_length(cosine));
-                self.sheet_shares(cosine)[1] * tint * (shares.taken.below_coat * self.glass())
-            }
-            Lobe::Glass if sample.flags.is_transmissive() => {
-                let outside = if wo.z > 0.0 { cosine } else { sample.wi.z };
-                let refracted = SampledSpectrum::ONE - self.stack.dielectrics(outside, &self.waves);
-                let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
-                let passed = match wo.z > 0.0 {
-                    true => shares.taken.below_coat,
-                    false if self.is_tilted() => self.shares(sample.wi).taken.below_coat,
-                    false => self.passed(outside),
-                };
-                refracted * tint * (passed * self.glass())
-            }
-            Lobe::Glass if wo.z < 0.0 => self.inner_reflectance(cosine) * self.glass(),
-            _ => {
-                let tint = self.absorbed(2.0 * self.coat_length(cosine)) * shares.taken.below_coat;
-                let weights = match lobe {
-                    Lobe::Glass => Weights { metal: 0.0, diffuse: 0.0, ..weights },
-                    _ if self.stack.is_thin => weights,
-                    _ => Weights { glass: 0.0, ..weights },
-                };
-                self.reflectance(cosine, &weights) * tint
-            }
-        };
-        let scale = match mode {
-            TransportMode::Radiance => 1.0 / sqr(sample.eta),
-            TransportMode::Importance => 1.0,
-        };
-        BsdfSample { f: value * (scale / sample.wi.z.abs()), ..sample }
     }
 }

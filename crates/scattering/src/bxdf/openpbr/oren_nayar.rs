@@ -9,43 +9,55 @@
 //! The second term is light scattered between facets, without which rough surfaces would be too
 //! dark; a white one reflects all light. Source: [Portsmouth 2025].
 
+use lanes::{Mask, Real, atan2};
 use math::{Vector3, sqr};
 use spectrum::SampledSpectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A in dependence of the roughness.
-fn amplitude(roughness: f32) -> f32 {
-    1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness)
+#[inline(always)]
+fn amplitude<R: Real>(roughness: R) -> R {
+    R::one() / (R::one() + R::splat(0.5 - 2.0 / (3.0 * PI)) * roughness)
 }
 
 /// E: the albedo of white facets by single scattering.
-fn single_albedo(roughness: f32, cosine: f32) -> f32 {
-    let cosine = cosine.clamp(0.0, 1.0);
-    let sine = (1.0 - sqr(cosine)).sqrt();
-    let theta = lanes::atan2(sine, cosine);
+#[inline(always)]
+fn single_albedo<R: Real>(roughness: R, cosine: R) -> R {
+    let one = R::one();
+    let cosine = cosine.clamp(R::zero(), one);
+    let sine = (one - sqr(cosine)).sqrt();
+    let theta = atan2(sine, cosine);
     // tan θ (1 − sin³ θ), which is finite at the horizon.
-    let steep = sine * cosine * (1.0 + sine + sqr(sine)) / (1.0 + sine);
-    let g = sine * (theta - sine * cosine) + 2.0 / 3.0 * (steep - sine);
-    amplitude(roughness) * (1.0 + roughness * FRAC_1_PI * g)
+    let steep = sine * cosine * (one + sine + sqr(sine)) / (one + sine);
+    let g = sine * (theta - sine * cosine) + R::splat(2.0 / 3.0) * (steep - sine);
+    amplitude(roughness) * (one + roughness * R::splat(FRAC_1_PI) * g)
 }
 
 /// The value for two directions above, of an `albedo` and a `roughness` in [0, 1].
-pub(super) fn oren_nayar(
-    albedo: SampledSpectrum,
-    roughness: f32,
-    wo: Vector3,
-    wi: Vector3,
-) -> SampledSpectrum {
-    if roughness == 0.0 {
-        return albedo * FRAC_1_PI;
+#[inline(always)]
+pub(super) fn oren_nayar<R: Real>(
+    albedo: SampledSpectrum<R>,
+    roughness: R,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+) -> SampledSpectrum<R> {
+    let smooth = albedo * R::splat(FRAC_1_PI);
+    let is_rough = roughness.gt(R::zero());
+    if !is_rough.any() {
+        return smooth;
     }
+    let one = R::one();
     let s = wo.dot(wi) - wo.z * wi.z;
-    let t = if s > 0.0 { wo.z.max(wi.z) } else { 1.0 };
-    let single = albedo * (amplitude(roughness) * (1.0 + roughness * s / t));
-    let mean = amplitude(roughness) * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * roughness);
-    let lost = [wo, wi].map(|w| 1.0 - single_albedo(roughness, w.z));
-    let again = albedo.map(|a| sqr(a) * mean / (1.0 - a * (1.0 - mean)));
-    (single + again * (lost[0] * lost[1] / (1.0 - mean))) * FRAC_1_PI
+    let t = R::select(s.gt(R::zero()), wo.z.max(wi.z), one);
+    let single = albedo * (amplitude(roughness) * (one + roughness * s / t));
+    let mean = amplitude(roughness) * (one + R::splat(2.0 / 3.0 - 28.0 / (15.0 * PI)) * roughness);
+    let lost = (one - single_albedo(roughness, wo.z)) * (one - single_albedo(roughness, wi.z));
+    let mut again = albedo;
+    for value in &mut again.0 {
+        *value = sqr(*value) * mean / (one - *value * (one - mean));
+    }
+    let rough = (single + again * (lost / (one - mean))) * R::splat(FRAC_1_PI);
+    SampledSpectrum::select(is_rough, rough, smooth)
 }
 
 #[cfg(test)]
