@@ -8,6 +8,7 @@ const THIN_DIELECTRIC = 4u;
 const MIX = 5u;
 const COATED_DIFFUSE = 6u;
 const COATED_CONDUCTOR = 7u;
+const PRINCIPLED = 8u;
 
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;
@@ -22,6 +23,7 @@ struct Bsdf {
     eta: f32,
     facets: TrowbridgeReitz,
     coat: Coat,
+    surface: OpenPbr,
 }
 
 // What lies above a base: the numbers of a `Layered` but for the base.
@@ -51,7 +53,7 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
     // The heights here, along u and along v.
     var heights: array<f32, 3>;
     var height = 0u;
-    var values: array<vec4f, 9>;
+    var values: array<vec4f, MOST_TEXTURES>;
     var value = 0u;
     loop {
         let is_mix = tables[at] == MIX;
@@ -117,6 +119,7 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
             bsdf.b /= bsdf.eta;
         }
         case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]); }
+        case PRINCIPLED: { bsdf.surface = openpbr_at(tables[at + 4], values, *lambda); }
         default: {}
     }
     if (is_coated) {
@@ -188,6 +191,7 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
             return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
                 | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
         }
+        case PRINCIPLED: { return OpenPbr_flags(bsdf.surface); }
         default: {
             return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
         }
@@ -206,6 +210,9 @@ fn regularize(bsdf: ptr<function, Bsdf>) {
     facets = (*bsdf).coat.surface.distribution;
     TrowbridgeReitz_regularize(&facets, true);
     (*bsdf).coat.surface.distribution = facets;
+    var surface = (*bsdf).surface;
+    OpenPbr_regularize(&surface, true);
+    (*bsdf).surface = surface;
 }
 
 // Neither zero, subnormal, infinite nor NaN.
@@ -233,6 +240,7 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
         case CONDUCTOR: {
             return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, TransportMode_Radiance);
         }
+        case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, TransportMode_Radiance); }
         case DIELECTRIC: {
             return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, TransportMode_Radiance);
         }
@@ -265,6 +273,7 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         case DIELECTRIC: {
             return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
         }
+        case PRINCIPLED: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
         default: { return 0; }
     }
 }
@@ -292,6 +301,9 @@ fn bsdf_sample(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f) -> BsdfSample {
         }
         case THIN_DIELECTRIC: {
             sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, Directions_All);
+        }
+        case PRINCIPLED: {
+            sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, Directions_All);
         }
         default: {}
     }

@@ -18,6 +18,6 @@ pub mod shaders;
 pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
-pub use flatten::{Flat, Refusal, Subject, flatten};
+pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use renderer::{Kernels, PassError, Renderer};

@@ -25,6 +25,12 @@ const LAWS: [&str; 59] = laws! {
     "zsobol"
 };
 
+/// The laws of principled surfaces, which need their tables.
+const PRINCIPLED_LAWS: [&str; 16] = laws! {
+    "chances" "coat" "facets" "film" "fuzz" "glass" "interior" "mirror" "openpbr" "oren_nayar"
+    "parameters" "shares" "stack" "thin" "under" "value"
+};
+
 /// Plumbing that all algorithms share.
 macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
@@ -41,6 +47,14 @@ pub fn with_laws(parts: &[&str]) -> String {
     all.copied().collect::<Vec<_>>().join("\n")
 }
 
+/// The laws of principled surfaces, and the look-ups in their tables, for kernels that declare
+/// `tables`, and how a `number` and a `vector` are read there.
+pub fn principled() -> String {
+    let table = include_str!("../shaders/openpbr_table.wgsl");
+    let all = PRINCIPLED_LAWS.iter().chain([&table]);
+    all.copied().collect::<Vec<_>>().join("\n")
+}
+
 /// What kernels have only for scenes that need it, because it is much code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
@@ -52,6 +66,8 @@ pub struct Parts {
     pub noise: bool,
     /// Coated materials.
     pub coats: bool,
+    /// Principled surfaces.
+    pub principled: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm.
@@ -62,12 +78,17 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
     };
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats } = parts;
+    let Parts { holes, images, noise, coats, principled } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_COATS = {coats};\n"
     );
-    with_laws(&[&PLUMBING[..], &[direct, rays, &has]].concat())
+    let surfaces = if principled {
+        self::principled() + include_str!("../shaders/openpbr_material.wgsl")
+    } else {
+        include_str!("../shaders/openpbr_none.wgsl").to_owned()
+    };
+    with_laws(&[&PLUMBING[..], &[direct, rays, &has, &surfaces]].concat())
 }
 
 /// The shaders of the raster pipeline, one module.

@@ -78,12 +78,12 @@ fn Dielectric_sample_specular(this_: Dielectric, wo: vec3f, uc: f32, mode: u32, 
     let pr = parts.v0;
     let valid = parts.v1;
     let reflects = uc < pr;
-    let mirrored = vec3f(-wo.x, -wo.y, wo.z);
+    let mirrored_1 = vec3f(-wo.x, -wo.y, wo.z);
     let parts_1 = fresnel_refract(wo, Vec3_Z, this_.eta);
     let refracted = parts_1.v0;
     let eta = parts_1.v1;
     let not_total = parts_1.v2;
-    let wi = select(refracted, mirrored, reflects);
+    let wi = select(refracted, mirrored_1, reflects);
     var chosen: f32;
     if (mode == TransportMode_Radiance) {
         chosen = 1.0f / sqr(eta);
@@ -127,8 +127,8 @@ fn Dielectric_sample_glossy(this_: Dielectric, wo: vec3f, uc: f32, u: vec2f, mod
 }
 
 fn Dielectric_flags(this_: Dielectric) -> u32 {
-    let width = BxdfFlags_choose(Dielectric_is_specular(this_), BxdfFlags_SPECULAR_TRANSMISSION, BxdfFlags_GLOSSY_TRANSMISSION);
-    return width | BxdfFlags_only_where(this_.eta != 1.0f, BxdfFlags_REFLECTION);
+    let width_1 = BxdfFlags_choose(Dielectric_is_specular(this_), BxdfFlags_SPECULAR_TRANSMISSION, BxdfFlags_GLOSSY_TRANSMISSION);
+    return width_1 | BxdfFlags_only_where(this_.eta != 1.0f, BxdfFlags_REFLECTION);
 }
 
 fn Dielectric_f(this_: Dielectric, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {

@@ -17,15 +17,15 @@ fn fbm(at: TexCoord3d, octaves: u32, roughness: f32) -> f32 {
     let visible = visible_octaves(at, octaves);
     var sum = 0.0f;
     var frequency = 1.0f;
-    var amplitude = 1.0f;
+    var amplitude_1 = 1.0f;
     for (var octave = 0u; octave < octaves; octave++) {
         let share_1 = share(visible, octave);
         if (!(share_1 > 0.0f)) {
             break;
         }
-        sum += (share_1 * amplitude) * noise(at.p * frequency);
+        sum += (share_1 * amplitude_1) * noise(at.p * frequency);
         frequency *= fractal_LACUNARITY;
-        amplitude *= roughness;
+        amplitude_1 *= roughness;
     }
     return sum;
 }
@@ -35,25 +35,25 @@ fn turbulence(at: TexCoord3d, octaves: u32, roughness: f32) -> f32 {
     let visible = visible_octaves(at, octaves);
     var sum = 0.0f;
     var frequency = 1.0f;
-    var amplitude = 1.0f;
+    var amplitude_1 = 1.0f;
     for (var octave = 0u; octave <= octaves; octave++) {
         let share_1 = share(visible, octave);
-        var value = fractal_MEAN;
+        var value_1 = fractal_MEAN;
         if (share_1 > 0.0f) {
             let magnitude = abs(noise(at.p * frequency));
-            value = (fractal_MEAN * (1.0f - share_1)) + (magnitude * share_1);
+            value_1 = (fractal_MEAN * (1.0f - share_1)) + (magnitude * share_1);
         }
         let is_counted_again = floor(visible) == f32(octave);
         let again = select(0.0f, fractal_MEAN, is_counted_again);
         var chosen: f32;
         if (octave < octaves) {
-            chosen = value + again;
+            chosen = value_1 + again;
         } else {
             chosen = again;
         }
-        sum += amplitude * chosen;
+        sum += amplitude_1 * chosen;
         frequency *= fractal_LACUNARITY;
-        amplitude *= roughness;
+        amplitude_1 *= roughness;
     }
     return sum;
 }

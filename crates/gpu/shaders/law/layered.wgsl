@@ -51,8 +51,8 @@ fn Conductor_pdf_through(this_: Conductor, interface_1: Dielectric, wo: vec3f, w
     let inner_i = parts_1.v0;
     let leaves = parts_1.v2;
     let turn_1 = 1.0f - (1.0f / eta);
-    let distribution = TrowbridgeReitz_widened(this_.distribution, interface_1.distribution, sqr(turn_1) * 0.5f);
-    let lobe = Conductor(distribution, this_.eta, this_.k);
+    let distribution_1 = TrowbridgeReitz_widened(this_.distribution, interface_1.distribution, sqr(turn_1) * 0.5f);
+    let lobe = Conductor(distribution_1, this_.eta, this_.k);
     let pdf = Conductor_pdf(lobe, -inner_o, -inner_i, TransportMode_Radiance, Directions_All);
     let squeeze = wi.z / (sqr(eta) * abs(inner_i.z));
     return select(0.0f, pdf * squeeze, (enters & leaves) & (inner_i.z != 0.0f));
@@ -190,10 +190,10 @@ fn Value_Conductor_run(this_: Value_Conductor) -> vec4f {
     }
     var f = SampledSpectrum_zero();
     let parts = Layered_Conductor_closed_form(layers);
-    let albedo = parts.v0;
+    let albedo_1 = parts.v0;
     let closed = parts.v1;
     if (closed) {
-        f = Layered_Conductor_f_closed(layers, albedo, wo, wi);
+        f = Layered_Conductor_f_closed(layers, albedo_1, wo, wi);
     }
     let estimated = valid & !closed;
     if (estimated) {
@@ -218,10 +218,10 @@ fn Value_Diffuse_run(this_: Value_Diffuse) -> vec4f {
     }
     var f = SampledSpectrum_zero();
     let parts = Layered_Diffuse_closed_form(layers);
-    let albedo = parts.v0;
+    let albedo_1 = parts.v0;
     let closed = parts.v1;
     if (closed) {
-        f = Layered_Diffuse_f_closed(layers, albedo, wo, wi);
+        f = Layered_Diffuse_f_closed(layers, albedo_1, wo, wi);
     }
     let estimated = valid & !closed;
     if (estimated) {
@@ -260,12 +260,12 @@ fn Sample_Conductor_run(this_: Sample_Conductor) -> BsdfSample {
     let u = this_.u;
     let mode = this_.mode;
     let parts = Layered_Conductor_closed_form(layers);
-    let albedo = parts.v0;
+    let albedo_1 = parts.v0;
     let closed = parts.v1;
     if (!closed) {
         return SampleWalk_Conductor_run(SampleWalk_Conductor(layers, wo, uc, u, mode));
     }
-    let exact = Layered_Conductor_sample_closed(layers, albedo, wo, Tuple_f32_Vec2(uc, u), mode);
+    let exact = Layered_Conductor_sample_closed(layers, albedo_1, wo, Tuple_f32_Vec2(uc, u), mode);
     if (closed) {
         return exact;
     }
@@ -281,12 +281,12 @@ fn Sample_Diffuse_run(this_: Sample_Diffuse) -> BsdfSample {
     let u = this_.u;
     let mode = this_.mode;
     let parts = Layered_Diffuse_closed_form(layers);
-    let albedo = parts.v0;
+    let albedo_1 = parts.v0;
     let closed = parts.v1;
     if (!closed) {
         return SampleWalk_Diffuse_run(SampleWalk_Diffuse(layers, wo, uc, u, mode));
     }
-    let exact = Layered_Diffuse_sample_closed(layers, albedo, wo, Tuple_f32_Vec2(uc, u), mode);
+    let exact = Layered_Diffuse_sample_closed(layers, albedo_1, wo, Tuple_f32_Vec2(uc, u), mode);
     if (closed) {
         return exact;
     }

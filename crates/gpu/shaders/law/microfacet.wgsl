@@ -74,6 +74,16 @@ fn TrowbridgeReitz_pdf(this_: TrowbridgeReitz, w: vec3f, wm: vec3f) -> f32 {
     return TrowbridgeReitz_d_visible(this_, w, wm);
 }
 
+// The distribution whose α are `scale` times as large.
+fn TrowbridgeReitz_scaled(this_: TrowbridgeReitz, scale_1: f32) -> TrowbridgeReitz {
+    return TrowbridgeReitz_new(this_.alpha_x * scale_1, this_.alpha_y * scale_1);
+}
+
+// √(α_x α_y).
+fn TrowbridgeReitz_mean_alpha(this_: TrowbridgeReitz) -> f32 {
+    return sqrt(this_.alpha_x * this_.alpha_y);
+}
+
 // The distribution whose α² are larger by `scale` times those of `by`.
 fn TrowbridgeReitz_widened(this_: TrowbridgeReitz, by: TrowbridgeReitz, scale_1: f32) -> TrowbridgeReitz {
     let alpha_x = sqrt(sqr(this_.alpha_x) + (scale_1 * sqr(by.alpha_x)));

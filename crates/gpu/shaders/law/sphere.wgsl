@@ -12,6 +12,11 @@ fn sample_uniform_hemisphere(u: vec2f) -> vec3f {
     return spherical_direction(safe_sqrt(1.0f - (u.x * u.x)), u.x, u.y * 6.2831855f);
 }
 
+// Density of [`sample_uniform_hemisphere`] where z ≥ 0.
+fn uniform_hemisphere_pdf() -> f32 {
+    return 0.5f * 0.31830987f;
+}
+
 // A direction of the hemisphere z ≥ 0 with density proportional to z.
 fn sample_cosine_hemisphere(u: vec2f) -> vec3f {
     let d = sample_uniform_disk_concentric(u);

@@ -79,11 +79,11 @@ fn Walk_scatter(this_: ptr<function, Walk>, at: bool, sample: BsdfSample) {
 }
 
 // Scatters in the medium where the mask is true; returns the density of the direction.
-fn Walk_scatter_in_medium(this_: ptr<function, Walk>, at: bool, phase: HenyeyGreenstein, albedo: vec4f, u: vec2f) -> f32 {
+fn Walk_scatter_in_medium(this_: ptr<function, Walk>, at: bool, phase: HenyeyGreenstein, albedo_1: vec4f, u: vec2f) -> f32 {
     let parts = HenyeyGreenstein_sample_p(phase, -(*this_).w, u);
     let w = parts.v0;
     let p = parts.v1;
-    (*this_).beta = SampledSpectrum_select(at, (*this_).beta * albedo, (*this_).beta);
+    (*this_).beta = SampledSpectrum_select(at, (*this_).beta * albedo_1, (*this_).beta);
     (*this_).w = select((*this_).w, w, at);
     (*this_).alive = (*this_).alive & (!at | (w.z != 0.0f));
     return p;
@@ -146,7 +146,7 @@ fn Estimate_Conductor_run(this_: Estimate_Conductor) -> vec4f {
     let base = layers.base;
     let interface_1 = layers.interface_;
     let thickness = layers.thickness;
-    let albedo = layers.albedo;
+    let albedo_1 = layers.albedo;
     let phase = layers.phase;
     let result = HashSequence_get_1d(&random);
     let result_1 = HashSequence_get_2d(&random);
@@ -181,9 +181,9 @@ fn Estimate_Conductor_run(this_: Estimate_Conductor) -> vec4f {
             let p = HenyeyGreenstein_p(phase, wo_1, to_light);
             let weight_1 = weight(light.pdf, p, is_rough);
             let through = (weight_1 * p) * transmittance(thickness - walk.z, to_light);
-            let l = ((walk.beta * albedo) * light_f) * through;
+            let l = ((walk.beta * albedo_1) * light_f) * through;
             sum += SampledSpectrum_select(at, l, SampledSpectrum_zero());
-            let result_6 = Walk_scatter_in_medium(&walk, at, phase, albedo, u);
+            let result_6 = Walk_scatter_in_medium(&walk, at, phase, albedo_1, u);
             pdf = select(pdf, result_6, at);
         }
         if (result_5.at_base) {
@@ -219,7 +219,7 @@ fn Estimate_Diffuse_run(this_: Estimate_Diffuse) -> vec4f {
     let base = layers.base;
     let interface_1 = layers.interface_;
     let thickness = layers.thickness;
-    let albedo = layers.albedo;
+    let albedo_1 = layers.albedo;
     let phase = layers.phase;
     let result = HashSequence_get_1d(&random);
     let result_1 = HashSequence_get_2d(&random);
@@ -254,9 +254,9 @@ fn Estimate_Diffuse_run(this_: Estimate_Diffuse) -> vec4f {
             let p = HenyeyGreenstein_p(phase, wo_1, to_light);
             let weight_1 = weight(light.pdf, p, is_rough);
             let through = (weight_1 * p) * transmittance(thickness - walk.z, to_light);
-            let l = ((walk.beta * albedo) * light_f) * through;
+            let l = ((walk.beta * albedo_1) * light_f) * through;
             sum += SampledSpectrum_select(at, l, SampledSpectrum_zero());
-            let result_6 = Walk_scatter_in_medium(&walk, at, phase, albedo, u);
+            let result_6 = Walk_scatter_in_medium(&walk, at, phase, albedo_1, u);
             pdf = select(pdf, result_6, at);
         }
         if (result_5.at_base) {
@@ -331,7 +331,7 @@ fn SampleWalk_Conductor_run(this_: SampleWalk_Conductor) -> BsdfSample {
     let base = layers.base;
     let interface_1 = layers.interface_;
     let thickness = layers.thickness;
-    let albedo = layers.albedo;
+    let albedo_1 = layers.albedo;
     let phase = layers.phase;
     let entrance = Dielectric_sample_f(interface_1, wo, uc, u, mode, Directions_All);
     let reflected = entrance.valid & BxdfFlags_is_reflective(entrance.flags);
@@ -368,7 +368,7 @@ fn SampleWalk_Conductor_run(this_: SampleWalk_Conductor) -> BsdfSample {
         let result_1 = Walk_go_on(&walk, thickness, Layered_Conductor_has_medium(layers), flight);
         let wo_1 = -walk.w;
         if (result_1.in_medium) {
-            let result_2 = Walk_scatter_in_medium(&walk, result_1.in_medium, phase, albedo, u_1);
+            let result_2 = Walk_scatter_in_medium(&walk, result_1.in_medium, phase, albedo_1, u_1);
             specular = specular & !result_1.in_medium;
         }
         if (result_1.at_base) {
@@ -404,7 +404,7 @@ fn SampleWalk_Diffuse_run(this_: SampleWalk_Diffuse) -> BsdfSample {
     let base = layers.base;
     let interface_1 = layers.interface_;
     let thickness = layers.thickness;
-    let albedo = layers.albedo;
+    let albedo_1 = layers.albedo;
     let phase = layers.phase;
     let entrance = Dielectric_sample_f(interface_1, wo, uc, u, mode, Directions_All);
     let reflected = entrance.valid & BxdfFlags_is_reflective(entrance.flags);
@@ -441,7 +441,7 @@ fn SampleWalk_Diffuse_run(this_: SampleWalk_Diffuse) -> BsdfSample {
         let result_1 = Walk_go_on(&walk, thickness, Layered_Diffuse_has_medium(layers), flight);
         let wo_1 = -walk.w;
         if (result_1.in_medium) {
-            let result_2 = Walk_scatter_in_medium(&walk, result_1.in_medium, phase, albedo, u_1);
+            let result_2 = Walk_scatter_in_medium(&walk, result_1.in_medium, phase, albedo_1, u_1);
             specular = specular & !result_1.in_medium;
         }
         if (result_1.at_base) {

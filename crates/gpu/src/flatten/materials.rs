@@ -9,6 +9,7 @@
 //! | 3 dielectric | remap, spectrum of η, whether it varies | roughness along u and v |
 //! | 4 thin dielectric | 0, spectrum of η, whether it varies | |
 //! | 5 mix | the two materials | the probability of the second |
+//! | 8 principled | offset of its record | numbers and colours |
 //! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
@@ -28,6 +29,7 @@ const THIN_DIELECTRIC: u32 = 4;
 const MIX: u32 = 5;
 const COATED_DIFFUSE: u32 = 6;
 const COATED_CONDUCTOR: u32 = 7;
+const PRINCIPLED: u32 = 8;
 
 /// The kind, the words and the textures of a material.
 type Record = (u32, [u32; 8], Vec<u32>);
@@ -98,10 +100,13 @@ impl Flattener<'_> {
                 let (remap, is_reflectance, base) = self.conductor(&m.base, span);
                 return self.coated(COATED_CONDUCTOR, &m.coat, [remap, is_reflectance], base, span);
             }
+            Material::OpenPbr(m) => {
+                let (record, textures) = self.principled(m, span);
+                return (PRINCIPLED, words([record]), textures);
+            }
             Material::Hair(_) => "hair",
             Material::Measured(_) => "measured",
             Material::Subsurface(_) => "subsurface",
-            Material::OpenPbr(_) => "openpbr",
             Material::Interface => "interface",
         };
         self.refuse(format!("material `{name}`"), span);

@@ -15,6 +15,7 @@ mod images;
 mod light_choices;
 mod lights;
 mod materials;
+mod openpbr;
 mod samplers;
 mod slab;
 mod spectra;
@@ -32,6 +33,7 @@ use scene::{Scene, View};
 use crate::algorithm::Algorithm;
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::shaders::Parts;
+pub use openpbr::openpbr_table;
 use slab::Slab;
 
 /// Something that kernels do not draw.

@@ -10,7 +10,7 @@ use sampling::{HashSequence, Sampler};
 use scattering::*;
 use spectrum::{RgbSigmoidPolynomial, SampledSpectrum, SampledWavelengths};
 
-type Row = [f32; INPUTS];
+pub type Row = [f32; INPUTS];
 
 fn wo(x: &Row) -> Vector3 {
     Vec3::new(x[0], x[1], x[2])
@@ -24,7 +24,7 @@ fn u(x: &Row) -> Vec2 {
     Vec2::new(x[6], x[7])
 }
 
-fn spectrum(x: &Row, scale: f32) -> SampledSpectrum {
+pub fn spectrum(x: &Row, scale: f32) -> SampledSpectrum {
     SampledSpectrum::new([x[6], x[7], x[8], x[9]]) * scale
 }
 
@@ -82,14 +82,14 @@ fn sample(sample: BsdfSample) -> Vec<f32> {
 }
 
 /// A value for both directions of light, and the density.
-fn value(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
+pub fn value(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
     let (wo, wi) = (wo(x), wi(x));
     let f = bxdf.f(wo, wi, TransportMode::Radiance);
     let g = bxdf.f(wo, wi, TransportMode::Importance);
     vec![f[0], f[1], f[2], f[3], g[0], bxdf.pdf(wo, wi, TransportMode::Radiance, Directions::All)]
 }
 
-fn sampled(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
+pub fn sampled(bxdf: &impl Scatter, x: &Row) -> Vec<f32> {
     sample(bxdf.sample_f(wo(x), x[8], u(x), TransportMode::Radiance, Directions::All))
 }
 

@@ -5,6 +5,7 @@
 
 mod faults;
 mod laws;
+mod openpbr;
 mod pictures;
 mod raster;
 mod textures;

@@ -414,3 +414,47 @@ Shape "disk" "float radius" 3 "float height" -0.7
     assert_eq!(Case::of_text(text).compare("varnish", &kernels, &path), None);
     assert_mean(&Case::named("coats"), &kernels, &path);
 }
+
+/// Principled surfaces of all kinds: metal with a textured roughness, brushed metal, coats, fuzz,
+/// films, frosted glass, and a window.
+const PRINCIPLED: &str = r#"
+LookAt 0 -6 2.4  0 0 0.5  0 0 1
+Camera "perspective" "float fov" 36
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.5 0.6 0.8 ]
+LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
+Texture "tiles" "float" "checkerboard" "float uscale" 8 "float vscale" 8 "float tex1" 0.3 "float tex2" 0.7
+Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "openpbr" "texture base_color" "squares" "texture specular_roughness" "tiles"
+Shape "bilinearmesh" "point3 P" [ -4 -4 -0.5  4 -4 -0.5  -4 4 -0.5  4 4 -0.5 ]
+Translate -2 0 0
+Material "openpbr" "float base_metalness" 1 "rgb base_color" [ 0.9 0.6 0.3 ] "float specular_roughness" 0.5
+    "float specular_roughness_anisotropy" 0.6
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float coat_weight" 1 "rgb coat_color" [ 0.9 0.4 0.3 ] "float base_metalness" 0.4
+    "float coat_roughness" 0.1
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float transmission_weight" 1 "float specular_roughness" 0.4
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float fuzz_weight" 0.8 "rgb fuzz_color" [ 0.6 0.3 0.8 ] "float base_diffuse_roughness" 1
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float thin_film_weight" 1 "float base_metalness" 1 "float specular_roughness" 0.3
+Shape "sphere" "float radius" 0.45
+Translate -2 -1.2 0
+Material "openpbr" "float transmission_weight" 0.8 "bool geometry_thin_walled" true
+    "rgb transmission_color" [ 0.5 0.9 0.6 ] "float subsurface_weight" 0.5
+Shape "disk" "float radius" 0.6 "float height" 0.2
+"#;
+
+#[test]
+fn principled_surfaces_have_the_picture_of_the_cpu() {
+    let Some(kernels) = kernels() else { return };
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(Case::of_text(PRINCIPLED).compare("principled", &kernels, &path), None);
+}

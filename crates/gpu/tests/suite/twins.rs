@@ -47,8 +47,18 @@ fn inputs() -> Vec<[f32; INPUTS]> {
     (0..ROWS).map(row).collect()
 }
 
-/// The results of a law on the GPU.
-fn on_gpu(device: &Device, law: &Law, inputs: &[[f32; INPUTS]]) -> Result<Vec<[f32; OUTPUTS]>, GpuError> {
+/// What laws of principled surfaces read.
+const TABLES: &str = "@group(0) @binding(2) var<storage, read_write> tables: array<u32>;
+    fn number(at: u32) -> f32 { return bitcast<f32>(tables[at]); }
+    fn vector(at: u32) -> vec3f { return vec3f(number(at), number(at + 1), number(at + 2)); }";
+
+/// The results of a law on the GPU; those of principled surfaces have tables.
+fn on_gpu(
+    device: &Device,
+    law: &Law,
+    inputs: &[[f32; INPUTS]],
+    tables: Option<&[u32]>,
+) -> Result<Vec<[f32; OUTPUTS]>, GpuError> {
     let body = law.wgsl;
     let kernel = format!(
         "@group(0) @binding(0) var<storage, read_write> inputs: array<array<f32, {INPUTS}>>;
@@ -64,10 +74,18 @@ fn on_gpu(device: &Device, law: &Law, inputs: &[[f32; INPUTS]]) -> Result<Vec<[f
             outputs[id.x] = y;
         }}"
     );
-    let kernel = device.kernel(law.name, &shaders::with_laws(&[&kernel]))?;
+    let others = tables.map_or(String::new(), |_| format!("{TABLES}{}", shaders::principled()));
+    let kernel = device.kernel(law.name, &shaders::with_laws(&[&others, &kernel]))?;
     let given = device.buffer("inputs", inputs)?;
     let results = device.buffer("results", &vec![[0f32; OUTPUTS]; inputs.len()])?;
-    device.run(&kernel, &[&given, &results], [(ROWS / 64) as u32, 1, 1])?;
+    let groups = [(ROWS / 64) as u32, 1, 1];
+    match tables {
+        None => device.run(&kernel, &[&given, &results], groups)?,
+        Some(words) => {
+            let words = device.buffer("tables", words)?;
+            device.run(&kernel, &[&given, &results, &words], groups)?;
+        }
+    }
     device.read(&results)
 }
 
@@ -77,10 +95,15 @@ fn difference(a: f32, b: f32) -> f32 {
 }
 
 /// Compares all results of a law; what is wrong, if anything.
-fn compare(device: &Device, law: &Law, inputs: &[[f32; INPUTS]]) -> Result<(), String> {
+fn compare(
+    device: &Device,
+    law: &Law,
+    inputs: &[[f32; INPUTS]],
+    tables: Option<&[u32]>,
+) -> Result<(), String> {
     let mut largest = 0f32;
     let mut flips = Vec::new();
-    let results = on_gpu(device, law, inputs).map_err(|error| format!("{}: {error}", law.name))?;
+    let results = on_gpu(device, law, inputs, tables).map_err(|error| format!("{}: {error}", law.name))?;
     for (x, y) in inputs.iter().zip(results) {
         let mut expected = (law.rust)(x);
         expected.resize(OUTPUTS, 0.0);
@@ -109,11 +132,17 @@ fn compare(device: &Device, law: &Law, inputs: &[[f32; INPUTS]]) -> Result<(), S
     }
 }
 
-#[test]
-fn laws_agree_with_their_translations() {
+/// Compares some laws.
+pub fn agree(laws: &[Law], tables: Option<&[u32]>) {
     let Some(device) = crate::device() else { return };
     println!("{}", device.name());
     let inputs = inputs();
-    let wrong: Vec<String> = LAWS.iter().filter_map(|law| compare(&device, law, &inputs).err()).collect();
+    let wrong: Vec<String> =
+        laws.iter().filter_map(|law| compare(&device, law, &inputs, tables).err()).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn laws_agree_with_their_translations() {
+    agree(&LAWS, None);
 }

@@ -20,7 +20,7 @@ fn all_laws_are_valid() {
 #[test]
 fn shaders_have_all_laws() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/law");
-    let all = shaders::with_laws(&[]);
+    let all = shaders::with_laws(&[&shaders::principled()]);
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         assert!(all.contains(&std::fs::read_to_string(&path).unwrap()), "{}", path.display());
@@ -37,9 +37,10 @@ fn traversal_is_valid() {
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
-        for bits in 0..16 {
-            let [holes, images, noise, coats] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
-            let source = shaders::pixels(&algorithm, Parts { holes, images, noise, coats });
+        for bits in 0..32 {
+            let [holes, images, noise, coats, principled] = [1, 2, 4, 8, 16].map(|bit| bits & bit != 0);
+            let parts = Parts { holes, images, noise, coats, principled };
+            let source = shaders::pixels(&algorithm, parts);
             validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
         }
     }

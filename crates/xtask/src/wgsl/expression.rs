@@ -266,12 +266,12 @@ impl Body<'_, '_> {
             return values.get(index).cloned().ok_or("an index".into());
         }
         let (text, ty) = self.materialized(base)?;
-        let element = match self.translator.inside(&ty).unwrap_or(ty) {
-            Type::Array(element, _) => *element,
-            ty if ty.coordinates().is_some() => Type::Real,
+        let (element, count) = match self.translator.inside(&ty).unwrap_or(ty) {
+            Type::Array(element, count) => (*element, count),
+            ty if ty.coordinates().is_some() => (Type::Real, 3),
             ty => return Err(format!("an element of {ty:?}")),
         };
-        Ok(Value::Plain(part(&text, &element, bare(at)), element))
+        Ok(Value::Plain(part(&text, &element, count, bare(at)), element))
     }
 
     /// The parts of a tuple or array.
@@ -287,7 +287,7 @@ impl Body<'_, '_> {
                 let (text, ty) = self.materialized(value)?;
                 match self.translator.inside(&ty).unwrap_or(ty) {
                     Type::Array(ty, count) => {
-                        let part = |i: usize| part(&text, &ty, &i.to_string());
+                        let part = |i: usize| part(&text, &ty, count, &i.to_string());
                         Ok((0..count).map(|i| Value::Plain(part(i), (*ty).clone())).collect())
                     }
                     Type::Tuple(types) => {
@@ -435,9 +435,10 @@ impl Body<'_, '_> {
     }
 }
 
-/// An element of an array; the coordinates of vectors have names.
-fn part(array: &str, element: &Type, at: &str) -> String {
-    match ["x", "y", "z", "w"].iter().zip(0..).find(|(_, i)| *element == Type::Real && at == i.to_string()) {
+/// An element of an array of `count`; the coordinates of vectors have names.
+fn part(array: &str, element: &Type, count: usize, at: &str) -> String {
+    let is_vector = *element == Type::Real && count <= 4;
+    match ["x", "y", "z", "w"].iter().zip(0..).find(|(_, i)| is_vector && at == i.to_string()) {
         Some((coordinate, _)) => format!("{array}.{coordinate}"),
         None => format!("{array}[{at}]"),
     }

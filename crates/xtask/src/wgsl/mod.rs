@@ -145,6 +145,33 @@ const SOURCES: &[(&str, &[&str])] = &[
             "Layered<Conductor>::pdf",
         ],
     ),
+    ("crates/scattering/src/interior.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/parameters.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/film.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/stack.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/table.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/fuzz.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/mirror.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/oren_nayar.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/shares.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/chances.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/coat.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/facets.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/glass.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/thin.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/under.rs", &[]),
+    ("crates/scattering/src/bxdf/openpbr/value.rs", &[]),
+    (
+        "crates/scattering/src/bxdf/openpbr/mod.rs",
+        &[
+            "OpenPbr::new",
+            "OpenPbr::flags",
+            "OpenPbr::f",
+            "OpenPbr::sample_f",
+            "OpenPbr::pdf",
+            "OpenPbr::regularize",
+        ],
+    ),
     ("crates/geometry/src/shape/sample.rs", &["ShapeSampleContext::spawn_ray"]),
     ("crates/geometry/src/flat_shape.rs", &["FlatShape::sample_from", "FlatShape::pdf_from"]),
     ("crates/scene/src/light_sampler/cluster.rs", &["Cluster::importance"]),
@@ -163,10 +190,23 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/integrators/src/transport/direct.rs", &["power_heuristic"]),
 ];
 
-/// Functions that the prelude of the shaders has. Drivers simplify sums as if they were exact, so
-/// that rounding by adding and subtracting a large number is lost; tables are packed; loops are
-/// others in vectors.
-const BY_HAND: [&str; 4] = ["circular_reduce", "function_round", "noise_permuted", "ZSobol_point"];
+/// Functions that the shaders have by hand. Drivers simplify sums as if they were exact, so that
+/// rounding by adding and subtracting a large number is lost; tables are packed; loops are others
+/// in vectors.
+const BY_HAND: [&str; 9] = [
+    "circular_reduce",
+    "function_round",
+    "noise_permuted",
+    "OpenPbrTable_has_film",
+    "OpenPbrTable_inside",
+    "OpenPbrTable_locate",
+    "OpenPbrTable_means",
+    "OpenPbrTable_taken",
+    "ZSobol_point",
+];
+
+/// Types that are records among the tables of a scene, of which shaders have the offsets.
+const RECORDS: [&str; 1] = ["OpenPbrTable"];
 
 /// Where the translations are.
 pub const FOLDER: &str = "crates/gpu/shaders/law";

@@ -217,3 +217,9 @@ fn integers_have_limits() {
         &["return i32(min(n / 2 + u32(n % 2 != 0), u32(2147483647i)));"],
     );
 }
+
+#[test]
+fn arrays_longer_than_vectors_have_no_coordinates() {
+    assert_body("fn f<R: Real>(x: [R; 5]) -> R { x[0] + x[4] }", &["return x[0] + x[4];"]);
+    assert_body("fn f<R: Real>(x: [R; 4]) -> R { x[0] + x[3] }", &["return x.x + x.w;"]);
+}

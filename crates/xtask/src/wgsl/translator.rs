@@ -163,6 +163,7 @@ impl<'a> Translator<'a> {
                 self.aggregate(ty, fields.collect())?
             }
             Type::Named(name, _) if self.library.enumerations.contains_key(name) => "u32".into(),
+            Type::Named(name, _) if super::RECORDS.contains(&name.as_str()) => "u32".into(),
             Type::Named(name, _) if ty.coordinates().is_some() => name.to_lowercase() + "f",
             Type::Named(..) => match self.inside(ty) {
                 Some(inside) => self.spell(&inside)?,

@@ -33,7 +33,7 @@ pub(super) struct Chances<R = f32> {
 }
 
 /// A lobe that is chosen.
-pub(super) struct Choice<R: Real> {
+pub(super) struct ChosenLobe<R: Real> {
     pub lobe: R::Int,
     /// Its probability; zero if there is no lobe.
     pub chance: R,
@@ -46,7 +46,8 @@ impl<R: Real> Chances<R> {
     #[inline(always)]
     pub fn new(
         surface: &OpenPbr<R>,
-        (shares, rests): (&Shares<R>, &Rests<R>),
+        shares: &Shares<R>,
+        rests: &Rests<R>,
         wo: Vector3<R>,
         mode: TransportMode,
         directions: Directions,
@@ -136,8 +137,8 @@ impl<R: Real> Chances<R> {
 
     /// A lobe.
     #[inline(always)]
-    pub fn choose(&self, u: R) -> Choice<R> {
-        let mut choice = Choice { lobe: R::Int::splat(0), chance: R::zero(), u };
+    pub fn choose(&self, u: R) -> ChosenLobe<R> {
+        let mut choice = ChosenLobe { lobe: R::Int::splat(0), chance: R::zero(), u };
         let mut left = u;
         let mut is_found = R::Mask::splat(false);
         for (i, &chance) in self.of.iter().enumerate() {

@@ -53,7 +53,7 @@ pub use table::{OpenPbrTable, PlainOpenPbrTable};
 use super::{BsdfSample, Dielectric, Scatter};
 use crate::fresnel::mean_fresnel;
 use crate::{BxdfFlags, Directions, Interior, TransportMode, TrowbridgeReitz, reflect};
-use chances::{COAT, Chances, Choice, FACETS, FUZZ, GLASS, THROUGH, UNDER};
+use chances::{COAT, Chances, ChosenLobe, FACETS, FUZZ, GLASS, THROUGH, UNDER};
 use lanes::{Callee, Int, Mask, Real};
 use math::{Vec2, Vec3, Vector3, lerp, sqr};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere, sample_uniform_hemisphere};
@@ -408,7 +408,7 @@ impl<R: Real> Callee<R> for OpenPbrDensity<'_, '_, R> {
             return R::select(valid, cosine_hemisphere_pdf(wi.z), R::zero());
         }
         let (shares, rests) = (surface.shares(wo), surface.rests());
-        let chances = Chances::new(surface, (&shares, &rests), wo, mode, directions);
+        let chances = Chances::new(surface, &shares, &rests, wo, mode, directions);
         R::select(valid, chances.pdf(surface, wo, wi, directions), R::zero())
     }
 }
@@ -444,7 +444,7 @@ impl<R: Real> Callee<R> for OpenPbrSample<'_, '_, R> {
             return BsdfSample { valid, ..sample };
         }
         let (shares, rests) = (surface.shares(wo), surface.rests());
-        let chances = Chances::new(surface, (&shares, &rests), wo, mode, directions);
+        let chances = Chances::new(surface, &shares, &rests, wo, mode, directions);
         let choice = chances.choose(uc);
         let sample = surface.direction(wo, &choice, u, directions);
         valid = valid & choice.chance.gt(R::zero()) & sample.valid;
@@ -480,7 +480,7 @@ impl<R: Real> OpenPbr<'_, R> {
     fn direction(
         &self,
         wo: Vector3<R>,
-        choice: &Choice<R>,
+        choice: &ChosenLobe<R>,
         u: Vec2<R>,
         directions: Directions,
     ) -> BsdfSample<R> {

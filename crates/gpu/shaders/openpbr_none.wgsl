@@ -1,0 +1,30 @@
+// In place of principled surfaces in kernels of scenes that have none.
+
+const MOST_TEXTURES = 9u;
+
+struct OpenPbr {
+    unused: u32,
+}
+
+fn openpbr_at(at: u32, textures: array<vec4f, MOST_TEXTURES>, lambda: SampledWavelengths) -> OpenPbr {
+    return OpenPbr();
+}
+
+fn OpenPbr_flags(surface: OpenPbr) -> u32 {
+    return 0;
+}
+
+fn OpenPbr_f(surface: OpenPbr, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
+    return vec4f();
+}
+
+fn OpenPbr_pdf(surface: OpenPbr, wo: vec3f, wi: vec3f, mode: u32, directions: u32) -> f32 {
+    return 0;
+}
+
+fn OpenPbr_sample_f(surface: OpenPbr, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
+    return BsdfSample_invalid();
+}
+
+fn OpenPbr_regularize(surface: ptr<function, OpenPbr>, mask: bool) {
+}

@@ -1,0 +1,81 @@
+//! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
+//! numbers; for each colour the place of its texture, or [`WHITE`]; the values of all numbers; and
+//! for each that has a texture, in the order of the textures, which it is, and its range.
+//!
+//! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
+//! offsets of what is taken, of what is inside, and of means; then its axes: which number, how it
+//! is made one from 0 to 1, its nodes and its range.
+
+use description::{OpenPbrDesc, Span};
+use scattering::OpenPbrTable;
+use scene::material::{OpenPbrMaterial, PlainOpenPbr};
+
+use super::Flattener;
+
+/// In place of the texture of a colour that is not seen.
+const WHITE: u32 = u32::MAX;
+
+/// The number whose presence shows each colour, if there is one.
+const SHOWN_BY: [Option<&str>; OpenPbrDesc::COLORS.len()] = [
+    None,
+    None,
+    Some("transmission_weight"),
+    Some("subsurface_weight"),
+    Some("coat_weight"),
+    Some("fuzz_weight"),
+];
+
+impl Flattener<'_> {
+    /// The offset of a surface's record, and its textures.
+    pub(super) fn principled(&mut self, surface: &OpenPbrMaterial, span: Span) -> (u32, Vec<u32>) {
+        self.parts.principled = true;
+        let textures = self.scene.textures();
+        let refused = [
+            (surface.may_be_a_body(textures), "light under the surface of `openpbr`"),
+            (surface.has_coat_normals(), "coats of `openpbr` with normals of their own"),
+            (surface.may_disperse(textures), "dispersion by `openpbr`"),
+        ];
+        for (_, what) in refused.into_iter().filter(|(is, _)| *is) {
+            self.refuse(what, span);
+        }
+        let PlainOpenPbr { constants, varying, colors, is_thin, table } = surface.plain();
+        let position = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+        let is_seen = |name: &str| {
+            let Some(number) = position(name) else { return true };
+            constants[number] > 0.0 || varying.iter().any(|(varies, _)| *varies == number)
+        };
+        let mut used: Vec<u32> = varying.iter().map(|(_, id)| self.number_texture(*id, span)).collect();
+        let mut words = vec![is_thin.into(), self.openpbr_table(table), varying.len() as u32];
+        for (color, shown_by) in colors.iter().zip(SHOWN_BY) {
+            let is_seen = shown_by.is_none_or(is_seen);
+            words.push(if is_seen { used.len() as u32 } else { WHITE });
+            if is_seen {
+                used.push(self.spectrum_texture(*color, span));
+            }
+        }
+        words.extend(constants.map(f32::to_bits));
+        for (number, _) in varying {
+            let [least, most] = OpenPbrDesc::NUMBERS[number].range;
+            words.extend([number as u32, least.to_bits(), most.to_bits()]);
+        }
+        (self.slab.add(words), used)
+    }
+
+    fn openpbr_table(&mut self, table: &OpenPbrTable) -> u32 {
+        let words = openpbr_table(table, |numbers| self.slab.add_numbers(numbers.iter().copied()));
+        self.slab.add(words)
+    }
+}
+
+/// The record of a table, of which `add` adds the rows and gives their offset.
+pub fn openpbr_table(table: &OpenPbrTable, mut add: impl FnMut(&[f32]) -> u32) -> Vec<u32> {
+    let table = table.plain();
+    let [least, most] = table.waves.map(f32::to_bits);
+    let rows = [table.taken, table.inside, table.means].map(&mut add);
+    let mut words = vec![table.axes.len() as u32, table.azimuths, table.films, least, most];
+    words.extend(rows);
+    for (number, scale, nodes, range) in table.axes {
+        words.extend([number, scale, nodes, range[0].to_bits(), range[1].to_bits()]);
+    }
+    words
+}
