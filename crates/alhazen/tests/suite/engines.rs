@@ -159,9 +159,40 @@ AttributeBegin
 AttributeEnd
 "#;
 
+/// Principled surfaces of all kinds, some with numbers that vary, on shapes in lanes and others.
+const PRINCIPLED: &str = r#"
+Option "disabletexturefiltering" true
+LookAt 0 1.5 5 0 0.8 0 0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb"
+WorldBegin
+LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.6 ]
+Texture "tiles" "float" "checkerboard" "float uscale" 5 "float vscale" 5 "float tex1" 0.2 "float tex2" 0.8
+Texture "here" "float" "checkerboard" "float uscale" 3 "float vscale" 3 "float tex1" 0 "float tex2" 1
+Material "openpbr" "texture specular_roughness" "tiles" "texture base_metalness" "here"
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+Material "openpbr" "texture coat_weight" "here" "rgb coat_color" [ 0.9 0.5 0.4 ] "texture fuzz_weight" "tiles"
+    "float specular_roughness_anisotropy" 0.5
+Shape "bilinearmesh" "point3 P" [ -2 0 -1.5  0 0 -1.5  -2 2 -1.5  0 2 -1.5 ]
+Material "openpbr" "texture thin_film_weight" "here" "texture transmission_weight" "tiles"
+    "float specular_roughness" 0.4 "float transmission_dispersion_scale" 1
+Shape "bilinearmesh" "point3 P" [ 0 0 -2  2 0 -2  0 2 -2  2 2 -2 ]
+Translate -1 0.5 0.5
+Shape "sphere" "float radius" 0.5
+Material "openpbr" "float transmission_weight" 0.5 "bool geometry_thin_walled" true "float subsurface_weight" 0.5
+Translate 1 0 0
+Shape "sphere" "float radius" 0.4
+Material "openpbr" "float subsurface_weight" 1 "float subsurface_radius" 0.1
+Translate 1 0 0
+Shape "sphere" "float radius" 0.4
+"#;
+
 /// The scenes of the folder and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
-    let texts = [(LIGHTS, "lights"), (SURFACES, "surfaces"), (MEDIA, "media")].map(|(text, name)| {
+    let texts =
+        [(LIGHTS, "lights"), (SURFACES, "surfaces"), (MEDIA, "media"), (PRINCIPLED, "principled surfaces")];
+    let texts = texts.map(|(text, name)| {
         let (path, assets) = scene_text(text);
         (small(path, &assets), name.to_string())
     });

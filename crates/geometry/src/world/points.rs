@@ -8,12 +8,14 @@
 use super::World;
 use super::columns::{HitColumns, RayColumns};
 use super::geometry::{Geometry, GeometryId};
+use super::hit::Hit;
 use super::sphere_points::{SphereHits, select};
 use crate::patch::{Patch, PatchLanes, PatchPoints};
 use crate::shape::{Shape, Triangle, TriangleMesh};
+use crate::surface::SurfacePoint;
 use crate::triples::{triples, vector};
 use lanes::{Each, Int, MAX_LANES, Mask, Real, Simd, Task};
-use math::{Point3Error, Vec2, Vec3, Vector3};
+use math::{Point3Error, Ray, Vec2, Vec3, Vector3};
 
 /// Surface points in columns.
 #[derive(Clone, Debug, Default)]
@@ -72,17 +74,53 @@ impl PointColumns {
         uv.y.store(&mut self.values[next + 1][first..]);
         R::Int::select(found, R::Int::splat(1), R::Int::splat(0)).store(&mut self.found[first..]);
     }
+
+    /// Sets one point.
+    fn set_one(&mut self, place: usize, point: &SurfacePoint) {
+        let SurfacePoint { p, n, shading, dpdu, dpdv, uv, .. } = point;
+        let mut columns = self.values.iter_mut();
+        for v in [p.p, p.error, *n, shading.n, *dpdu, *dpdv] {
+            for (x, column) in v.to_array().into_iter().zip(&mut columns) {
+                column[place] = x;
+            }
+        }
+        for (x, column) in [uv.x, uv.y].into_iter().zip(columns) {
+            column[place] = x;
+        }
+        self.found[place] = 1;
+    }
 }
 
 impl World {
-    /// The surface points of the hits of rays at some places of a batch. Points of instances, of
-    /// triangles with shading tangents, of spheres so small or far away that floats do not do, and
-    /// of shapes other than triangles, spheres of sets and bilinear patches without attributes are
-    /// left out.
+    /// The surface points of the hits of rays at some places of a batch. Those of instances, of
+    /// spheres so small or far away that floats do not do, and of shapes other than triangles,
+    /// spheres of sets and bilinear patches without attributes are computed one by one. Points
+    /// whose shading has tangents of its own are left out.
     pub fn points(&self, rays: RayColumns, hits: &HitColumns, places: &[u32], points: &mut PointColumns) {
         points.reset(places.len());
         // SAFETY: the processor has the instruction set of a world.
-        unsafe { self.tables.instruction_set.run(Points { world: self, rays, hits, places, points }) }
+        unsafe {
+            self.tables.instruction_set.run(Points { world: self, rays, hits, places, points: &mut *points });
+        }
+        for (i, &place) in places.iter().enumerate() {
+            if points.found[i] == 0
+                && let Some(hit) = hits.get(place as usize)
+                && let Some(point) = self.point_in_columns(&rays.ray(place as usize), &hit)
+            {
+                points.set_one(i, &point);
+            }
+        }
+    }
+
+    /// The point of a hit, if its shading has no tangents of its own.
+    fn point_in_columns(&self, ray: &Ray, hit: &Hit) -> Option<SurfacePoint> {
+        let is_plain = match self.geometry(hit.geometry) {
+            Geometry::Mesh(mesh) if mesh.has_tangents() => return None,
+            Geometry::Mesh(_) => true,
+            _ => false,
+        };
+        let point = self.surface(ray, hit);
+        (is_plain || point.shading.dpdu == point.dpdu).then_some(point)
     }
 }
 

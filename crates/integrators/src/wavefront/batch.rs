@@ -200,11 +200,8 @@ impl<'a> Batch<'a> {
                     self.dispatch(algorithm, (id, material), turns, rows);
                 }
                 Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
-                Material::Hair(_)
-                | Material::Measured(_)
-                | Material::Subsurface(_)
-                | Material::Mix(_)
-                | Material::Interface => {
+                Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Measured(_) | Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
             }

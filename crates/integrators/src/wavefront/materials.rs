@@ -49,16 +49,15 @@ impl LaneMaterials {
                 | Material::Dielectric(_)
                 | Material::ThinDielectric(_)
                 | Material::CoatedDiffuse(_)
-                | Material::CoatedConductor(_) => (true, false),
+                | Material::CoatedConductor(_)
+                | Material::Hair(_) => (true, false),
                 Material::OpenPbr(surface) => {
                     (!(surface.may_be_a_body(textures) || surface.has_coat_normals()), false)
                 }
-                // Curves, which hair is on, are not in lanes; nor are lookups in large tables.
-                Material::Hair(_)
-                | Material::Measured(_)
-                | Material::Subsurface(_)
-                | Material::Mix(_)
-                | Material::Interface => (false, false),
+                // Lookups in large tables are not in lanes.
+                Material::Measured(_) | Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
+                    (false, false)
+                }
             };
             let may_be_specular = entry.material.may_be_specular(textures);
             let shading = match (is_plain && is_in_lanes, with_footprints && !is_constant) {
