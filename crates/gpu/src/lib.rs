@@ -1,14 +1,16 @@
 //! The engine that renders scenes on GPUs, by wgpu.
 //!
 //! [`flatten`] makes buffers of a scene, or says what kernels do not draw; a [`Renderer`] adds
-//! samples of its pixels to a film. [`Device`] is the GPU, [`Bvh`] what rays are traced through
+//! samples of its pixels to a film, a [`Realtime`] makes pictures at once. [`Device`] is the GPU, [`Bvh`] what rays are traced through
 //! there. [`shaders`] has the sources of what runs there: *laws*, which are physics and are
 //! translated from Rust, and *plumbing*, which is written in WGSL.
 
 mod algorithm;
 mod bvh;
+mod commands;
 mod device;
 mod flatten;
+mod realtime;
 mod renderer;
 pub mod shaders;
 
@@ -16,4 +18,5 @@ pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
 pub use flatten::{Flat, Refusal, Subject, flatten};
+pub use realtime::{AimError, Picture, Realtime, Stages};
 pub use renderer::{Kernels, PassError, Renderer};

@@ -30,10 +30,13 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 14] = plumbing! {
+const PLUMBING: [&str; 13] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "lights" "light_choices" "cameras" "pixels"
+    "lights" "light_choices" "cameras"
 };
+
+/// What kernels of real-time frames share.
+const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 
 /// A shader: the laws, and what uses them.
 pub fn with_laws(parts: &[&str]) -> String {
@@ -56,16 +59,36 @@ pub struct Parts {
 
 /// The kernel that renders a sample of each pixel by an algorithm.
 pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
-    let rays = match algorithm {
+    traced(parts, &[radiance(algorithm), include_str!("../shaders/pixels.wgsl")])
+}
+
+/// The kernel that finds the light of a real-time frame by an algorithm.
+pub fn light(algorithm: &Algorithm, parts: Parts) -> String {
+    let sensor = include_str!("../shaders/sensor.wgsl");
+    traced(parts, &[radiance(algorithm), FRAME, sensor, include_str!("../shaders/realtime/light.wgsl")])
+}
+
+/// The kernel that makes a picture of the light of a real-time frame.
+pub fn develop() -> String {
+    [FRAME, include_str!("../shaders/realtime/develop.wgsl")].concat()
+}
+
+/// The function `radiance` of an algorithm.
+fn radiance(algorithm: &Algorithm) -> &'static str {
+    match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
-    };
+    }
+}
+
+/// A kernel that traces rays through a scene.
+fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
     let Parts { holes, images, noise, coats } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_COATS = {coats};\n"
     );
-    with_laws(&[&PLUMBING[..], &[direct, rays, &has]].concat())
+    with_laws(&[&PLUMBING[..], &[direct, &has], texts].concat())
 }

@@ -7,7 +7,7 @@
 //! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene
 //! is then drawn by the CPU.
 
-mod cameras;
+pub(crate) mod cameras;
 mod distributions;
 mod filters;
 mod geometries;
@@ -16,6 +16,7 @@ mod light_choices;
 mod lights;
 mod materials;
 mod samplers;
+mod sensors;
 mod slab;
 mod spectra;
 mod textures;
@@ -98,8 +99,8 @@ pub(crate) struct Head {
     pub(crate) cos_sample: u32,
     /// Whether anything depends on the size of a pixel on surfaces.
     pub(crate) has_footprints: u32,
-    /// Fills up the words.
-    pub(crate) unused: u32,
+    /// The offset of the sensor.
+    pub(crate) sensor: u32,
 }
 
 impl Flat {
@@ -154,6 +155,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.random_numbers = flattener.sampler(sampler);
     head.camera = flattener.camera(view);
     head.filter = flattener.filter(film.filter());
+    head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();
     head.materials = flattener.materials();
     (head.lights, head.infinite) = flattener.lights();

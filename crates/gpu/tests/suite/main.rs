@@ -6,6 +6,7 @@
 mod faults;
 mod laws;
 mod pictures;
+mod realtime;
 mod textures;
 mod trace;
 mod twins;

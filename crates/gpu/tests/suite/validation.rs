@@ -39,9 +39,18 @@ fn kernels_are_valid() {
     for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
         for bits in 0..16 {
             let [holes, images, noise, coats] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
-            let source = shaders::pixels(&algorithm, Parts { holes, images, noise, coats });
-            validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+            let parts = Parts { holes, images, noise, coats };
+            for source in [shaders::pixels(&algorithm, parts), shaders::light(&algorithm, parts)] {
+                validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+            }
         }
+    }
+}
+
+#[test]
+fn kernels_of_frames_are_valid() {
+    for source in [shaders::develop()] {
+        validate(&source).unwrap_or_else(|error| panic!("{error}"));
     }
 }
 

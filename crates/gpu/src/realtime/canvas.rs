@@ -1,0 +1,43 @@
+//! The buffers of a picture of some size.
+
+use math::Bounds2i;
+
+use super::frame::Frame;
+use crate::commands::Timer;
+use crate::device::{Buffer, Device, GpuError};
+
+/// Bytes of the head of a film, and of its pixels: `Film` of `shaders/realtime/frame.wgsl`.
+const HEAD: u64 = 16;
+const LIGHT: u64 = 32;
+
+/// The buffers of a picture.
+pub struct Canvas {
+    /// The pixels of the film.
+    pub pixels: Bounds2i,
+    /// The light of the pixels.
+    pub film: Buffer,
+    /// The number of rays, and the colours that are shown.
+    pub shown: Buffer,
+    /// What reads them back.
+    pub timer: Timer,
+}
+
+impl Canvas {
+    /// For these pixels of the film.
+    pub fn new(device: &Device, pixels: Bounds2i) -> Result<Self, GpuError> {
+        let count = pixels.area() as u64;
+        let shown = 4 + 12 * count;
+        Ok(Self {
+            pixels,
+            film: device.zeros("pixels", HEAD + LIGHT * count)?,
+            shown: device.zeros("colours", shown)?,
+            timer: Timer::new(device, shown)?,
+        })
+    }
+
+    /// A frame of it.
+    pub fn frame(&self) -> Frame {
+        let low = self.pixels.min.map(|x| x as u32);
+        Frame { low, size: [self.pixels.width() as u32, self.pixels.height() as u32], ..Frame::default() }
+    }
+}
