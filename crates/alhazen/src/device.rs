@@ -7,7 +7,7 @@ use description::schema::Settings;
 use description::{Diagnostic, IntegratorDesc, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
-use gpu::{Algorithm, Renderer, Subject, flatten};
+use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
 use integrators::{Cancelled, Control, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
@@ -28,7 +28,31 @@ pub(crate) fn integrator(
     session: &Session,
     kernels: &Arc<Kernels>,
 ) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
-    let (scene, view, film) = (&**session.scene(), session.view(), &session.state().film);
+    let film = &session.state().film;
+    let Flattened { flat, algorithm, sampler } =
+        flattened(desc, session.scene(), session.view(), film, kernels)?;
+    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
+        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
+        Err(error) => Err(vec![failed(&error)]),
+    }
+}
+
+/// A scene for a device, and how it is rendered there.
+pub(crate) struct Flattened {
+    pub(crate) flat: Flat,
+    pub(crate) algorithm: Algorithm,
+    pub(crate) sampler: Sampler,
+}
+
+/// A scene, by the algorithm and the sampler that `desc` describes. The error says what kernels do
+/// not draw.
+pub(crate) fn flattened(
+    desc: &SceneDesc,
+    scene: &Scene,
+    view: &View,
+    film: &Film,
+    kernels: &Kernels,
+) -> Result<Flattened, Vec<Diagnostic>> {
     let algorithm = match desc.integrator.value.clone() {
         IntegratorDesc::RayCasting => Some(Algorithm::RayCasting),
         IntegratorDesc::AmbientOcclusion(settings) => {
@@ -55,10 +79,12 @@ pub(crate) fn integrator(
     let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler, largest_buffer };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
-    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
-        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
-        Err(error) => Err(vec![Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE)]),
-    }
+    Ok(Flattened { flat, algorithm, sampler })
+}
+
+/// What is said where the device fails.
+pub(crate) fn failed(error: &GpuError) -> Diagnostic {
+    Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE)
 }
 
 impl Integrator for OnDevice {

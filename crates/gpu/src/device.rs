@@ -10,8 +10,7 @@ use wgpu::util::DeviceExt;
 use wgpu::{BufferUsages, DeviceType, Limits};
 
 /// What buffers are used for.
-const USAGE: BufferUsages =
-    BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
+const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
 
 /// Why the GPU cannot do what was asked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -148,7 +147,8 @@ impl Device {
         // Bindings are not empty.
         let bytes: &[u8] = if contents.is_empty() { &[0; 16] } else { bytemuck::cast_slice(contents) };
         self.fits(name, bytes.len() as u64)?;
-        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage: USAGE };
+        let descriptor =
+            wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage: USAGE };
         let buffer = self.device.create_buffer_init(&descriptor);
         self.checked(Buffer(buffer))
     }
@@ -169,8 +169,7 @@ impl Device {
 
     /// A buffer for this usage.
     pub(crate) fn empty(&self, name: &'static str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
-        let descriptor =
-            wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
+        let descriptor = wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
         self.device.create_buffer(&descriptor)
     }
 

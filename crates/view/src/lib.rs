@@ -15,6 +15,8 @@ mod frame;
 mod headless;
 pub mod knobs;
 pub mod lines;
+#[cfg(feature = "gpu")]
+mod on_device;
 mod pace;
 pub mod planet;
 mod renderer;
@@ -25,7 +27,7 @@ mod world;
 pub use darkroom::{develop, layers};
 pub use engine::{Engine, Output};
 pub use flight::{Flight, Mode};
-pub use frame::Frame;
+pub use frame::{Frame, Stages};
 pub use headless::Report;
 pub use pace::Pace;
 pub use renderer::{Renderer, StepError};

@@ -20,7 +20,7 @@ fn engine(world: World) -> (Engine, Receiver<()>) {
         // Nobody listens once the test is over.
         let _ = sender.send(());
     };
-    (Engine::start(world, TARGET, tell), receiver)
+    (Engine::start(Renderer::new(Arc::new(world), TARGET), tell), receiver)
 }
 
 /// Waits until the output is as expected.
