@@ -68,9 +68,26 @@ pub fn light(algorithm: &Algorithm, parts: Parts) -> String {
     traced(parts, &[radiance(algorithm), FRAME, sensor, include_str!("../shaders/realtime/light.wgsl")])
 }
 
-/// The kernel that makes a picture of the light of a real-time frame.
-pub fn develop() -> String {
-    [FRAME, include_str!("../shaders/realtime/develop.wgsl")].concat()
+/// The kernel that finds what is seen in a real-time frame by an algorithm.
+pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
+    // Of ambient occlusion light does not depend on the reflectance.
+    let is_reflected = match algorithm {
+        Algorithm::RayCasting | Algorithm::Path(_) => "const IS_REFLECTED = true;\n",
+        Algorithm::AmbientOcclusion(..) => "const IS_REFLECTED = false;\n",
+    };
+    traced(parts, &[is_reflected, FRAME, include_str!("../shaders/realtime/surfaces.wgsl")])
+}
+
+/// The kernels that make a picture of the light of a real-time frame, in the order in which they
+/// run: they reproject the frames before, find variances, filter, and develop.
+pub fn filters() -> [String; 4] {
+    let texts = [
+        include_str!("../shaders/realtime/temporal.wgsl"),
+        include_str!("../shaders/realtime/variance.wgsl"),
+        include_str!("../shaders/realtime/wavelet.wgsl"),
+        include_str!("../shaders/realtime/develop.wgsl"),
+    ];
+    texts.map(|text| [FRAME, text].concat())
 }
 
 /// The function `radiance` of an algorithm.

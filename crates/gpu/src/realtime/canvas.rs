@@ -6,9 +6,13 @@ use super::frame::Frame;
 use crate::commands::Timer;
 use crate::device::{Buffer, Device, GpuError};
 
-/// Bytes of the head of a film, and of its pixels: `Film` of `shaders/realtime/frame.wgsl`.
+/// Bytes of the head of a film, and of what there is for a pixel: the structures of
+/// `shaders/realtime/frame.wgsl`.
 const HEAD: u64 = 16;
-const LIGHT: u64 = 32;
+const LIGHT: u64 = 48;
+const SEEN: u64 = 48;
+const HISTORY: u64 = 32;
+const ESTIMATE: u64 = 16;
 
 /// The buffers of a picture.
 pub struct Canvas {
@@ -16,6 +20,11 @@ pub struct Canvas {
     pub pixels: Bounds2i,
     /// The light of the pixels.
     pub film: Buffer,
+    /// What is seen there, and what is known of it: of this frame and of the one before.
+    pub seen: Buffer,
+    pub history: Buffer,
+    /// What is filtered, and what that gives, in turns.
+    pub estimates: [Buffer; 2],
     /// The number of rays, and the colours that are shown.
     pub shown: Buffer,
     /// What reads them back.
@@ -30,6 +39,12 @@ impl Canvas {
         Ok(Self {
             pixels,
             film: device.zeros("pixels", HEAD + LIGHT * count)?,
+            seen: device.zeros("points that are seen", 2 * SEEN * count)?,
+            history: device.zeros("earlier frames", 2 * HISTORY * count)?,
+            estimates: [
+                device.zeros("estimates", ESTIMATE * count)?,
+                device.zeros("estimates", ESTIMATE * count)?,
+            ],
             shown: device.zeros("colours", shown)?,
             timer: Timer::new(device, shown)?,
         })

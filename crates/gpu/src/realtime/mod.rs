@@ -1,5 +1,13 @@
-//! Pictures at once: while the camera moves, a few samples of each pixel; when it rests, more and
-//! more of them, which are added up on the device. Only the picture that is shown is read back.
+//! Pictures at once. Only those that are shown are read back from the device.
+//!
+//! While the camera moves, a frame has a few samples of each pixel. They are averaged with those of
+//! the frames before, where these saw the same surface, and filtered by an edge-avoiding wavelet
+//! transform whose edges of light are as hard as the variance of the pixels allows: spatiotemporal
+//! variance-guided filtering [Schied 2017]. What is filtered is light divided by the reflectance of
+//! what is seen, so that textures stay sharp.
+//!
+//! When the camera rests, samples are added up, and the picture goes over from the filtered one to
+//! their mean.
 
 mod canvas;
 mod frame;
@@ -19,7 +27,7 @@ use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
 use canvas::Canvas;
-use frame::Frame;
+use frame::{Eye, Frame, Level};
 
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
@@ -28,14 +36,23 @@ const WORKGROUP: u32 = 8;
 const TRACE: usize = 0;
 const FILTER: usize = 1;
 
+/// The levels of the wavelet transform.
+const LEVELS: u32 = 5;
+
+/// As many samples as a filtered picture is worth, and after so many at rest it counts no more.
+const WORTH: f32 = 8.0;
+const TRANSITION: f32 = 64.0;
+
 /// The kinds of random numbers of a frame in motion, which do not repeat themselves.
 const INDEPENDENT: u32 = 0;
 
 /// A scene on a device, of which pictures are made at once.
 pub struct Realtime {
     kernels: Arc<Kernels>,
+    surfaces: Arc<Kernel>,
     light: Arc<Kernel>,
-    develop: Arc<Kernel>,
+    filters: [Arc<Kernel>; 4],
+    levels: Vec<Buffer>,
     head: Head,
     /// Where the random numbers of frames in motion are among the tables.
     restless: u32,
@@ -43,6 +60,11 @@ pub struct Realtime {
     scene: [Buffer; 6],
     parameters: Buffer,
     canvas: Option<Canvas>,
+    /// The camera now, and that of the last frame in motion, if it is of this canvas.
+    eye: Eye,
+    last: Option<Eye>,
+    /// The half of the buffers that the last frame in motion has.
+    half: u32,
     /// The samples of each pixel since the camera rests, and of frames in motion.
     rested: u32,
     moved: u32,
@@ -100,10 +122,33 @@ impl Realtime {
         ];
         let parameters = device.parameters(&Frame::default())?;
         let light = kernels.get("light", shaders::light(algorithm, flat.parts))?;
-        let develop = kernels.get("develop", shaders::develop())?;
-        let head = flat.head;
-        let (canvas, rested, moved) = (None, 0, 0);
-        Ok(Self { kernels, light, develop, head, restless, scene, parameters, canvas, rested, moved })
+        let surfaces = kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts))?;
+        let [temporal, variance, wavelet, develop] = shaders::filters();
+        let filters = [
+            kernels.get("temporal", temporal)?,
+            kernels.get("variance", variance)?,
+            kernels.get("wavelet", wavelet)?,
+            kernels.get("develop", develop)?,
+        ];
+        let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
+        let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
+        Ok(Self {
+            surfaces,
+            light,
+            filters,
+            levels,
+            head: flat.head,
+            restless,
+            scene,
+            parameters,
+            canvas: None,
+            eye: Eye::default(),
+            last: None,
+            half: 0,
+            rested: 0,
+            moved: 0,
+            kernels,
+        })
     }
 
     /// The device.
@@ -119,7 +164,9 @@ impl Realtime {
         device.write_at(&self.scene[4], at, &camera)?;
         if self.canvas.as_ref().is_none_or(|canvas| canvas.pixels != pixels) {
             self.canvas = Some(Canvas::new(device, pixels)?);
+            self.last = None;
         }
+        self.eye = Eye::new(view);
         self.rested = 0;
         Ok(())
     }
@@ -134,42 +181,94 @@ impl Realtime {
     pub fn moving(&mut self, samples: u32) -> Result<Option<Picture>, GpuError> {
         let Some(canvas) = &self.canvas else { return Ok(None) };
         let head = Head { random_numbers: self.restless, is_centered: 1, ..self.head };
-        let frame = Frame { index: self.moved, samples, ..canvas.frame() };
+        self.half = 1 - self.half;
+        let frame = Frame {
+            index: self.moved,
+            samples,
+            half: self.half,
+            has_history: self.last.is_some().into(),
+            is_moving: 1,
+            eye: self.last.unwrap_or_default(),
+            ..canvas.frame()
+        };
+        let groups = groups(&frame);
+        let mut commands = self.begin(canvas, head, frame)?;
+        let [world, nodes, triangles, items, tables, texels] = &self.scene;
+        let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
+        let parameters = &self.parameters;
+        let [temporal, variance, wavelet, _] = &self.filters;
+        let looked = [world, nodes, triangles, items, tables, parameters, seen, texels];
+        commands.run(TRACE, &self.surfaces, &looked, groups);
+        self.trace(&mut commands, canvas, groups);
+        commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
+        commands.run(FILTER, variance, &[parameters, seen, history, even], groups);
+        let (mut from, mut to) = (even, odd);
+        for level in &self.levels {
+            commands.run(FILTER, wavelet, &[parameters, seen, history, from, to, level], groups);
+            (from, to) = (to, from);
+        }
+        let picture = self.develop(commands, canvas, from, groups)?;
         self.moved = self.moved.wrapping_add(samples);
         self.rested = 0;
-        self.draw(head, frame, true)
+        self.last = Some(self.eye);
+        Ok(Some(picture))
     }
 
     /// Adds samples to the picture of a camera that rests: those that the whole picture has, one
     /// after another. A picture if it is wanted.
     pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
         let Some(canvas) = &self.canvas else { return Ok(None) };
-        let frame = Frame { index: self.rested, before: self.rested, samples, ..canvas.frame() };
+        let before = self.rested;
         self.rested += samples;
-        self.draw(self.head, frame, is_shown)
-    }
-
-    fn draw(&self, head: Head, frame: Frame, is_shown: bool) -> Result<Option<Picture>, GpuError> {
-        let Some(canvas) = &self.canvas else { return Ok(None) };
-        let device = self.kernels.device();
-        let [world, nodes, triangles, items, tables, texels] = &self.scene;
-        device.write(world, &[head])?;
-        device.write(&self.parameters, &[frame])?;
-        let groups = frame.size.map(|side| side.div_ceil(WORKGROUP));
-        let mut commands = Commands::new(device, &canvas.timer, 2);
-        let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
-        commands.run(TRACE, &self.light, &traced, groups);
+        // There is no filtered picture of this camera without a frame in motion from there.
+        let worth = if self.last == Some(self.eye) { WORTH } else { 0.0 };
+        let prior = worth * (1.0 - self.rested as f32 / TRANSITION).max(0.0);
+        let frame = Frame { index: before, before, samples, half: self.half, prior, ..canvas.frame() };
+        let groups = groups(&frame);
+        let mut commands = self.begin(canvas, self.head, frame)?;
+        self.trace(&mut commands, canvas, groups);
         if !is_shown {
             return commands.finish().map(|()| None);
         }
-        let developed = [&self.parameters, &canvas.film, &canvas.shown];
-        commands.run(FILTER, &self.develop, &developed, groups);
+        self.develop(commands, canvas, &canvas.estimates[0], groups).map(Some)
+    }
+
+    fn begin<'a>(&'a self, canvas: &'a Canvas, head: Head, frame: Frame) -> Result<Commands<'a>, GpuError> {
+        let device = self.kernels.device();
+        device.write(&self.scene[0], &[head])?;
+        device.write(&self.parameters, &[frame])?;
+        Ok(Commands::new(device, &canvas.timer, 2))
+    }
+
+    /// Finds the light of the frame.
+    fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2]) {
+        let [world, nodes, triangles, items, tables, texels] = &self.scene;
+        let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
+        commands.run(TRACE, &self.light, &traced, groups);
+    }
+
+    /// Makes the picture, and waits for it.
+    fn develop(
+        &self,
+        mut commands: Commands,
+        canvas: &Canvas,
+        smooth: &Buffer,
+        groups: [u32; 2],
+    ) -> Result<Picture, GpuError> {
+        let [.., develop] = &self.filters;
+        let developed = [&self.parameters, &canvas.film, &canvas.shown, &canvas.seen, smooth];
+        commands.run(FILTER, develop, &developed, groups);
         let (words, times) = commands.read::<u32>(&canvas.shown)?;
         let (rays, colors) = words.split_at(1);
-        Ok(Some(Picture {
+        Ok(Picture {
             pixels: colors.as_chunks().0.iter().map(|color| color.map(f32::from_bits)).collect(),
             rays: rays.iter().map(|&rays| u64::from(rays)).sum(),
             stages: Stages { trace: times[TRACE], filter: times[FILTER] },
-        }))
+        })
     }
+}
+
+/// The workgroups of a frame.
+fn groups(frame: &Frame) -> [u32; 2] {
+    frame.size.map(|side| side.div_ceil(WORKGROUP))
 }

@@ -40,7 +40,8 @@ fn kernels_are_valid() {
         for bits in 0..16 {
             let [holes, images, noise, coats] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
             let parts = Parts { holes, images, noise, coats };
-            for source in [shaders::pixels(&algorithm, parts), shaders::light(&algorithm, parts)] {
+            let make = [shaders::pixels, shaders::light, shaders::surfaces];
+            for source in make.map(|make| make(&algorithm, parts)) {
                 validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
             }
         }
@@ -49,7 +50,7 @@ fn kernels_are_valid() {
 
 #[test]
 fn kernels_of_frames_are_valid() {
-    for source in [shaders::develop()] {
+    for source in shaders::filters() {
         validate(&source).unwrap_or_else(|error| panic!("{error}"));
     }
 }
