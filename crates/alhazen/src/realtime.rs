@@ -12,7 +12,7 @@ use spectrum::RgbColorSpace;
 use crate::device::{Flattened, Kernels, failed, flattened};
 use crate::sketch::coarse;
 
-pub use gpu::{GpuError, Picture, Stages};
+pub use gpu::{GpuError, Picture, Stages, Weights};
 
 /// A scene on a device.
 pub struct Realtime {
@@ -33,17 +33,20 @@ pub struct Aim {
 
 impl Realtime {
     /// Takes a compiled scene to a device, with the algorithm, film and sampler of a description,
-    /// whose geometry does not count. The error says what kernels do not draw.
+    /// whose geometry does not count. With `shared`, pixels and frames share samples of direct
+    /// light. The error says what kernels do not draw.
     pub fn new(
         scene: &Arc<Scene>,
         desc: &SceneDesc,
         kernels: &Arc<Kernels>,
+        shared: Option<Weights>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
-        let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
-        let engine =
-            gpu::Realtime::new(kernels.clone(), &flat, &algorithm).map_err(|error| vec![failed(&error)])?;
+        let Flattened { flat, algorithm, sampler } =
+            flattened(desc, scene, &view, &film, kernels, shared.is_some())?;
+        let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)
+            .map_err(|error| vec![failed(&error)])?;
         Ok(Self {
             scene: scene.clone(),
             engine,

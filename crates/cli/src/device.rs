@@ -5,6 +5,7 @@ use std::sync::Arc;
 use alhazen::Job;
 use alhazen::description::{Diagnostic, Span};
 use alhazen::device::{Device, Kernels};
+use alhazen::realtime::Weights;
 use clap::ValueEnum;
 
 /// What renders.
@@ -17,6 +18,24 @@ pub enum DeviceChoice {
     Gpu,
     /// The graphics processor if it draws the scene, and is none in software.
     Auto,
+}
+
+/// How samples of direct light count that pixels and frames share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Restir {
+    /// So that the picture is right in the mean.
+    Unbiased,
+    /// By their number alone.
+    Biased,
+}
+
+impl From<Restir> for Weights {
+    fn from(restir: Restir) -> Self {
+        match restir {
+            Restir::Unbiased => Self::Unbiased,
+            Restir::Biased => Self::Biased,
+        }
+    }
 }
 
 /// Moves a job to the chosen device; the device and its memory, unless that is the CPU. Where it

@@ -62,7 +62,7 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     let mut renderer = Renderer::new(Arc::new(world), TARGET);
     #[cfg(feature = "gpu")]
     if let Some(kernels) = kernels {
-        renderer.move_to(kernels);
+        renderer.move_to(kernels, arguments.restir.map(Into::into));
     }
     if let Some(desc) = desc {
         return window(arguments, scene, renderer, desc);
@@ -135,7 +135,8 @@ fn window(
     renderer: Renderer,
     desc: alhazen::description::SceneDesc,
 ) -> Result<ExitCode, Failure> {
-    let title = format!("{} · alhazen", scene.display());
+    let restir = renderer.shared().map_or(String::new(), |weights| format!(" · ReSTIR, {weights}"));
+    let title = format!("{}{restir} · alhazen", scene.display());
     view::window::open(&title, renderer, desc, arguments.display.settings()).map_err(without_window)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -174,7 +175,8 @@ fn text(report: &Report) -> String {
         report.rays_per_second() / 1e6,
         report.device.as_deref().unwrap_or("the CPU"),
         stages.map_or(String::new(), |[trace, filter, rest]| format!(
-            "\n  of which         {trace} trace, {filter} filter, {rest} for the rest (medians)"
+            "{}\n  of which         {trace} trace, {filter} filter, {rest} for the rest (medians)",
+            report.shared.map_or(String::new(), |weights| format!(", ReSTIR {weights}")),
         )),
     )
 }

@@ -18,5 +18,5 @@ pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
 pub use flatten::{Flat, Refusal, Subject, flatten};
-pub use realtime::{AimError, Picture, Realtime, Stages};
+pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
 pub use renderer::{Kernels, PassError, Renderer};

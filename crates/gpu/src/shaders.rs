@@ -38,6 +38,12 @@ const PLUMBING: [&str; 13] = plumbing! {
 /// What kernels of real-time frames share.
 const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 
+/// From light to colours.
+const SENSOR: &str = include_str!("../shaders/sensor.wgsl");
+
+/// A path finds all light itself.
+const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
+
 /// A shader: the laws, and what uses them.
 pub fn with_laws(parts: &[&str]) -> String {
     let all = [PRELUDE].iter().chain(&LAWS).chain(parts);
@@ -59,13 +65,28 @@ pub struct Parts {
 
 /// The kernel that renders a sample of each pixel by an algorithm.
 pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
-    traced(parts, &[radiance(algorithm), include_str!("../shaders/pixels.wgsl")])
+    traced(parts, &[NO_RESERVOIRS, radiance(algorithm), include_str!("../shaders/pixels.wgsl")])
 }
 
-/// The kernel that finds the light of a real-time frame by an algorithm.
-pub fn light(algorithm: &Algorithm, parts: Parts) -> String {
-    let sensor = include_str!("../shaders/sensor.wgsl");
-    traced(parts, &[radiance(algorithm), FRAME, sensor, include_str!("../shaders/realtime/light.wgsl")])
+/// The kernel that finds the light of a real-time frame by an algorithm; but for direct light at
+/// the first surface where reservoirs have that.
+pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> String {
+    let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
+    let light = include_str!("../shaders/realtime/light.wgsl");
+    traced(parts, &[reservoirs, radiance(algorithm), FRAME, SENSOR, light])
+}
+
+/// The kernels of reservoirs: the first samples of a frame, and their reuse.
+pub fn reservoirs(parts: Parts) -> [String; 2] {
+    let texts = [
+        include_str!("../shaders/realtime/candidates.wgsl"),
+        concat!(
+            include_str!("../shaders/realtime/projection.wgsl"),
+            include_str!("../shaders/realtime/reuse.wgsl")
+        ),
+    ];
+    let shared = include_str!("../shaders/realtime/reservoirs.wgsl");
+    texts.map(|text| traced(parts, &[FRAME, SENSOR, shared, text]))
 }
 
 /// The kernel that finds what is seen in a real-time frame by an algorithm.
@@ -82,7 +103,10 @@ pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
 /// run: they reproject the frames before, find variances, filter, and develop.
 pub fn filters() -> [String; 4] {
     let texts = [
-        include_str!("../shaders/realtime/temporal.wgsl"),
+        concat!(
+            include_str!("../shaders/realtime/projection.wgsl"),
+            include_str!("../shaders/realtime/temporal.wgsl")
+        ),
         include_str!("../shaders/realtime/variance.wgsl"),
         include_str!("../shaders/realtime/wavelet.wgsl"),
         include_str!("../shaders/realtime/develop.wgsl"),

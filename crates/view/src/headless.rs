@@ -30,6 +30,8 @@ pub struct Report {
     pub integrator: String,
     /// The GPU that has rendered; `None` if that is the CPU.
     pub device: Option<String>,
+    /// How samples of direct light count that pixels and frames on a GPU share, in a word.
+    pub shared: Option<&'static str>,
     /// The times of the parts of each frame that a GPU has rendered.
     pub stages: Vec<Stages>,
 }
@@ -56,6 +58,7 @@ impl Report {
             rays: 0,
             integrator: shot.integrator.clone(),
             device: None,
+            shared: renderer.shared(),
             stages: Vec::new(),
         };
         for frame in 0..frames {
@@ -130,6 +133,7 @@ impl Report {
             "samples_per_pixel": self.samples,
             "rays_per_second": self.rays_per_second(),
             "device": self.device.as_deref().unwrap_or("CPU"),
+            "restir": self.shared,
             "stage_ms": {
                 "trace": self.median_of(|stages| stages.trace).map(ms),
                 "filter": self.median_of(|stages| stages.filter).map(ms),

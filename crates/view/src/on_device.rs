@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use alhazen::description::Diagnostic;
 use alhazen::device::Kernels;
-use alhazen::realtime::{Aim, GpuError, Picture, Realtime};
+use alhazen::realtime::{Aim, GpuError, Picture, Realtime, Weights};
 
 use crate::frame::Stages;
 use crate::renderer::{SHORTEST, StepError};
@@ -15,6 +15,8 @@ use crate::{Frame, Shot, World};
 /// The device, with what is shown there.
 pub struct OnDevice {
     kernels: Arc<Kernels>,
+    /// How samples of direct light count, if pixels and frames share them.
+    shared: Option<Weights>,
     /// The scene by the algorithm of this name; without it where kernels do not draw it.
     shown: Option<(String, Option<Realtime>)>,
     /// Why the CPU renders.
@@ -31,13 +33,18 @@ impl From<GpuError> for StepError {
 
 impl OnDevice {
     /// Nothing is shown yet.
-    pub fn new(kernels: Arc<Kernels>) -> Self {
-        Self { kernels, shown: None, refusals: Vec::new(), last: Instant::now() }
+    pub fn new(kernels: Arc<Kernels>, shared: Option<Weights>) -> Self {
+        Self { kernels, shared, shown: None, refusals: Vec::new(), last: Instant::now() }
     }
 
     /// The device.
     pub fn kernels(&self) -> &Arc<Kernels> {
         &self.kernels
+    }
+
+    /// How samples of direct light count, if pixels and frames share them.
+    pub fn shared(&self) -> Option<Weights> {
+        self.shared
     }
 
     /// The name of the device, if it draws what is shown.
@@ -65,7 +72,7 @@ impl OnDevice {
             *name == shot.integrator && realtime.as_ref().is_none_or(|realtime| realtime.is_of(world.scene()))
         });
         if !is_shown {
-            let made = Realtime::new(world.scene(), &desc, &self.kernels);
+            let made = Realtime::new(world.scene(), &desc, &self.kernels, self.shared);
             self.refusals = made.as_ref().err().cloned().unwrap_or_default();
             self.shown = Some((shot.integrator.clone(), made.ok()));
         }
@@ -97,9 +104,10 @@ impl OnDevice {
         let desc = world.settings(shot)?;
         let Some((_, Some(realtime))) = &mut self.shown else { return Ok((None, true)) };
         let (done, planned) = realtime.progress();
-        let is_last = done + shot.samples >= planned;
+        let samples = if self.shared.is_some() { 1 } else { shot.samples };
+        let is_last = done + samples >= planned;
         let is_shown = done == 0 || is_last || self.last.elapsed() >= SHORTEST;
-        let Some(picture) = realtime.resting(shot.samples, is_shown)? else { return Ok((None, is_last)) };
+        let Some(picture) = realtime.resting(samples, is_shown)? else { return Ok((None, is_last)) };
         let aim = realtime.look(&desc, 1).map_err(|errors| StepError::Problem(messages(&errors)))?;
         let time = self.last.elapsed();
         self.last = Instant::now();

@@ -13,6 +13,8 @@ use alhazen::description::Diagnostic;
 use alhazen::device::Kernels;
 use alhazen::image::{DisplaySettings, ImageError};
 use alhazen::integrators::{Control, Limits, PassError};
+#[cfg(feature = "gpu")]
+use alhazen::realtime::Weights;
 use alhazen::trace::{PixelTrace, TraceError};
 use alhazen::write_picture;
 
@@ -102,10 +104,11 @@ impl Renderer {
         }
     }
 
-    /// Renders by a GPU what kernels draw.
+    /// Renders by a GPU what kernels draw. With `shared`, pixels and frames share samples of direct
+    /// light.
     #[cfg(feature = "gpu")]
-    pub fn move_to(&mut self, kernels: Arc<Kernels>) {
-        self.device = Some(OnDevice::new(kernels));
+    pub fn move_to(&mut self, kernels: Arc<Kernels>, shared: Option<Weights>) {
+        self.device = Some(OnDevice::new(kernels, shared));
         self.stage = Stage::Draft;
     }
 
@@ -113,6 +116,17 @@ impl Renderer {
     pub fn device(&self) -> Option<&str> {
         #[cfg(feature = "gpu")]
         return self.device.as_ref()?.name();
+        #[cfg(not(feature = "gpu"))]
+        None
+    }
+
+    /// How samples of direct light count that pixels and frames on a GPU share, in a word.
+    pub fn shared(&self) -> Option<&'static str> {
+        #[cfg(feature = "gpu")]
+        return match self.device.as_ref()?.shared()? {
+            Weights::Unbiased => Some("unbiased"),
+            Weights::Biased => Some("biased"),
+        };
         #[cfg(not(feature = "gpu"))]
         None
     }

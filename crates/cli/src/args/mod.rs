@@ -11,7 +11,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub use render::{Changes, DisplayOptions, LiveOptions, Render, Resume};
 
 #[cfg(feature = "gpu")]
-use crate::device::DeviceChoice;
+use crate::device::{DeviceChoice, Restir};
 use crate::help;
 use crate::values::{pixel, time};
 
@@ -239,6 +239,11 @@ pub struct View {
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,
+    /// With --device, pixels and frames share samples of direct light (ReSTIR): unbiased, or
+    /// biased, which is faster, and too dark where surfaces and shadows differ.
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "WEIGHTS", value_enum, hide_possible_values = true)]
+    pub restir: Option<Restir>,
     /// Changes to the scene.
     #[command(flatten)]
     pub changes: Changes,

@@ -8,21 +8,6 @@
 // The most frames that are averaged, so that what depends on the direction of view follows it.
 const MOST_FRAMES = 32.0;
 
-// Where the frame before saw what is seen now, in its pixels; the last component is 0 where that
-// is nowhere.
-fn place_before(s: Seen) -> vec3f {
-    let p = vec4f(s.p, select(1.0, 0.0, s.id == 0));
-    let q = vec3f(dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p));
-    var screen = q.xy;
-    if (frame.is_orthographic == 0) {
-        if (q.z <= 0) {
-            return vec3f();
-        }
-        screen /= q.z;
-    }
-    return vec3f((screen - frame.screen.xy) / frame.screen.zw - 0.5 - vec2f(frame.low), 1);
-}
-
 // Whether the point that was seen is the one that is seen now, up to the width of pixels.
 fn is_same(now: Seen, then: Seen) -> bool {
     if (now.id != then.id) {
@@ -45,7 +30,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let y = luminance(color);
     var sum = History();
     var weights = 0.0;
-    let place = place_before(now);
+    let place = place_before(now.p, now.id != 0);
     if (frame.has_history == 1 && place.z == 1) {
         let corner = floor(place.xy);
         let within = place.xy - corner;

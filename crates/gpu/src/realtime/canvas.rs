@@ -3,6 +3,7 @@
 use math::Bounds2i;
 
 use super::frame::Frame;
+use super::reservoirs::{PARTS, RESERVOIR};
 use crate::commands::Timer;
 use crate::device::{Buffer, Device, GpuError};
 
@@ -25,6 +26,8 @@ pub struct Canvas {
     pub history: Buffer,
     /// What is filtered, and what that gives, in turns.
     pub estimates: [Buffer; 2],
+    /// Samples of direct light, where these are shared.
+    pub reservoirs: Option<Buffer>,
     /// The number of rays, and the colours that are shown.
     pub shown: Buffer,
     /// What reads them back.
@@ -33,7 +36,7 @@ pub struct Canvas {
 
 impl Canvas {
     /// For these pixels of the film.
-    pub fn new(device: &Device, pixels: Bounds2i) -> Result<Self, GpuError> {
+    pub fn new(device: &Device, pixels: Bounds2i, has_reservoirs: bool) -> Result<Self, GpuError> {
         let count = pixels.area() as u64;
         let shown = 4 + 12 * count;
         Ok(Self {
@@ -45,6 +48,10 @@ impl Canvas {
                 device.zeros("estimates", ESTIMATE * count)?,
                 device.zeros("estimates", ESTIMATE * count)?,
             ],
+            reservoirs: match has_reservoirs {
+                true => Some(device.zeros("reservoirs", PARTS * RESERVOIR * count)?),
+                false => None,
+            },
             shown: device.zeros("colours", shown)?,
             timer: Timer::new(device, shown)?,
         })

@@ -6,11 +6,15 @@
 //! variance-guided filtering [Schied 2017]. What is filtered is light divided by the reflectance of
 //! what is seen, so that textures stay sharp.
 //!
+//! Direct light of first surfaces is that of the algorithm, or of samples that pixels and frames
+//! share ([`Weights`]).
+//!
 //! When the camera rests, samples are added up, and the picture goes over from the filtered one to
 //! their mean.
 
 mod canvas;
 mod frame;
+mod reservoirs;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,6 +32,9 @@ use crate::renderer::Kernels;
 use crate::shaders;
 use canvas::Canvas;
 use frame::{Eye, Frame, Level};
+use reservoirs::Reservoirs;
+
+pub use reservoirs::Weights;
 
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
@@ -53,6 +60,7 @@ pub struct Realtime {
     light: Arc<Kernel>,
     filters: [Arc<Kernel>; 4],
     levels: Vec<Buffer>,
+    reservoirs: Option<Reservoirs>,
     head: Head,
     /// Where the random numbers of frames in motion are among the tables.
     restless: u32,
@@ -106,8 +114,15 @@ impl From<GpuError> for AimError {
 }
 
 impl Realtime {
-    /// Takes a scene to the device.
-    pub fn new(kernels: Arc<Kernels>, flat: &Flat, algorithm: &Algorithm) -> Result<Self, GpuError> {
+    /// Takes a scene to the device. With `shared`, pixels and frames share samples of direct light,
+    /// if that is a part of the algorithm; lights must not leave directions to the BSDF then.
+    pub fn new(
+        kernels: Arc<Kernels>,
+        flat: &Flat,
+        algorithm: &Algorithm,
+        shared: Option<Weights>,
+    ) -> Result<Self, GpuError> {
+        let shared = shared.filter(|_| matches!(algorithm, Algorithm::Path(desc) if desc.max_depth > 0));
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();
@@ -121,7 +136,7 @@ impl Realtime {
             device.buffer("texels of the scene", &flat.texels)?,
         ];
         let parameters = device.parameters(&Frame::default())?;
-        let light = kernels.get("light", shaders::light(algorithm, flat.parts))?;
+        let light = kernels.get("light", shaders::light(algorithm, flat.parts, shared.is_some()))?;
         let surfaces = kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts))?;
         let [temporal, variance, wavelet, develop] = shaders::filters();
         let filters = [
@@ -132,7 +147,9 @@ impl Realtime {
         ];
         let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
         let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
+        let reservoirs = shared.map(|weights| Reservoirs::new(&kernels, flat.parts, weights)).transpose()?;
         Ok(Self {
+            reservoirs,
             surfaces,
             light,
             filters,
@@ -163,8 +180,11 @@ impl Realtime {
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;
         device.write_at(&self.scene[4], at, &camera)?;
         if self.canvas.as_ref().is_none_or(|canvas| canvas.pixels != pixels) {
-            self.canvas = Some(Canvas::new(device, pixels)?);
+            self.canvas = Some(Canvas::new(device, pixels, self.reservoirs.is_some())?);
             self.last = None;
+            if let Some(reservoirs) = &mut self.reservoirs {
+                reservoirs.clear();
+            }
         }
         self.eye = Eye::new(view);
         self.rested = 0;
@@ -192,6 +212,9 @@ impl Realtime {
             ..canvas.frame()
         };
         let groups = groups(&frame);
+        if let Some(reservoirs) = &mut self.reservoirs {
+            reservoirs.begin(self.kernels.device(), self.eye, frame.eye)?;
+        }
         let mut commands = self.begin(canvas, head, frame)?;
         let [world, nodes, triangles, items, tables, texels] = &self.scene;
         let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
@@ -218,13 +241,19 @@ impl Realtime {
     /// after another. A picture if it is wanted.
     pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
         let Some(canvas) = &self.canvas else { return Ok(None) };
+        // Samples that are shared are those of one place in each pixel.
+        let samples = if self.reservoirs.is_some() { samples.min(1) } else { samples };
         let before = self.rested;
         self.rested += samples;
         // There is no filtered picture of this camera without a frame in motion from there.
         let worth = if self.last == Some(self.eye) { WORTH } else { 0.0 };
         let prior = worth * (1.0 - self.rested as f32 / TRANSITION).max(0.0);
-        let frame = Frame { index: before, before, samples, half: self.half, prior, ..canvas.frame() };
+        let (half, eye) = (self.half, self.eye);
+        let frame = Frame { index: before, before, samples, half, prior, eye, ..canvas.frame() };
         let groups = groups(&frame);
+        if let Some(reservoirs) = &mut self.reservoirs {
+            reservoirs.begin(self.kernels.device(), eye, eye)?;
+        }
         let mut commands = self.begin(canvas, self.head, frame)?;
         self.trace(&mut commands, canvas, groups);
         if !is_shown {
@@ -245,6 +274,13 @@ impl Realtime {
         let [world, nodes, triangles, items, tables, texels] = &self.scene;
         let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
         commands.run(TRACE, &self.light, &traced, groups);
+        if let (Some(reservoirs), Some(buffer)) = (&self.reservoirs, &canvas.reservoirs) {
+            let Reservoirs { candidates, reuse, steps, .. } = reservoirs;
+            for (kernel, step) in [candidates, reuse, reuse].into_iter().zip(steps) {
+                let buffers: Vec<&Buffer> = traced.into_iter().chain([buffer, step]).collect();
+                commands.run(TRACE, kernel, &buffers, groups);
+            }
+        }
     }
 
     /// Makes the picture, and waits for it.

@@ -7,6 +7,7 @@ mod faults;
 mod laws;
 mod pictures;
 mod realtime;
+mod reservoirs;
 mod textures;
 mod trace;
 mod twins;

@@ -79,11 +79,16 @@ impl Case {
     }
 
     pub fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
+        self.flatten_for(algorithm, algorithm.weights_lights())
+    }
+
+    /// The same, where lights may leave directions to the BSDF or not.
+    pub fn flatten_for(&self, algorithm: &Algorithm, allows_incomplete: bool) -> Result<Flat, Vec<Refusal>> {
         let Self { scene, view, sampler, .. } = self;
         let lights = scene.light_sampler(algorithm.light_sampler(), &Default::default()).expect("a choice");
         let film = &self.film();
         let largest_buffer = 1 << 27;
-        flatten(Subject { scene, view, film, algorithm, sampler, largest_buffer }, &lights)
+        flatten(Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer }, &lights)
     }
 
     fn on_gpu(&self, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Image {

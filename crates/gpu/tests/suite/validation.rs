@@ -40,9 +40,10 @@ fn kernels_are_valid() {
         for bits in 0..16 {
             let [holes, images, noise, coats] = [1, 2, 4, 8].map(|bit| bits & bit != 0);
             let parts = Parts { holes, images, noise, coats };
-            let make = [shaders::pixels, shaders::light, shaders::surfaces];
-            for source in make.map(|make| make(&algorithm, parts)) {
-                validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+            let kernels = [shaders::pixels(&algorithm, parts), shaders::surfaces(&algorithm, parts)];
+            let lights = [false, true].map(|has| shaders::light(&algorithm, parts, has));
+            for source in kernels.iter().chain(&lights).chain(&shaders::reservoirs(parts)) {
+                validate(source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
             }
         }
     }
