@@ -1,9 +1,10 @@
 //! The engine that renders scenes on GPUs, by wgpu.
 //!
 //! [`flatten`] makes buffers of a scene, or says what kernels do not draw; a [`Renderer`] adds
-//! samples of its pixels to a film, a [`Realtime`] makes pictures at once. [`Device`] is the GPU, [`Bvh`] what rays are traced through
-//! there. [`shaders`] has the sources of what runs there: *laws*, which are physics and are
-//! translated from Rust, and *plumbing*, which is written in WGSL.
+//! samples of its pixels to a film, a [`Realtime`] makes pictures at once. [`Device`] is the GPU,
+//! [`Bvh`] what rays are traced through there. [`shaders`] has the sources of what runs there:
+//! *laws*, which are physics and are translated from Rust, and *plumbing*, which is written in
+//! WGSL.
 
 mod algorithm;
 mod bvh;

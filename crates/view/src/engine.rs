@@ -15,7 +15,8 @@ use alhazen::integrators::Control;
 use alhazen::system_clock;
 use alhazen::trace::PixelTrace;
 
-use crate::renderer::{Renderer, StepError};
+use crate::Renderer;
+use crate::step::StepError;
 use crate::world::summary;
 use crate::{Frame, Shot, World};
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
-use crate::renderer::StepError;
+use crate::step::StepError;
 use crate::{Flight, Renderer, Shot, Stages};
 
 /// The frame times of a camera path.

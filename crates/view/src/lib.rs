@@ -20,6 +20,7 @@ mod on_device;
 mod pace;
 pub mod planet;
 mod renderer;
+mod step;
 #[cfg(feature = "window")]
 pub mod window;
 mod world;
@@ -30,5 +31,6 @@ pub use flight::{Flight, Mode};
 pub use frame::{Frame, Stages};
 pub use headless::Report;
 pub use pace::Pace;
-pub use renderer::{Renderer, StepError};
+pub use renderer::Renderer;
+pub use step::StepError;
 pub use world::{Shot, World};

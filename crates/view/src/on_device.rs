@@ -8,7 +8,7 @@ use alhazen::device::Kernels;
 use alhazen::realtime::{Aim, GpuError, Picture, Realtime, Weights};
 
 use crate::frame::Stages;
-use crate::renderer::{SHORTEST, StepError};
+use crate::step::{SHORTEST, StepError};
 use crate::world::messages;
 use crate::{Frame, Shot, World};
 

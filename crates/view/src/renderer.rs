@@ -12,7 +12,7 @@ use alhazen::description::Diagnostic;
 #[cfg(feature = "gpu")]
 use alhazen::device::Kernels;
 use alhazen::image::{DisplaySettings, ImageError};
-use alhazen::integrators::{Control, Limits, PassError};
+use alhazen::integrators::{Control, Limits};
 #[cfg(feature = "gpu")]
 use alhazen::realtime::Weights;
 use alhazen::trace::{PixelTrace, TraceError};
@@ -20,12 +20,10 @@ use alhazen::write_picture;
 
 #[cfg(feature = "gpu")]
 use crate::on_device::OnDevice;
+use crate::step::{SHORTEST, StepError};
 #[cfg(feature = "gpu")]
 use crate::world::messages;
 use crate::{Frame, Pace, Shot, World};
-
-/// The shortest time between two pictures of a camera at rest.
-pub(crate) const SHORTEST: Duration = Duration::from_millis(40);
 
 /// The least ratio of that time to the one that making a picture of the film takes.
 const SHARE: u32 = 4;
@@ -63,30 +61,6 @@ struct Samples {
     rays: u64,
     /// How long it took to make it of the film.
     cost: Duration,
-}
-
-/// Why a step has no picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum StepError {
-    /// It was cancelled.
-    Cancelled,
-    /// It cannot be rendered; the text says why.
-    Problem(String),
-}
-
-impl From<PassError> for StepError {
-    fn from(error: PassError) -> Self {
-        match error {
-            PassError::Cancelled => Self::Cancelled,
-            PassError::OutOfMemory(problem) | PassError::Device(problem) => Self::Problem(problem),
-        }
-    }
-}
-
-impl From<String> for StepError {
-    fn from(problem: String) -> Self {
-        Self::Problem(problem)
-    }
 }
 
 impl Renderer {
