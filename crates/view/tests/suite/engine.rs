@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::description::{LightKind, SceneDesc};
 use alhazen::image::DisplaySettings;
 use alhazen::math::Point3;
-use alhazen_view::{Engine, Output, Shot, World};
+use alhazen_view::{Engine, Output, Renderer, Shot, World};
 
 use crate::{desc, world};
 
