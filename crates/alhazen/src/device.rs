@@ -7,7 +7,7 @@ use description::schema::Settings;
 use description::{Diagnostic, IntegratorDesc, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
-use gpu::{Algorithm, Renderer, Subject, flatten};
+use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
 use integrators::{Cancelled, Control, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
@@ -28,7 +28,33 @@ pub(crate) fn integrator(
     session: &Session,
     kernels: &Arc<Kernels>,
 ) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
-    let (scene, view, film) = (&**session.scene(), session.view(), &session.state().film);
+    let film = &session.state().film;
+    let Flattened { flat, algorithm, sampler } =
+        flattened(desc, session.scene(), session.view(), film, kernels, false)?;
+    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
+        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
+        Err(error) => Err(vec![failed(&error)]),
+    }
+}
+
+/// A scene for a device, and how it is rendered there.
+pub(crate) struct Flattened {
+    pub(crate) flat: Flat,
+    pub(crate) algorithm: Algorithm,
+    pub(crate) sampler: Sampler,
+}
+
+/// A scene, by the algorithm and the sampler that `desc` describes, and whether samples of direct
+/// light are to be shared. The error says what kernels do
+/// not draw.
+pub(crate) fn flattened(
+    desc: &SceneDesc,
+    scene: &Scene,
+    view: &View,
+    film: &Film,
+    kernels: &Kernels,
+    is_shared: bool,
+) -> Result<Flattened, Vec<Diagnostic>> {
     let algorithm = match desc.integrator.value.clone() {
         IntegratorDesc::RayCasting => Some(Algorithm::RayCasting),
         IntegratorDesc::AmbientOcclusion(settings) => {
@@ -52,13 +78,24 @@ pub(crate) fn integrator(
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
     let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);
-    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler, largest_buffer };
+    let allows_incomplete = algorithm.weights_lights() && !is_shared;
+    let subject = Subject {
+        scene,
+        view,
+        film,
+        algorithm: &algorithm,
+        allows_incomplete,
+        sampler: &sampler,
+        largest_buffer,
+    };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
-    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
-        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
-        Err(error) => Err(vec![Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE)]),
-    }
+    Ok(Flattened { flat, algorithm, sampler })
+}
+
+/// What is said where the device fails.
+pub(crate) fn failed(error: &GpuError) -> Diagnostic {
+    Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE)
 }
 
 impl Integrator for OnDevice {

@@ -32,6 +32,8 @@ mod job;
 mod overrides;
 mod pack;
 mod picture;
+#[cfg(feature = "gpu")]
+pub mod realtime;
 mod schedule;
 mod settings;
 mod sketch;

@@ -75,7 +75,7 @@ impl Sketch {
 }
 
 /// The pixels, `n` times as wide and high as those within `bounds`, that cover them.
-fn coarse(bounds: &Bounds2i, n: i32) -> Bounds2i {
+pub(crate) fn coarse(bounds: &Bounds2i, n: i32) -> Bounds2i {
     Bounds2i::new(bounds.min.map(|x| x / n), bounds.max.map(|x| div_ceil(x, n)))
 }
 

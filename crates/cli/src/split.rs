@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::integrators::Control;
 use alhazen::write_picture;
 use view::split::{SplitReport, picture};
-use view::{Rasterized, Renderer, World};
+use view::{Rasterized, Renderer};
 
 use crate::args::View;
 use crate::console::warn;
@@ -16,24 +16,23 @@ use crate::failure::Failure;
 /// Finds both frame times of a camera path, and writes the picture that was asked for.
 pub fn headless(
     arguments: &View,
-    world: World,
+    renderer: &mut Renderer,
     share: f32,
-    (begin, target): (Instant, Duration),
+    begin: Instant,
 ) -> Result<SplitReport, Failure> {
     let device = Rasterized::open()
         .map_err(|error| Failure::Input(format!("{error}; without --split no GPU is needed")))?;
     let start = Instant::now();
-    let world = Arc::new(world);
+    let world = Arc::clone(renderer.world());
     let mut rasterized = Rasterized::new(Arc::clone(&world), device).map_err(Failure::Input)?;
     let prepared_in = start.elapsed();
     for note in rasterized.warnings().iter().filter(|_| !arguments.json) {
         warn(format_args!("warning: {}", note.message))?;
     }
     let mut flight = world.flight();
-    let mut renderer = Renderer::new(world, target);
     let control = Control::default();
     let report = SplitReport::of_orbit(
-        &mut renderer,
+        renderer,
         &mut rasterized,
         &mut flight,
         arguments.frames,
@@ -42,7 +41,7 @@ pub fn headless(
     );
     let report = report?;
     if let Some(path) = &arguments.output {
-        let picture = picture(&mut renderer, &mut rasterized, share, &control)?;
+        let picture = picture(renderer, &mut rasterized, share, &control)?;
         let written = write_picture(&picture, path, &arguments.display.settings());
         written.map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
     }

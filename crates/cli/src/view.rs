@@ -9,7 +9,7 @@ use alhazen::Overrides;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
 use view::planet::{Outing, PlanetReport, Spent};
-use view::{Renderer, Report, World};
+use view::{Renderer, Report, Stages, World};
 
 use crate::args::View;
 use crate::console::say;
@@ -52,16 +52,29 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         let warnings = world.warnings.clone();
         Ok((world, warnings))
     })?;
+    #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a device has warnings"))]
+    let mut compiled = compiled;
+    #[cfg(feature = "gpu")]
+    let kernels = crate::device::kernels(arguments.device).unwrap_or_else(|warnings| {
+        compiled.add(warnings);
+        None
+    });
     let imported = compiled.imported();
     if !arguments.json {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
+    let mut flight = world.flight();
+    let mut renderer = Renderer::new(Arc::new(world), TARGET);
+    #[cfg(feature = "gpu")]
+    if let Some(kernels) = kernels {
+        renderer.move_to(kernels, arguments.restir.map(Into::into));
+    }
     if let Some(desc) = desc {
-        return window(arguments, scene, world, desc);
+        return window(arguments, scene, renderer, desc);
     }
     #[cfg(feature = "gpu")]
     if let Some(share) = arguments.split {
-        let report = crate::split::headless(arguments, world, share, (begin, TARGET))?;
+        let report = crate::split::headless(arguments, &mut renderer, share, begin)?;
         if arguments.json {
             let mut json = report.to_json();
             json["warnings"] = diagnostics::to_json(&imported.diagnostics, &imported.sources).1;
@@ -71,8 +84,6 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         }
         return Ok(ExitCode::SUCCESS);
     }
-    let mut flight = world.flight();
-    let mut renderer = Renderer::new(Arc::new(world), TARGET);
     let control = Control::default();
     let report = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
     let report = report?;
@@ -80,9 +91,13 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
         let mut json = report.to_json();
         json["warnings"] = warnings;
+        json["not_on_gpu"] = renderer.refusals().iter().map(|refusal| refusal.message.as_str()).collect();
         say(json)?;
     } else {
         say(text(&report))?;
+        for refusal in renderer.refusals() {
+            say(&refusal.message)?;
+        }
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -127,29 +142,36 @@ fn without_window(error: String) -> Failure {
 fn window(
     arguments: &View,
     scene: &Path,
-    world: World,
+    renderer: Renderer,
     desc: alhazen::description::SceneDesc,
 ) -> Result<ExitCode, Failure> {
-    let title = format!("{} · alhazen", scene.display());
+    let restir = renderer.shared().map_or(String::new(), |weights| format!(" · ReSTIR, {weights}"));
+    let title = format!("{}{restir} · alhazen", scene.display());
     let (display, split) = (arguments.display.settings(), arguments.split);
-    view::window::open(&title, world, desc, display, split, TARGET).map_err(without_window)?;
+    view::window::open(&title, renderer, desc, display, split).map_err(without_window)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Without the feature this was refused before.
 #[cfg(not(feature = "view"))]
-fn window(_: &View, _: &Path, _: World, _: alhazen::description::SceneDesc) -> Result<ExitCode, Failure> {
+fn window(_: &View, _: &Path, _: Renderer, _: alhazen::description::SceneDesc) -> Result<ExitCode, Failure> {
     Ok(ExitCode::FAILURE)
 }
 
 fn text(report: &Report) -> String {
     let ms = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
     let size = |[width, height]: [u32; 2]| format!("{width} × {height}");
+    let median = |part: fn(&Stages) -> Duration| Some(ms(report.median_of(part)?));
+    let stages: Option<Vec<_>> =
+        [median(|stages| stages.trace), median(|stages| stages.filter), median(|stages| stages.rest)]
+            .into_iter()
+            .collect();
+    let stages = stages.and_then(|stages| <[String; 3]>::try_from(stages).ok());
     format!(
         "{}, {} frames of {} (half of them are no larger), of a picture of {}, {} samples per pixel\n  \
          frame time       median {}, 95 % {}, at most {}: {:.1} frames per second\n  \
          first picture    {} after the start, the scene compiled in {}\n  \
-         rays             {:.2} million per second",
+         rays             {:.2} million per second, by {}{}",
         report.integrator,
         report.frames.len(),
         size(report.median_size()),
@@ -162,6 +184,11 @@ fn text(report: &Report) -> String {
         ms(report.first_picture),
         ms(report.compiled_in),
         report.rays_per_second() / 1e6,
+        report.device.as_deref().unwrap_or("the CPU"),
+        stages.map_or(String::new(), |[trace, filter, rest]| format!(
+            "{}\n  of which         {trace} trace, {filter} filter, {rest} for the rest (medians)",
+            report.shared.map_or(String::new(), |weights| format!(", ReSTIR {weights}")),
+        )),
     )
 }
 

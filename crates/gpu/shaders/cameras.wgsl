@@ -5,15 +5,23 @@ const FILTER_TRIANGLE = 1u;
 const PERSPECTIVE = 0u;
 const ORTHOGRAPHIC = 1u;
 
-// The offset from the centre of a pixel that a filter draws.
-fn filter_offset(u: vec2f) -> vec2f {
+// The offset from the centre of a pixel that a filter draws, and the weight of the sample: its sign
+// where the filter is tabulated, which leaves a pixel as it is.
+fn filter_sample(u: vec2f) -> vec3f {
     let at = world.pixel_filter;
     let radius = vec2f(number(at + 1), number(at + 2));
     switch (tables[at]) {
-        case FILTER_BOX: { return -radius + (radius - -radius) * u; }
-        case FILTER_TRIANGLE: { return vec2f(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y)); }
-        default: { return draw_2d(tables[at + 3], u).xy; }
+        case FILTER_BOX: { return vec3f(-radius + (radius - -radius) * u, 1); }
+        case FILTER_TRIANGLE: { return vec3f(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y), 1); }
+        default: {}
     }
+    let table = tables[at + 3];
+    let offset = draw_2d(table, u).xy;
+    let count = vec2u(tables[table], tables[table + 1]);
+    let cell = min(vec2u((offset / radius + 1) * 0.5 * vec2f(count)), count - 1);
+    let index = cell.y * count.x + cell.x;
+    let is_negative = (tables[tables[at + 4] + index / 32] >> (index & 31) & 1) == 1;
+    return vec3f(offset, select(1.0, -1.0, is_negative));
 }
 
 // A camera in render space.
@@ -69,5 +77,35 @@ fn camera_differentials(film: vec2f, lens: vec2f) -> Differentials {
     return Differentials(
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
+    );
+}
+
+// A sample of a pixel: the camera ray, its wavelengths, and its weight in the pixel.
+struct CameraSample {
+    ray: Ray,
+    near: Differentials,
+    lambda: SampledWavelengths,
+    position: vec2f,
+    weight: f32,
+}
+
+// The sample of an index. Dimensions are used as on the CPU: wavelengths, position in the pixel's
+// filter, time, position on the lens, and then those of the algorithm.
+fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
+    place = Address(array(pixel.x, pixel.y), index, 0);
+    let wavelength = get_1d();
+    let film = get_2d();
+    let time = get_1d();
+    let lens = get_2d();
+    let is_centered = world.is_centered == 1;
+    let drawn = select(filter_sample(film), vec3f(0, 0, 1), is_centered);
+    let position = vec2f(pixel) + 0.5 + drawn.xy;
+    let on_lens = select(lens, vec2f(0.5), is_centered);
+    return CameraSample(
+        camera_ray(position, on_lens),
+        camera_differentials(position, on_lens),
+        SampledWavelengths_sample_visible(select(wavelength, 0.5, world.has_one_wavelength == 1)),
+        position,
+        drawn.z,
     );
 }

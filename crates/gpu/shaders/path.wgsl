@@ -24,8 +24,16 @@ fn hit_weight(path: Path, light: u32, pdf: f32) -> f32 {
     return power_heuristic(path.pdf, light_pmf(path.origin, light) * pdf);
 }
 
+// Whether what a path hits is direct light of its first surface that reservoirs have.
+fn is_reserved(path: Path) -> bool {
+    return HAS_RESERVOIRS && path.depth == 1 && path.is_found_twice;
+}
+
 // The weighted radiance along a ray that leaves the scene.
 fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
+    if (is_reserved(path)) {
+        return vec4f();
+    }
     var sum = vec4f();
     for (var i = 0u; i < world.infinite_count; i++) {
         let light = tables[world.infinite + i];
@@ -41,7 +49,7 @@ fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
 
 // The weighted emission of a surface back along the ray.
 fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
-    if (s.light == 0) {
+    if (s.light == 0 || is_reserved(path)) {
         return vec4f();
     }
     let light = s.light - 1;
@@ -105,7 +113,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         let flags = bsdf_flags(bsdf);
         let context = light_context(s, flags);
-        if (is_non_specular(flags)) {
+        if (is_non_specular(flags) && !(HAS_RESERVOIRS && path.depth == 1)) {
             l += path.beta * direct_light(s, context, bsdf, *lambda);
         }
         let uc = get_1d();

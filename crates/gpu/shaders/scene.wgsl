@@ -1,6 +1,6 @@
 // The buffers of a scene, and the random numbers of a sample.
 //
-// `world` has what Rust calls a `Head`. Tables are words; a record refers to another by the index
+// Kernels have bindings of their own at 5 and 6. `world` has what Rust calls a `Head`. Tables are words; a record refers to another by the index
 // of its first word. The files of `src/flatten/` describe the records.
 
 struct World {
@@ -26,23 +26,7 @@ struct World {
     max_distance: f32,
     cos_sample: u32,
     has_footprints: u32,
-    unused: u32,
-}
-
-// A rectangle of pixels, and the index of the sample of each.
-struct Batch {
-    low: vec2u,
-    size: vec2u,
-    index: u32,
-}
-
-// What is found for a pixel: radiance, the number of rays, and 1 where only the first wavelength is
-// left.
-struct Sample {
-    l: vec4f,
-    rays: u32,
-    is_terminated: u32,
-    unused: vec2u,
+    sensor: u32,
 }
 
 @group(0) @binding(0) var<storage, read_write> world: World;
@@ -50,8 +34,6 @@ struct Sample {
 @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
 @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
 @group(0) @binding(4) var<storage, read_write> tables: array<u32>;
-@group(0) @binding(5) var<storage, read_write> batch: Batch;
-@group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
 @group(0) @binding(7) var<storage, read_write> texels: array<u32>;
 
 // Where the sample is in its random numbers.

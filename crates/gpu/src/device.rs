@@ -9,6 +9,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::util::DeviceExt;
 use wgpu::{BufferUsages, DeviceType, Limits};
 
+/// What buffers are used for.
+const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
+
 /// Why the GPU cannot do what was asked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum GpuError {
@@ -49,8 +52,8 @@ impl std::error::Error for GpuError {}
 /// A GPU that is open.
 #[derive(Debug)]
 pub struct Device {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
     name: String,
     is_software: bool,
     /// The first fault that the driver has reported.
@@ -60,12 +63,12 @@ pub struct Device {
 /// A compute shader that is compiled. Its bindings are buffers of group 0, numbered from 0.
 #[derive(Debug)]
 pub struct Kernel {
-    pipeline: wgpu::ComputePipeline,
+    pub(crate) pipeline: wgpu::ComputePipeline,
 }
 
 /// Memory of the GPU.
 #[derive(Debug)]
-pub struct Buffer(wgpu::Buffer);
+pub struct Buffer(pub(crate) wgpu::Buffer);
 
 impl Device {
     /// Opens the GPU whose name contains `name`, without regard to case; the fastest kind there is
@@ -88,6 +91,7 @@ impl Device {
         let limits = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("alhazen"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: Limits {
                 max_buffer_size: limits.max_buffer_size,
                 max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
@@ -142,19 +146,51 @@ impl Device {
     ) -> Result<Buffer, GpuError> {
         // Bindings are not empty.
         let bytes: &[u8] = if contents.is_empty() { &[0; 16] } else { bytemuck::cast_slice(contents) };
-        let (size, limit) = (bytes.len() as u64, self.largest_buffer());
-        if size > limit {
-            return Err(GpuError::TooLarge(name, size, limit));
-        }
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage };
+        self.fits(name, bytes.len() as u64)?;
+        let descriptor =
+            wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage: USAGE };
         let buffer = self.device.create_buffer_init(&descriptor);
         self.checked(Buffer(buffer))
     }
 
+    /// A buffer of zeros, of this many bytes, a multiple of four.
+    pub fn zeros(&self, name: &'static str, bytes: u64) -> Result<Buffer, GpuError> {
+        self.fits(name, bytes)?;
+        self.checked(Buffer(self.empty(name, bytes, USAGE)))
+    }
+
+    /// A buffer of parameters, which kernels may only read.
+    pub fn parameters<T: bytemuck::NoUninit>(&self, contents: &T) -> Result<Buffer, GpuError> {
+        let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+        let contents = bytemuck::bytes_of(contents);
+        let descriptor = wgpu::util::BufferInitDescriptor { label: Some("parameters"), contents, usage };
+        self.checked(Buffer(self.device.create_buffer_init(&descriptor)))
+    }
+
+    /// A buffer for this usage.
+    pub(crate) fn empty(&self, name: &'static str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
+        let descriptor = wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
+        self.device.create_buffer(&descriptor)
+    }
+
+    fn fits(&self, name: &'static str, size: u64) -> Result<(), GpuError> {
+        let limit = self.largest_buffer();
+        if size > limit { Err(GpuError::TooLarge(name, size, limit)) } else { Ok(()) }
+    }
+
     /// Replaces the contents of a buffer from its start, before what is started later.
     pub fn write<T: bytemuck::NoUninit>(&self, buffer: &Buffer, contents: &[T]) -> Result<(), GpuError> {
-        self.queue.write_buffer(&buffer.0, 0, bytemuck::cast_slice(contents));
+        self.write_at(buffer, 0, contents)
+    }
+
+    /// Replaces the contents of a buffer from a byte on, before what is started later.
+    pub fn write_at<T: bytemuck::NoUninit>(
+        &self,
+        buffer: &Buffer,
+        byte: u64,
+        contents: &[T],
+    ) -> Result<(), GpuError> {
+        self.queue.write_buffer(&buffer.0, byte, bytemuck::cast_slice(contents));
         self.checked(())
     }
 
@@ -176,15 +212,7 @@ impl Device {
 
     /// Starts a kernel in this many workgroups, after all that was started before.
     pub fn run(&self, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 3]) -> Result<(), GpuError> {
-        let entries = buffers.iter().zip(0..).map(|(buffer, binding)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.0.as_entire_binding(),
-        });
-        let bindings = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &kernel.pipeline.get_bind_group_layout(0),
-            entries: &entries.collect::<Vec<_>>(),
-        });
+        let bindings = self.bindings(kernel, buffers);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&kernel.pipeline);
@@ -196,15 +224,23 @@ impl Device {
         self.checked(())
     }
 
+    /// What a kernel is run on.
+    pub(crate) fn bindings(&self, kernel: &Kernel, buffers: &[&Buffer]) -> wgpu::BindGroup {
+        let entries = buffers.iter().zip(0..).map(|(buffer, binding)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.0.as_entire_binding(),
+        });
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &kernel.pipeline.get_bind_group_layout(0),
+            entries: &entries.collect::<Vec<_>>(),
+        })
+    }
+
     /// The contents of a buffer, when all that was started is done.
     pub fn read<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
         let size = buffer.0.size();
-        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("copies"),
-            size,
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let copy = self.empty("copies", size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&buffer.0, 0, &copy, 0, size);
         self.queue.submit([encoder.finish()]);

@@ -1,17 +1,20 @@
 //! The engine that renders scenes on GPUs, by wgpu.
 //!
 //! [`flatten`] makes buffers of a scene, or says what kernels do not draw; a [`Renderer`] adds
-//! samples of its pixels to a film. [`Device`] is the GPU, [`Bvh`] what rays are traced through
-//! there. [`shaders`] has the sources of what runs there: *laws*, which are physics and are
-//! translated from Rust, and *plumbing*, which is written in WGSL.
+//! samples of its pixels to a film, a [`Realtime`] makes pictures at once. [`Device`] is the GPU,
+//! [`Bvh`] what rays are traced through there. [`shaders`] has the sources of what runs there:
+//! *laws*, which are physics and are translated from Rust, and *plumbing*, which is written in
+//! WGSL.
 //!
 //! A [`Rasterizer`] draws scenes triangle by triangle instead, by the raster pipeline.
 
 mod algorithm;
 mod bvh;
+mod commands;
 mod device;
 mod flatten;
 mod raster;
+mod realtime;
 mod renderer;
 pub mod shaders;
 
@@ -20,4 +23,5 @@ pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
+pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
 pub use renderer::{Kernels, PassError, Renderer};

@@ -17,7 +17,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
-use crate::shaders::{self, Parts};
+use crate::shaders;
 
 /// The most pixels of a strip, unless a row of tiles has more.
 const MAX_PIXELS: usize = 1 << 18;
@@ -42,19 +42,18 @@ impl Kernels {
         &self.device
     }
 
-    fn get(&self, algorithm: &Algorithm, parts: Parts) -> Result<Arc<Kernel>, GpuError> {
+    pub(crate) fn get(&self, name: &str, source: String) -> Result<Arc<Kernel>, GpuError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let source = shaders::pixels(algorithm, parts);
         if let Some(kernel) = made.get(&source) {
             return Ok(kernel.clone());
         }
-        let kernel = Arc::new(self.device.kernel("pixels", &source)?);
+        let kernel = Arc::new(self.device.kernel(name, &source)?);
         made.insert(source, kernel.clone());
         Ok(kernel)
     }
 }
 
-/// What the kernel is to render: `Batch` of `shaders/scene.wgsl`.
+/// What the kernel is to render: `Batch` of `shaders/pixels.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::NoUninit)]
 struct Batch {
@@ -64,7 +63,7 @@ struct Batch {
     unused: u32,
 }
 
-/// What is found for a pixel: `Sample` of `shaders/scene.wgsl`.
+/// What is found for a pixel: `Sample` of `shaders/pixels.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct PixelSample {
@@ -90,7 +89,7 @@ impl Renderer {
         algorithm: &Algorithm,
         film: &Film,
     ) -> Result<Self, GpuError> {
-        let kernel = kernels.get(algorithm, flat.parts)?;
+        let kernel = kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?;
         let device = &kernels.device;
         let batch = Batch { low: [0; 2], size: [0; 2], index: 0, unused: 0 };
         let samples = strips(film.pixel_bounds()).map(|strip| strip.area()).max().unwrap_or(0);

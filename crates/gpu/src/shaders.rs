@@ -36,10 +36,19 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 14] = plumbing! {
+const PLUMBING: [&str; 13] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "lights" "light_choices" "cameras" "pixels"
+    "lights" "light_choices" "cameras"
 };
+
+/// What kernels of real-time frames share.
+const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
+
+/// From light to colours.
+const SENSOR: &str = include_str!("../shaders/sensor.wgsl");
+
+/// A path finds all light itself.
+const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
 
 /// A shader: the laws, and what uses them.
 pub fn with_laws(parts: &[&str]) -> String {
@@ -72,11 +81,66 @@ pub struct Parts {
 
 /// The kernel that renders a sample of each pixel by an algorithm.
 pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
-    let rays = match algorithm {
+    traced(parts, &[NO_RESERVOIRS, radiance(algorithm), include_str!("../shaders/pixels.wgsl")])
+}
+
+/// The kernel that finds the light of a real-time frame by an algorithm; but for direct light at
+/// the first surface where reservoirs have that.
+pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> String {
+    let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
+    let light = include_str!("../shaders/realtime/light.wgsl");
+    traced(parts, &[reservoirs, radiance(algorithm), FRAME, SENSOR, light])
+}
+
+/// The kernels of reservoirs: the first samples of a frame, and their reuse.
+pub fn reservoirs(parts: Parts) -> [String; 2] {
+    let texts = [
+        include_str!("../shaders/realtime/candidates.wgsl"),
+        concat!(
+            include_str!("../shaders/realtime/projection.wgsl"),
+            include_str!("../shaders/realtime/reuse.wgsl")
+        ),
+    ];
+    let shared = include_str!("../shaders/realtime/reservoirs.wgsl");
+    texts.map(|text| traced(parts, &[FRAME, SENSOR, shared, text]))
+}
+
+/// The kernel that finds what is seen in a real-time frame by an algorithm.
+pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
+    // Of ambient occlusion light does not depend on the reflectance.
+    let is_reflected = match algorithm {
+        Algorithm::RayCasting | Algorithm::Path(_) => "const IS_REFLECTED = true;\n",
+        Algorithm::AmbientOcclusion(..) => "const IS_REFLECTED = false;\n",
+    };
+    traced(parts, &[is_reflected, FRAME, include_str!("../shaders/realtime/surfaces.wgsl")])
+}
+
+/// The kernels that make a picture of the light of a real-time frame, in the order in which they
+/// run: they reproject the frames before, find variances, filter, and develop.
+pub fn filters() -> [String; 4] {
+    let texts = [
+        concat!(
+            include_str!("../shaders/realtime/projection.wgsl"),
+            include_str!("../shaders/realtime/temporal.wgsl")
+        ),
+        include_str!("../shaders/realtime/variance.wgsl"),
+        include_str!("../shaders/realtime/wavelet.wgsl"),
+        include_str!("../shaders/realtime/develop.wgsl"),
+    ];
+    texts.map(|text| [FRAME, text].concat())
+}
+
+/// The function `radiance` of an algorithm.
+fn radiance(algorithm: &Algorithm) -> &'static str {
+    match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
-    };
+    }
+}
+
+/// A kernel that traces rays through a scene.
+fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
     let Parts { holes, images, noise, coats, principled } = parts;
     let has = format!(
@@ -88,7 +152,7 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
     } else {
         include_str!("../shaders/openpbr_none.wgsl").to_owned()
     };
-    with_laws(&[&PLUMBING[..], &[direct, rays, &has, &surfaces]].concat())
+    with_laws(&[&PLUMBING[..], &[direct, &has, &surfaces], texts].concat())
 }
 
 /// The shaders of the raster pipeline, one module.

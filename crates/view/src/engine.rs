@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
 use alhazen::description::SceneDesc;
 use alhazen::image::DisplaySettings;
@@ -16,7 +15,8 @@ use alhazen::integrators::Control;
 use alhazen::system_clock;
 use alhazen::trace::PixelTrace;
 
-use crate::renderer::{Renderer, StepError};
+use crate::Renderer;
+use crate::step::StepError;
 use crate::world::summary;
 use crate::{Frame, Shot, World};
 
@@ -72,12 +72,10 @@ struct Shared {
 }
 
 impl Engine {
-    /// Starts to render a scene, in drafts that take about `target`. `wake` is called when there is
-    /// something new.
-    pub fn start(world: World, target: Duration, wake: impl Fn() + Send + 'static) -> Self {
-        let world = Arc::new(world);
-        let output =
-            Output { world: Arc::clone(&world), frame: None, trace: None, problem: None, note: None };
+    /// Starts to render. `wake` is called when there is something new.
+    pub fn start(renderer: Renderer, wake: impl Fn() + Send + 'static) -> Self {
+        let world = Arc::clone(renderer.world());
+        let output = Output { world, frame: None, trace: None, problem: None, note: None };
         let shared = Arc::new(Shared {
             mailbox: Mutex::default(),
             bell: Condvar::new(),
@@ -85,7 +83,7 @@ impl Engine {
             output: Mutex::new(output),
         });
         let worker = Worker {
-            renderer: Renderer::new(world, target),
+            renderer,
             control: Control::new(Arc::clone(&shared.cancel), system_clock()),
             shared: Arc::clone(&shared),
             wake: Box::new(wake),

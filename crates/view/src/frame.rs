@@ -17,7 +17,7 @@ pub struct Frame {
     /// Pixels of the film along a side of one of these.
     pub n: u32,
     /// Column and row of the first pixel, in pixels of its size.
-    first: [i32; 2],
+    pub(crate) first: [i32; 2],
     /// The view that it shows, in pixels of its size.
     pub view: View,
     /// Linear colours in `color_space`, or the numbers of `layer`; row by row from the upper left.
@@ -34,6 +34,19 @@ pub struct Frame {
     pub time: Duration,
     /// Rays traced for it.
     pub rays: u64,
+    /// The times of its parts, where a GPU has rendered it.
+    pub stages: Option<Stages>,
+}
+
+/// The times of the parts of a frame by a GPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Rays, and what is computed where they hit.
+    pub trace: Duration,
+    /// From the light of samples to colours.
+    pub filter: Duration,
+    /// All else: commands, and the way of the picture from the GPU to the host.
+    pub rest: Duration,
 }
 
 impl Frame {
@@ -69,6 +82,7 @@ impl Frame {
             planned: session.integrator().passes(),
             time: Duration::ZERO,
             rays: session.progress().stats.rays,
+            stages: None,
         }
     }
 
@@ -95,6 +109,7 @@ impl Frame {
             planned: 1,
             time,
             rays: 0,
+            stages: None,
         }
     }
 

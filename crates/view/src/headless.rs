@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
-use crate::renderer::StepError;
-use crate::{Flight, Renderer, Shot};
+use crate::step::StepError;
+use crate::{Flight, Renderer, Shot, Stages};
 
 /// The frame times of a camera path.
 #[derive(Clone, Debug)]
@@ -28,6 +28,12 @@ pub struct Report {
     pub rays: u64,
     /// The algorithm.
     pub integrator: String,
+    /// The GPU that has rendered; `None` if that is the CPU.
+    pub device: Option<String>,
+    /// How samples of direct light count that pixels and frames on a GPU share, in a word.
+    pub shared: Option<&'static str>,
+    /// The times of the parts of each frame that a GPU has rendered.
+    pub stages: Vec<Stages>,
 }
 
 impl Report {
@@ -51,6 +57,9 @@ impl Report {
             samples: shot.samples,
             rays: 0,
             integrator: shot.integrator.clone(),
+            device: None,
+            shared: renderer.shared(),
+            stages: Vec::new(),
         };
         for frame in 0..frames {
             renderer.aim(Shot { camera: flight.camera().clone(), ..shot.clone() });
@@ -61,9 +70,18 @@ impl Report {
             report.frames.push(picture.time);
             report.sizes.push(picture.size);
             report.rays += picture.rays;
+            report.stages.extend(picture.stages);
             flight.orbit(TAU / f64::from(frames), 0.0);
         }
+        report.device = renderer.device().map(str::to_owned);
         Ok(report)
+    }
+
+    /// The median time of a part of the frames that a GPU has rendered.
+    pub fn median_of(&self, part: fn(&Stages) -> Duration) -> Option<Duration> {
+        let mut times: Vec<Duration> = self.stages.iter().map(part).collect();
+        times.sort_unstable();
+        times.get(times.len() / 2).copied()
     }
 
     /// The time that this share of the frames does not exceed.
@@ -111,6 +129,13 @@ impl Report {
             "frame_resolution": { "median": self.median_size(), "last": self.sizes.last() },
             "samples_per_pixel": self.samples,
             "rays_per_second": self.rays_per_second(),
+            "device": self.device.as_deref().unwrap_or("CPU"),
+            "restir": self.shared,
+            "stage_ms": {
+                "trace": self.median_of(|stages| stages.trace).map(ms),
+                "filter": self.median_of(|stages| stages.filter).map(ms),
+                "rest": self.median_of(|stages| stages.rest).map(ms),
+            },
         })
     }
 }

@@ -16,6 +16,8 @@ mod frame;
 mod headless;
 pub mod knobs;
 pub mod lines;
+#[cfg(feature = "gpu")]
+mod on_device;
 mod pace;
 pub mod planet;
 #[cfg(feature = "gpu")]
@@ -23,6 +25,7 @@ mod rasterized;
 mod renderer;
 #[cfg(feature = "gpu")]
 pub mod split;
+mod step;
 #[cfg(feature = "window")]
 pub mod window;
 mod world;
@@ -30,10 +33,11 @@ mod world;
 pub use darkroom::{develop, layers};
 pub use engine::{Engine, Output};
 pub use flight::{Flight, Mode};
-pub use frame::Frame;
+pub use frame::{Frame, Stages};
 pub use headless::Report;
 pub use pace::Pace;
 #[cfg(feature = "gpu")]
 pub use rasterized::{Raster, Rasterized};
-pub use renderer::{Renderer, StepError};
+pub use renderer::Renderer;
+pub use step::StepError;
 pub use world::{Shot, World};

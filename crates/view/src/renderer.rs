@@ -8,15 +8,22 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::Job;
+use alhazen::description::Diagnostic;
+#[cfg(feature = "gpu")]
+use alhazen::device::Kernels;
 use alhazen::image::{DisplaySettings, ImageError};
-use alhazen::integrators::{Control, Limits, PassError};
+use alhazen::integrators::{Control, Limits};
+#[cfg(feature = "gpu")]
+use alhazen::realtime::Weights;
 use alhazen::trace::{PixelTrace, TraceError};
 use alhazen::write_picture;
 
+#[cfg(feature = "gpu")]
+use crate::on_device::OnDevice;
+use crate::step::{SHORTEST, StepError};
+#[cfg(feature = "gpu")]
+use crate::world::messages;
 use crate::{Frame, Pace, Shot, World};
-
-/// The shortest time between two pictures of a camera at rest.
-const SHORTEST: Duration = Duration::from_millis(40);
 
 /// The least ratio of that time to the one that making a picture of the film takes.
 const SHARE: u32 = 4;
@@ -27,6 +34,8 @@ pub struct Renderer {
     shot: Shot,
     pace: Pace,
     stage: Stage,
+    #[cfg(feature = "gpu")]
+    device: Option<OnDevice>,
 }
 
 /// What the next step does.
@@ -37,6 +46,9 @@ enum Stage {
     Refine(u32),
     /// The next samples of the picture.
     Samples(Box<Samples>),
+    /// The next samples of the picture on the device.
+    #[cfg(feature = "gpu")]
+    OnDevice,
     /// Nothing: the picture is done, or cannot be rendered.
     Rest(Option<Box<Job>>),
 }
@@ -51,36 +63,54 @@ struct Samples {
     cost: Duration,
 }
 
-/// Why a step has no picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum StepError {
-    /// It was cancelled.
-    Cancelled,
-    /// It cannot be rendered; the text says why.
-    Problem(String),
-}
-
-impl From<PassError> for StepError {
-    fn from(error: PassError) -> Self {
-        match error {
-            PassError::Cancelled => Self::Cancelled,
-            PassError::OutOfMemory(problem) | PassError::Device(problem) => Self::Problem(problem),
-        }
-    }
-}
-
-impl From<String> for StepError {
-    fn from(problem: String) -> Self {
-        Self::Problem(problem)
-    }
-}
-
 impl Renderer {
     /// A renderer that shows what the scene's author shows of it, in drafts that take about
     /// `target`.
     pub fn new(world: Arc<World>, target: Duration) -> Self {
         let (shot, pace) = (world.shot(), Pace::new(target, world.bounds()));
-        Self { world, shot, pace, stage: Stage::Draft }
+        Self {
+            world,
+            shot,
+            pace,
+            stage: Stage::Draft,
+            #[cfg(feature = "gpu")]
+            device: None,
+        }
+    }
+
+    /// Renders by a GPU what kernels draw. With `shared`, pixels and frames share samples of direct
+    /// light.
+    #[cfg(feature = "gpu")]
+    pub fn move_to(&mut self, kernels: Arc<Kernels>, shared: Option<Weights>) {
+        self.device = Some(OnDevice::new(kernels, shared));
+        self.stage = Stage::Draft;
+    }
+
+    /// The GPU that renders what is shown; `None` if that is the CPU.
+    pub fn device(&self) -> Option<&str> {
+        #[cfg(feature = "gpu")]
+        return self.device.as_ref()?.name();
+        #[cfg(not(feature = "gpu"))]
+        None
+    }
+
+    /// How samples of direct light count that pixels and frames on a GPU share, in a word.
+    pub fn shared(&self) -> Option<&'static str> {
+        #[cfg(feature = "gpu")]
+        return match self.device.as_ref()?.shared()? {
+            Weights::Unbiased => Some("unbiased"),
+            Weights::Biased => Some("biased"),
+        };
+        #[cfg(not(feature = "gpu"))]
+        None
+    }
+
+    /// Why the CPU renders although there is a GPU.
+    pub fn refusals(&self) -> &[Diagnostic] {
+        #[cfg(feature = "gpu")]
+        return self.device.as_ref().map_or(&[], OnDevice::refusals);
+        #[cfg(not(feature = "gpu"))]
+        &[]
     }
 
     /// The scene.
@@ -126,6 +156,8 @@ impl Renderer {
             Stage::Samples(samples) => Some(&samples.job),
             Stage::Rest(job) => job.as_deref(),
             Stage::Draft | Stage::Refine(_) => None,
+            #[cfg(feature = "gpu")]
+            Stage::OnDevice => None,
         };
         job.filter(|job| !job.session.state().done.is_empty())
     }
@@ -155,7 +187,21 @@ impl Renderer {
                 self.stage = Stage::Refine(n / 2);
                 Ok(Some(frame))
             }
+            #[cfg(feature = "gpu")]
+            Stage::OnDevice => {
+                let Some(device) = &mut self.device else { return Ok(None) };
+                let (frame, is_done) = device.add(&self.world, &self.shot)?;
+                if is_done {
+                    self.stage = Stage::Rest(None);
+                }
+                Ok(frame)
+            }
             Stage::Refine(_) => {
+                #[cfg(feature = "gpu")]
+                if self.rests_on_device()? {
+                    self.stage = Stage::OnDevice;
+                    return self.try_step(control);
+                }
                 let job = self.world.job(&self.shot)?;
                 let (shown, rays, cost) = (Instant::now(), 0, Duration::ZERO);
                 self.stage = Stage::Samples(Box::new(Samples { job, shown, rays, cost }));
@@ -174,7 +220,20 @@ impl Renderer {
         }
     }
 
-    fn draft(&self, n: u32, control: &Control) -> Result<Frame, StepError> {
+    /// Begins the picture itself on the device, if that draws it.
+    #[cfg(feature = "gpu")]
+    fn rests_on_device(&mut self) -> Result<bool, StepError> {
+        let device = self.device.as_mut();
+        device.map_or(Ok(false), |device| device.rest(&self.world, &self.shot))
+    }
+
+    fn draft(&mut self, n: u32, control: &Control) -> Result<Frame, StepError> {
+        #[cfg(feature = "gpu")]
+        if let Some(device) = &mut self.device
+            && let Some(frame) = device.draft(&self.world, &self.shot, n)?
+        {
+            return Ok(frame);
+        }
         let begin = Instant::now();
         let mut session = self.world.draft(&self.shot, n)?;
         session.run(0..self.shot.samples, &Limits::default(), control, &mut |_| ())?;
@@ -199,11 +258,36 @@ impl Renderer {
     /// Writes the picture so far; gives its number of samples per pixel, or `None` where there is
     /// no picture yet.
     pub fn save(&self, path: &std::path::Path, display: &DisplaySettings) -> Option<Result<u32, ImageError>> {
-        let job = self.job()?;
-        let state = job.session.state();
-        let written = write_picture(&job.header().development(state), path, display);
-        Some(written.map(|()| state.done.count()))
+        #[cfg(feature = "gpu")]
+        if let Some(samples) = self.device.as_ref().and_then(OnDevice::rested) {
+            return self.save_of_device(samples, path, display).transpose();
+        }
+        written(self.job()?, path, display)
     }
+
+    /// Renders the samples that the device has added up again, into a film, and writes that.
+    #[cfg(feature = "gpu")]
+    fn save_of_device(
+        &self,
+        samples: u32,
+        path: &std::path::Path,
+        display: &DisplaySettings,
+    ) -> Result<Option<u32>, ImageError> {
+        let invalid = |problem: String| ImageError::Invalid(problem);
+        let mut job = self.world.job(&self.shot).map_err(invalid)?;
+        if let Some(device) = &self.device {
+            job.move_to(device.kernels()).map_err(|refusals| invalid(messages(&refusals)))?;
+        }
+        let done = job.session.run(0..samples, &Limits::default(), &Control::default(), &mut |_| ());
+        done.map_err(|error| invalid(format!("{error:?}")))?;
+        written(&job, path, display).transpose()
+    }
+}
+
+fn written(job: &Job, path: &std::path::Path, display: &DisplaySettings) -> Option<Result<u32, ImageError>> {
+    let state = job.session.state();
+    let written = write_picture(&job.header().development(state), path, display);
+    Some(written.map(|()| state.done.count()))
 }
 
 impl Samples {

@@ -8,8 +8,7 @@ use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
 use crate::rasterized::Rasterized;
-use crate::renderer::StepError;
-use crate::{Flight, Renderer, Report, Shot};
+use crate::{Flight, Renderer, Report, Shot, StepError};
 
 /// The frame times of both sides.
 #[derive(Clone, Debug)]

@@ -125,7 +125,7 @@ impl World {
         Some(self.scene.world_from_render().transform_point3(p.as_dvec3()))
     }
 
-    fn settings(&self, shot: &Shot) -> Result<SceneDesc, String> {
+    pub(crate) fn settings(&self, shot: &Shot) -> Result<SceneDesc, String> {
         let mut desc = self.desc.clone();
         desc.camera.value = shot.camera.clone();
         let overrides = Overrides {
@@ -140,6 +140,10 @@ impl World {
 
 /// The errors among diagnostics, as text.
 pub fn summary(diagnostics: &[Diagnostic]) -> String {
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
-    errors.map(|error| error.message.as_str()).collect::<Vec<_>>().join("\n")
+    messages(diagnostics.iter().filter(|diagnostic| diagnostic.is_error()))
+}
+
+/// Diagnostics as text.
+pub fn messages<'a>(diagnostics: impl IntoIterator<Item = &'a Diagnostic>) -> String {
+    diagnostics.into_iter().map(|it| it.message.as_str()).collect::<Vec<_>>().join("\n")
 }

@@ -10,6 +10,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub use render::{Changes, DisplayOptions, LiveOptions, Render, Resume};
 
+#[cfg(feature = "gpu")]
+use crate::device::{DeviceChoice, Restir};
 use crate::help;
 use crate::values::{pixel, time};
 
@@ -232,6 +234,16 @@ pub struct View {
     /// Samples per pixel of the finished picture. [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
+    /// What renders: cpu; gpu, as in `alhazen render`; or auto, the GPU unless it is one in
+    /// software. The planet is the CPU's.
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
+    pub device: DeviceChoice,
+    /// With --device, pixels and frames share samples of direct light (ReSTIR): unbiased, or
+    /// biased, which is faster, and too dark where surfaces and shadows differ.
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "WEIGHTS", value_enum, hide_possible_values = true)]
+    pub restir: Option<Restir>,
     /// Changes to the scene.
     #[command(flatten)]
     pub changes: Changes,

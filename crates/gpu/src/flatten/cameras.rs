@@ -15,33 +15,35 @@ const ORTHOGRAPHIC: u32 = 1;
 impl Flattener<'_> {
     /// The camera of a view; its offset.
     pub fn camera(&mut self, view: &View) -> u32 {
-        let motion = view.camera.transform().animated();
-        if motion.is_moving() {
-            self.refuse("moving cameras", Span::NONE);
-        }
-        let (kind, screen, lens) = match view.camera.projection() {
-            Projection::Perspective(p) => (PERSPECTIVE, p.screen(), p.lens()),
-            Projection::Orthographic(p) => (ORTHOGRAPHIC, p.screen(), p.lens()),
-            Projection::Spherical(_) => return self.no_camera("camera `spherical`"),
-            Projection::Realistic(_) => return self.no_camera("camera `realistic`"),
-        };
-        let &Screen { top_left, per_pixel } = screen;
-        let ThinLens { radius, focal_distance } = lens;
-        let at = self.slab.add([kind]);
-        let matrix = motion.start().matrix();
-        self.slab.add_numbers([0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()));
-        let screen = [top_left.x, top_left.y, per_pixel.x, per_pixel.y];
-        self.slab.add_numbers(screen.into_iter().chain([radius, focal_distance]));
-        let samples = view.samples_per_pixel;
-        let least = if view.options.disable_pixel_jitter { 1 } else { samples };
-        self.slab.add_numbers([samples, least].map(differential_scale));
-        let differences = view.camera.minimum_differentials().differences();
-        self.slab.add_numbers(differences.as_flattened().iter().flat_map(|v| v.to_array()));
-        at
+        let words = words(view).unwrap_or_else(|what| {
+            self.refuse(what, Span::NONE);
+            Vec::new()
+        });
+        self.slab.add(words)
     }
+}
 
-    fn no_camera(&mut self, what: &str) -> u32 {
-        self.refuse(what, Span::NONE);
-        0
+/// The record of a view's camera; the error is what kernels do not draw.
+pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
+    let motion = view.camera.transform().animated();
+    if motion.is_moving() {
+        return Err("moving cameras");
     }
+    let (kind, screen, lens) = match view.camera.projection() {
+        Projection::Perspective(p) => (PERSPECTIVE, p.screen(), p.lens()),
+        Projection::Orthographic(p) => (ORTHOGRAPHIC, p.screen(), p.lens()),
+        Projection::Spherical(_) => return Err("camera `spherical`"),
+        Projection::Realistic(_) => return Err("camera `realistic`"),
+    };
+    let &Screen { top_left, per_pixel } = screen;
+    let ThinLens { radius, focal_distance } = lens;
+    let matrix = motion.start().matrix();
+    let mut numbers: Vec<f32> = [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect();
+    numbers.extend([top_left.x, top_left.y, per_pixel.x, per_pixel.y, radius, focal_distance]);
+    let samples = view.samples_per_pixel;
+    let least = if view.options.disable_pixel_jitter { 1 } else { samples };
+    numbers.extend([samples, least].map(differential_scale));
+    let differences = view.camera.minimum_differentials().differences();
+    numbers.extend(differences.as_flattened().iter().flat_map(|v| v.to_array()));
+    Ok([kind].into_iter().chain(numbers.into_iter().map(f32::to_bits)).collect())
 }

@@ -1,7 +1,8 @@
 //! Pixel filters: the kind and both radii, and of those that are tabulated the distribution of
-//! offsets.
+//! offsets, and a bit for each cell of it: whether the filter is negative there.
 
 use film::Filter;
+use math::Vec2;
 
 use super::Flattener;
 
@@ -17,10 +18,21 @@ impl Flattener<'_> {
             Filter::Box(_) => (BOX, None),
             Filter::Triangle(_) => (TRIANGLE, None),
             Filter::Gaussian(_, table) | Filter::Mitchell(_, table) | Filter::LanczosSinc(_, table) => {
-                (TABLE, Some(table.distribution()))
+                (TABLE, Some(table))
             }
         };
-        let table = table.map_or(0, |table| self.distribution(table));
-        self.slab.add([kind, radius[0], radius[1], table])
+        let Some(table) = table else { return self.slab.add([kind, radius[0], radius[1]]) };
+        let distribution = self.distribution(table.distribution());
+        let ([columns, rows], domain) = (table.distribution().resolution(), table.distribution().domain());
+        let is_negative = |cell: usize| {
+            let [x, y] = [cell % columns, cell / columns].map(|i| i as f32 + 0.5);
+            filter.evaluate(domain.lerp(Vec2::new(x / columns as f32, y / rows as f32))) < 0.0
+        };
+        let mut signs = vec![0; (columns * rows).div_ceil(32)];
+        for cell in (0..columns * rows).filter(|&cell| is_negative(cell)) {
+            signs[cell / 32] |= 1 << (cell % 32);
+        }
+        let signs = self.slab.add(signs);
+        self.slab.add([kind, radius[0], radius[1], distribution, signs])
     }
 }

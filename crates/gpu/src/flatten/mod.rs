@@ -7,7 +7,7 @@
 //! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene
 //! is then drawn by the CPU.
 
-mod cameras;
+pub(crate) mod cameras;
 mod distributions;
 mod filters;
 mod geometries;
@@ -17,6 +17,7 @@ mod lights;
 mod materials;
 mod openpbr;
 mod samplers;
+mod sensors;
 mod slab;
 mod spectra;
 mod textures;
@@ -100,8 +101,8 @@ pub(crate) struct Head {
     pub(crate) cos_sample: u32,
     /// Whether anything depends on the size of a pixel on surfaces.
     pub(crate) has_footprints: u32,
-    /// Fills up the words.
-    pub(crate) unused: u32,
+    /// The offset of the sensor.
+    pub(crate) sensor: u32,
 }
 
 impl Flat {
@@ -124,6 +125,8 @@ pub struct Subject<'a> {
     pub film: &'a Film,
     /// The algorithm.
     pub algorithm: &'a Algorithm,
+    /// Whether lights may leave directions to sampling of the BSDF.
+    pub allows_incomplete: bool,
     /// The source of random numbers.
     pub sampler: &'a Sampler,
     /// The most bytes of a buffer.
@@ -133,10 +136,10 @@ pub struct Subject<'a> {
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, sampler, largest_buffer } = subject;
+    let Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer } = subject;
     let mut flattener = Flattener {
         scene,
-        allows_incomplete: algorithm.weights_lights(),
+        allows_incomplete,
         slab: Slab::new(),
         spectra: Default::default(),
         textures: Default::default(),
@@ -156,6 +159,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.random_numbers = flattener.sampler(sampler);
     head.camera = flattener.camera(view);
     head.filter = flattener.filter(film.filter());
+    head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();
     head.materials = flattener.materials();
     (head.lights, head.infinite) = flattener.lights();

@@ -80,9 +80,15 @@ impl Flattener<'_> {
         if let Some(&at) = self.spectra.get(&address) {
             return at;
         }
+        let at = self.curve(dense);
+        self.spectra.insert(address, at);
+        at
+    }
+
+    /// A densely sampled spectrum that no other shares; its offset.
+    pub fn curve(&mut self, dense: &DenselySampled) -> u32 {
         let at = self.slab.add([DENSE]);
         self.slab.add_numbers(dense.values().iter().copied());
-        self.spectra.insert(address, at);
         at
     }
 }

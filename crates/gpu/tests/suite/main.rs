@@ -8,6 +8,8 @@ mod laws;
 mod openpbr;
 mod pictures;
 mod raster;
+mod realtime;
+mod reservoirs;
 mod textures;
 mod trace;
 mod twins;

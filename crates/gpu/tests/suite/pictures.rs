@@ -16,7 +16,8 @@ use sampling::sampler::Independent;
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-const SAMPLES: u32 = 2;
+/// The samples of each pixel.
+pub const SAMPLES: u32 = 2;
 
 /// The kernels of the first device, which are compiled once.
 pub fn kernels() -> Option<Arc<Kernels>> {
@@ -26,10 +27,10 @@ pub fn kernels() -> Option<Arc<Kernels>> {
 
 /// A small picture of a scene.
 pub struct Case {
-    scene: Arc<Scene>,
-    view: View,
-    desc: SceneDesc,
-    sampler: Sampler,
+    pub scene: Arc<Scene>,
+    pub view: View,
+    pub desc: SceneDesc,
+    pub sampler: Sampler,
 }
 
 impl Case {
@@ -51,24 +52,24 @@ impl Case {
         Self { scene: Arc::new(scene), view, desc, sampler }
     }
 
-    fn of_text(text: &str) -> Self {
+    pub fn of_text(text: &str) -> Self {
         let path = Path::new("scene.pbrt");
         Self::new(path, &MemoryAssets::default().with(path, text))
     }
 
     /// One of the repository's scenes.
-    fn named(name: &str) -> Self {
+    pub fn named(name: &str) -> Self {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
         Self::new(&Path::new(folder).join(name).with_extension("pbrt"), &Files)
     }
 
-    fn film(&self) -> Film {
+    pub fn film(&self) -> Film {
         film::compile(&self.desc).expect("a film").film
     }
 
     /// The settings of `path` of the scene, or the default ones. Paths are short among many small
     /// bodies, whose curvature multiplies rounding from one to the next.
-    fn path(&self) -> PathDesc {
+    pub fn path(&self) -> PathDesc {
         let settings = match self.desc.integrator.value {
             IntegratorDesc::Path(settings) => settings,
             _ => PathDesc::default(),
@@ -77,12 +78,17 @@ impl Case {
         PathDesc { max_depth: settings.max_depth.min(if is_crowded { 1 } else { 5 }), ..settings }
     }
 
-    fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
+    pub fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
+        self.flatten_for(algorithm, algorithm.weights_lights())
+    }
+
+    /// The same, where lights may leave directions to the BSDF or not.
+    pub fn flatten_for(&self, algorithm: &Algorithm, allows_incomplete: bool) -> Result<Flat, Vec<Refusal>> {
         let Self { scene, view, sampler, .. } = self;
         let lights = scene.light_sampler(algorithm.light_sampler(), &Default::default()).expect("a choice");
         let film = &self.film();
         let largest_buffer = 1 << 27;
-        flatten(Subject { scene, view, film, algorithm, sampler, largest_buffer }, &lights)
+        flatten(Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer }, &lights)
     }
 
     fn on_gpu(&self, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Image {
@@ -97,7 +103,7 @@ impl Case {
         film.develop().expect("a picture")
     }
 
-    fn on_cpu(&self, algorithm: &Algorithm) -> Image {
+    pub fn on_cpu(&self, algorithm: &Algorithm) -> Image {
         match algorithm {
             Algorithm::RayCasting => self.by(RayCasting),
             Algorithm::AmbientOcclusion(desc, space) => self.by(AmbientOcclusion::new(*desc, space)),

@@ -40,8 +40,11 @@ fn kernels_are_valid() {
         for bits in 0..32 {
             let [holes, images, noise, coats, principled] = [1, 2, 4, 8, 16].map(|bit| bits & bit != 0);
             let parts = Parts { holes, images, noise, coats, principled };
-            let source = shaders::pixels(&algorithm, parts);
-            validate(&source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+            let kernels = [shaders::pixels(&algorithm, parts), shaders::surfaces(&algorithm, parts)];
+            let lights = [false, true].map(|has| shaders::light(&algorithm, parts, has));
+            for source in kernels.iter().chain(&lights).chain(&shaders::reservoirs(parts)) {
+                validate(source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
+            }
         }
     }
 }
@@ -49,6 +52,13 @@ fn kernels_are_valid() {
 #[test]
 fn shaders_of_the_raster_pipeline_are_valid() {
     validate(&shaders::raster()).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn kernels_of_frames_are_valid() {
+    for source in shaders::filters() {
+        validate(&source).unwrap_or_else(|error| panic!("{error}"));
+    }
 }
 
 #[test]

@@ -13,7 +13,7 @@ use alhazen::math::{DMat4, Point3, Vec3};
 use planet::{Input, Planet, Substance, Walker, scene};
 use rayon::prelude::*;
 
-use crate::renderer::StepError;
+use crate::step::StepError;
 use crate::world::summary;
 use crate::{Frame, Shot, World};
 

@@ -6,7 +6,7 @@ use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
 use super::{Input, Outing, Spent};
-use crate::renderer::StepError;
+use crate::step::StepError;
 
 /// The steps of a frame: it shows a thirtieth of a second.
 const STEPS: u32 = 2;

@@ -8,13 +8,11 @@ mod split;
 mod stage;
 mod state;
 
-use std::time::Duration;
-
 use alhazen::description::SceneDesc;
 use alhazen::image::DisplaySettings;
 use eframe::egui::{CentralPanel, Color32, Frame, Margin, Panel, ScrollArea, Ui, ViewportBuilder, Visuals};
 
-use crate::World;
+use crate::Renderer;
 use crate::planet::Outing;
 use planet::PlanetWindow;
 use state::State;
@@ -25,17 +23,15 @@ const PANEL: f32 = 270.0;
 /// Behind the picture.
 const BACKGROUND: Color32 = Color32::from_gray(18);
 
-/// Opens a window that shows a scene, compiled and as its description for changes, until it is
-/// closed; while the camera moves, frames take about `target`. With `split`, the scene is
-/// rasterised to the right of a slider at this share of the width. The error says why there is no
-/// window.
+/// Opens a window that shows a scene, as it is rendered and as its description for changes, until
+/// it is closed. With `split`, the scene is rasterised to the right of a slider at this share of
+/// the width. The error says why there is no window.
 pub fn open(
     title: &str,
-    world: World,
+    renderer: Renderer,
     desc: SceneDesc,
     display: DisplaySettings,
     split: Option<f32>,
-    target: Duration,
 ) -> Result<(), String> {
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default().with_inner_size([1280.0, 800.0]).with_title(title),
@@ -45,7 +41,7 @@ pub fn open(
         context.egui_ctx.set_visuals(Visuals::dark());
         let repaint = context.egui_ctx.clone();
         let wake = move || repaint.request_repaint();
-        Ok(Box::new(Window { state: State::new(world, desc, (display, split), target, wake) }))
+        Ok(Box::new(Window { state: State::new(renderer, desc, (display, split), wake) }))
     });
     eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
 }

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 use alhazen::description::SceneDesc;
 use alhazen::export::export_camera;
@@ -12,7 +11,7 @@ use eframe::egui::{Context, TextureHandle, TextureOptions};
 
 use super::developer::Developer;
 use super::split::Split;
-use crate::{Engine, Flight, Frame, Mode, Output, Shot, World};
+use crate::{Engine, Flight, Frame, Mode, Output, Renderer, Shot};
 
 /// The state of the window.
 pub struct State {
@@ -51,16 +50,14 @@ pub struct State {
 impl State {
     /// Shows a scene.
     pub fn new(
-        world: World,
+        renderer: Renderer,
         desc: SceneDesc,
         (display, split): (DisplaySettings, Option<f32>),
-        target: Duration,
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Self {
-        let shot = world.shot();
-        let flight = world.flight();
+        let (shot, flight) = (renderer.shot().clone(), renderer.world().flight());
         let file = PathBuf::from(&desc.film.filename).with_extension("png").display().to_string();
-        let engine = Engine::start(world, target, wake.clone());
+        let engine = Engine::start(renderer, wake.clone());
         Self {
             output: engine.output(),
             engine,

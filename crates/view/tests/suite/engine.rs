@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::description::{LightKind, SceneDesc};
 use alhazen::image::DisplaySettings;
 use alhazen::math::Point3;
-use alhazen_view::{Engine, Output, Shot, World};
+use alhazen_view::{Engine, Output, Renderer, Shot, World};
 
 use crate::{desc, world};
 
@@ -20,7 +20,7 @@ fn engine(world: World) -> (Engine, Receiver<()>) {
         // Nobody listens once the test is over.
         let _ = sender.send(());
     };
-    (Engine::start(world, TARGET, tell), receiver)
+    (Engine::start(Renderer::new(Arc::new(world), TARGET), tell), receiver)
 }
 
 /// Waits until the output is as expected.

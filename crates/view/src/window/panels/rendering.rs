@@ -1,5 +1,7 @@
 //! How fast it is, the algorithm and what it shows.
 
+use std::time::Duration;
+
 use alhazen::film::Layer;
 use alhazen::integrator_names;
 use eframe::egui::{Color32, ComboBox, Grid, ProgressBar, RichText, Ui};
@@ -69,6 +71,11 @@ fn numbers(ui: &mut Ui, frame: &Frame) {
         };
         row("frame", format!("{:.1} ms, {:.1} fps", 1e3 * seconds, 1.0 / seconds));
         row("rays", format!("{rays:.2} M/s"));
+        if let Some(stages) = frame.stages {
+            let ms = |time: Duration| 1e3 * time.as_secs_f64();
+            let [trace, filter, rest] = [stages.trace, stages.filter, stages.rest].map(ms);
+            row("of GPU", format!("{trace:.1} + {filter:.1} + {rest:.1} ms"));
+        }
         row(
             "pixels",
             match frame.n {

@@ -1,0 +1,108 @@
+//! Pictures at once, by a device: of a compiled scene, whose camera may move.
+
+use std::sync::Arc;
+
+use description::{Diagnostic, SceneDesc};
+use gpu::AimError;
+use math::Bounds2i;
+use sampling::Sampler;
+use scene::{Scene, View};
+use spectrum::RgbColorSpace;
+
+use crate::device::{Flattened, Kernels, failed, flattened};
+use crate::sketch::coarse;
+
+pub use gpu::{GpuError, Picture, Stages, Weights};
+
+/// A scene on a device.
+pub struct Realtime {
+    scene: Arc<Scene>,
+    engine: gpu::Realtime,
+    pixels: Bounds2i,
+    color_space: &'static RgbColorSpace,
+    planned: u32,
+}
+
+/// What a device shows.
+pub struct Aim {
+    /// The view, in pixels of their size.
+    pub view: View,
+    /// The pixels.
+    pub pixels: Bounds2i,
+}
+
+impl Realtime {
+    /// Takes a compiled scene to a device, with the algorithm, film and sampler of a description,
+    /// whose geometry does not count. With `shared`, pixels and frames share samples of direct
+    /// light. The error says what kernels do not draw.
+    pub fn new(
+        scene: &Arc<Scene>,
+        desc: &SceneDesc,
+        kernels: &Arc<Kernels>,
+        shared: Option<Weights>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let view = View::compile(desc, scene.world_from_render())?.view;
+        let film = film::compile(desc)?.film;
+        let Flattened { flat, algorithm, sampler } =
+            flattened(desc, scene, &view, &film, kernels, shared.is_some())?;
+        let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)
+            .map_err(|error| vec![failed(&error)])?;
+        Ok(Self {
+            scene: scene.clone(),
+            engine,
+            pixels: film.pixel_bounds(),
+            color_space: film.color_space(),
+            planned: Sampler::samples_per_pixel(&sampler),
+        })
+    }
+
+    /// Whether it shows this scene.
+    pub fn is_of(&self, scene: &Arc<Scene>) -> bool {
+        Arc::ptr_eq(&self.scene, scene)
+    }
+
+    /// What the camera of a description sees, in pixels `n` times as wide and high.
+    pub fn look(&self, desc: &SceneDesc, n: u32) -> Result<Aim, Vec<Diagnostic>> {
+        let view = View::compile(desc, self.scene.world_from_render())?.view.coarser(n);
+        Ok(Aim { view, pixels: coarse(&self.pixels, n as i32) })
+    }
+
+    /// Looks through the camera of a description, in pixels `n` times as wide and high.
+    pub fn aim(&mut self, desc: &SceneDesc, n: u32) -> Result<Aim, Vec<Diagnostic>> {
+        let Aim { view, pixels } = self.look(desc, n)?;
+        self.engine.aim(&view, pixels).map_err(|error| match error {
+            AimError::Refused(what) => {
+                let message = format!("the engine for GPUs does not draw {what}");
+                vec![Diagnostic::warning("not-on-gpu", message, desc.camera.origin.span)]
+            }
+            AimError::Gpu(error) => vec![failed(&error)],
+        })?;
+        Ok(Aim { view, pixels })
+    }
+
+    /// A picture for a camera that moves, of so many samples of each pixel.
+    pub fn moving(&mut self, samples: u32) -> Result<Picture, GpuError> {
+        Ok(self.engine.moving(samples)?.unwrap_or_default())
+    }
+
+    /// Adds samples to the picture of a camera that rests: the next ones of those that the whole
+    /// picture has. The picture, if it is wanted.
+    pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
+        self.engine.resting(samples.min(self.planned.saturating_sub(self.engine.rested())), is_shown)
+    }
+
+    /// The samples of each pixel of the picture at rest, and how many it will have.
+    pub fn progress(&self) -> (u32, u32) {
+        (self.engine.rested(), self.planned)
+    }
+
+    /// The space of its colours.
+    pub fn color_space(&self) -> &'static RgbColorSpace {
+        self.color_space
+    }
+
+    /// The name of the device.
+    pub fn device(&self) -> &str {
+        self.engine.device().name()
+    }
+}

@@ -1,0 +1,310 @@
+//! Pictures at once. Only those that are shown are read back from the device.
+//!
+//! While the camera moves, a frame has a few samples of each pixel. They are averaged with those of
+//! the frames before, where these saw the same surface, and filtered by an edge-avoiding wavelet
+//! transform whose edges of light are as hard as the variance of the pixels allows: spatiotemporal
+//! variance-guided filtering [Schied 2017]. What is filtered is light divided by the reflectance of
+//! what is seen, so that textures stay sharp.
+//!
+//! Direct light of first surfaces is that of the algorithm, or of samples that pixels and frames
+//! share ([`Weights`]).
+//!
+//! When the camera rests, samples are added up, and the picture goes over from the filtered one to
+//! their mean.
+
+mod canvas;
+mod frame;
+mod reservoirs;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use math::Bounds2i;
+use sampling::sampler::Independent;
+use scene::View;
+
+use crate::Flat;
+use crate::algorithm::Algorithm;
+use crate::commands::Commands;
+use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::flatten::{Head, cameras};
+use crate::renderer::Kernels;
+use crate::shaders;
+use canvas::Canvas;
+use frame::{Eye, Frame, Level};
+use reservoirs::Reservoirs;
+
+pub use reservoirs::Weights;
+
+/// Pixels of a side of a kernel's workgroups.
+const WORKGROUP: u32 = 8;
+
+/// A stage of a frame, as an index of times.
+const TRACE: usize = 0;
+const FILTER: usize = 1;
+
+/// The levels of the wavelet transform.
+const LEVELS: u32 = 5;
+
+/// As many samples as a filtered picture is worth, and after so many at rest it counts no more.
+const WORTH: f32 = 8.0;
+const TRANSITION: f32 = 64.0;
+
+/// The kinds of random numbers of a frame in motion, which do not repeat themselves.
+const INDEPENDENT: u32 = 0;
+
+/// A scene on a device, of which pictures are made at once.
+pub struct Realtime {
+    kernels: Arc<Kernels>,
+    surfaces: Arc<Kernel>,
+    light: Arc<Kernel>,
+    filters: [Arc<Kernel>; 4],
+    levels: Vec<Buffer>,
+    reservoirs: Option<Reservoirs>,
+    head: Head,
+    /// Where the random numbers of frames in motion are among the tables.
+    restless: u32,
+    /// What rays are traced through: heads, nodes, triangles, items, tables and texels.
+    scene: [Buffer; 6],
+    parameters: Buffer,
+    canvas: Option<Canvas>,
+    /// The camera now, and that of the last frame in motion, if it is of this canvas.
+    eye: Eye,
+    last: Option<Eye>,
+    /// The half of the buffers that the last frame in motion has.
+    half: u32,
+    /// The samples of each pixel since the camera rests, and of frames in motion.
+    rested: u32,
+    moved: u32,
+}
+
+/// A picture, and what it took.
+#[derive(Clone, Debug, Default)]
+pub struct Picture {
+    /// Linear colours in the film's colour space, row by row from the upper left.
+    pub pixels: Vec<[f32; 3]>,
+    /// Rays that were traced since the last picture.
+    pub rays: u64,
+    /// The times of its parts on the device.
+    pub stages: Stages,
+}
+
+/// The times of the parts of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Rays, and what is computed where they hit.
+    pub trace: Duration,
+    /// From the light of samples to colours.
+    pub filter: Duration,
+}
+
+/// Why a scene cannot be shown from somewhere.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AimError {
+    /// What kernels do not draw, as a plural or with an article.
+    Refused(&'static str),
+    /// The device failed.
+    Gpu(GpuError),
+}
+
+impl From<GpuError> for AimError {
+    fn from(error: GpuError) -> Self {
+        Self::Gpu(error)
+    }
+}
+
+impl Realtime {
+    /// Takes a scene to the device. With `shared`, pixels and frames share samples of direct light,
+    /// if that is a part of the algorithm; lights must not leave directions to the BSDF then.
+    pub fn new(
+        kernels: Arc<Kernels>,
+        flat: &Flat,
+        algorithm: &Algorithm,
+        shared: Option<Weights>,
+    ) -> Result<Self, GpuError> {
+        let shared = shared.filter(|_| matches!(algorithm, Algorithm::Path(desc) if desc.max_depth > 0));
+        let device = kernels.device();
+        let restless = flat.tables.len() as u32;
+        let key = Independent::new(1, 0).key();
+        let tables: Vec<u32> = flat.tables.iter().copied().chain([INDEPENDENT, key]).collect();
+        let scene = [
+            device.buffer("heads of the scene", &[flat.head])?,
+            device.buffer("nodes of the scene's trees", &flat.bvh.nodes)?,
+            device.buffer("triangles of the scene", &flat.bvh.triangles)?,
+            device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
+            device.buffer("tables of the scene", &tables)?,
+            device.buffer("texels of the scene", &flat.texels)?,
+        ];
+        let parameters = device.parameters(&Frame::default())?;
+        let light = kernels.get("light", shaders::light(algorithm, flat.parts, shared.is_some()))?;
+        let surfaces = kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts))?;
+        let [temporal, variance, wavelet, develop] = shaders::filters();
+        let filters = [
+            kernels.get("temporal", temporal)?,
+            kernels.get("variance", variance)?,
+            kernels.get("wavelet", wavelet)?,
+            kernels.get("develop", develop)?,
+        ];
+        let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
+        let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
+        let reservoirs = shared.map(|weights| Reservoirs::new(&kernels, flat.parts, weights)).transpose()?;
+        Ok(Self {
+            reservoirs,
+            surfaces,
+            light,
+            filters,
+            levels,
+            head: flat.head,
+            restless,
+            scene,
+            parameters,
+            canvas: None,
+            eye: Eye::default(),
+            last: None,
+            half: 0,
+            rested: 0,
+            moved: 0,
+            kernels,
+        })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        self.kernels.device()
+    }
+
+    /// Looks from somewhere, at these pixels of the film; a picture at rest begins again.
+    pub fn aim(&mut self, view: &View, pixels: Bounds2i) -> Result<(), AimError> {
+        let camera = cameras::words(view).map_err(AimError::Refused)?;
+        let device = self.kernels.device();
+        let at = u64::from(self.head.camera) * size_of::<u32>() as u64;
+        device.write_at(&self.scene[4], at, &camera)?;
+        if self.canvas.as_ref().is_none_or(|canvas| canvas.pixels != pixels) {
+            self.canvas = Some(Canvas::new(device, pixels, self.reservoirs.is_some())?);
+            self.last = None;
+            if let Some(reservoirs) = &mut self.reservoirs {
+                reservoirs.clear();
+            }
+        }
+        self.eye = Eye::new(view);
+        self.rested = 0;
+        Ok(())
+    }
+
+    /// The samples of each pixel of the picture at rest.
+    pub fn rested(&self) -> u32 {
+        self.rested
+    }
+
+    /// A picture for a camera that moves, of so many samples of the middle of each pixel. None
+    /// before the camera is aimed.
+    pub fn moving(&mut self, samples: u32) -> Result<Option<Picture>, GpuError> {
+        let Some(canvas) = &self.canvas else { return Ok(None) };
+        let head = Head { random_numbers: self.restless, is_centered: 1, ..self.head };
+        self.half = 1 - self.half;
+        let frame = Frame {
+            index: self.moved,
+            samples,
+            half: self.half,
+            has_history: self.last.is_some().into(),
+            is_moving: 1,
+            eye: self.last.unwrap_or_default(),
+            ..canvas.frame()
+        };
+        let groups = groups(&frame);
+        if let Some(reservoirs) = &mut self.reservoirs {
+            reservoirs.begin(self.kernels.device(), self.eye, frame.eye)?;
+        }
+        let mut commands = self.begin(canvas, head, frame)?;
+        let [world, nodes, triangles, items, tables, texels] = &self.scene;
+        let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
+        let parameters = &self.parameters;
+        let [temporal, variance, wavelet, _] = &self.filters;
+        let looked = [world, nodes, triangles, items, tables, parameters, seen, texels];
+        commands.run(TRACE, &self.surfaces, &looked, groups);
+        self.trace(&mut commands, canvas, groups);
+        commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
+        commands.run(FILTER, variance, &[parameters, seen, history, even], groups);
+        let (mut from, mut to) = (even, odd);
+        for level in &self.levels {
+            commands.run(FILTER, wavelet, &[parameters, seen, history, from, to, level], groups);
+            (from, to) = (to, from);
+        }
+        let picture = self.develop(commands, canvas, from, groups)?;
+        self.moved = self.moved.wrapping_add(samples);
+        self.rested = 0;
+        self.last = Some(self.eye);
+        Ok(Some(picture))
+    }
+
+    /// Adds samples to the picture of a camera that rests: those that the whole picture has, one
+    /// after another. A picture if it is wanted.
+    pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
+        let Some(canvas) = &self.canvas else { return Ok(None) };
+        // Samples that are shared are those of one place in each pixel.
+        let samples = if self.reservoirs.is_some() { samples.min(1) } else { samples };
+        let before = self.rested;
+        self.rested += samples;
+        // There is no filtered picture of this camera without a frame in motion from there.
+        let worth = if self.last == Some(self.eye) { WORTH } else { 0.0 };
+        let prior = worth * (1.0 - self.rested as f32 / TRANSITION).max(0.0);
+        let (half, eye) = (self.half, self.eye);
+        let frame = Frame { index: before, before, samples, half, prior, eye, ..canvas.frame() };
+        let groups = groups(&frame);
+        if let Some(reservoirs) = &mut self.reservoirs {
+            reservoirs.begin(self.kernels.device(), eye, eye)?;
+        }
+        let mut commands = self.begin(canvas, self.head, frame)?;
+        self.trace(&mut commands, canvas, groups);
+        if !is_shown {
+            return commands.finish().map(|()| None);
+        }
+        self.develop(commands, canvas, &canvas.estimates[0], groups).map(Some)
+    }
+
+    fn begin<'a>(&'a self, canvas: &'a Canvas, head: Head, frame: Frame) -> Result<Commands<'a>, GpuError> {
+        let device = self.kernels.device();
+        device.write(&self.scene[0], &[head])?;
+        device.write(&self.parameters, &[frame])?;
+        Ok(Commands::new(device, &canvas.timer, 2))
+    }
+
+    /// Finds the light of the frame.
+    fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2]) {
+        let [world, nodes, triangles, items, tables, texels] = &self.scene;
+        let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
+        commands.run(TRACE, &self.light, &traced, groups);
+        if let (Some(reservoirs), Some(buffer)) = (&self.reservoirs, &canvas.reservoirs) {
+            let Reservoirs { candidates, reuse, steps, .. } = reservoirs;
+            for (kernel, step) in [candidates, reuse, reuse].into_iter().zip(steps) {
+                let buffers: Vec<&Buffer> = traced.into_iter().chain([buffer, step]).collect();
+                commands.run(TRACE, kernel, &buffers, groups);
+            }
+        }
+    }
+
+    /// Makes the picture, and waits for it.
+    fn develop(
+        &self,
+        mut commands: Commands,
+        canvas: &Canvas,
+        smooth: &Buffer,
+        groups: [u32; 2],
+    ) -> Result<Picture, GpuError> {
+        let [.., develop] = &self.filters;
+        let developed = [&self.parameters, &canvas.film, &canvas.shown, &canvas.seen, smooth];
+        commands.run(FILTER, develop, &developed, groups);
+        let (words, times) = commands.read::<u32>(&canvas.shown)?;
+        let (rays, colors) = words.split_at(1);
+        Ok(Picture {
+            pixels: colors.as_chunks().0.iter().map(|color| color.map(f32::from_bits)).collect(),
+            rays: rays.iter().map(|&rays| u64::from(rays)).sum(),
+            stages: Stages { trace: times[TRACE], filter: times[FILTER] },
+        })
+    }
+}
+
+/// The workgroups of a frame.
+fn groups(frame: &Frame) -> [u32; 2] {
+    frame.size.map(|side| side.div_ceil(WORKGROUP))
+}
