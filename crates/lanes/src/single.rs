@@ -28,7 +28,7 @@ impl Real for f32 {
         *table[index as usize..].first_chunk().expect("an index inside of the table")
     }
 
-    #[inline]
+    // Not `inline`, which would compile it in each codegen unit that calls it.
     fn call<C: Callee<Self>>(callee: C) -> C::Output {
         callee.run()
     }

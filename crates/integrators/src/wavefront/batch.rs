@@ -26,8 +26,8 @@ use crate::transport::direct::DirectLighting;
 use crate::transport::path_state::PathState;
 use crate::transport::pixel_samples::PixelSamples;
 
-/// The paths of some tiles, one for each pixel that takes a sample. Between the stages here an algorithm
-/// [shades](super::WaveIntegrator::shade) the hits.
+/// The paths of some tiles, one for each pixel that takes a sample. Between the stages here an
+/// algorithm [shades](super::WaveIntegrator::shade) the hits.
 pub struct Batch<'a> {
     pub(super) pass: Pass<'a>,
     pub(super) sampler: Sampler,

@@ -7,8 +7,8 @@ use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd, html};
 
 use super::command::{self, Drawn, Size};
 
-/// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line; those
-/// of `sh compared` are compared with the last one of the block.
+/// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line;
+/// those of `sh compared` are compared with the last one of the block.
 pub struct Page {
     /// The first heading.
     pub title: String,
