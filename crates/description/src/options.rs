@@ -30,9 +30,9 @@ settings! {
     /// The values of the `Option` directives.
     #[derive(Clone, Debug, PartialEq)]
     pub struct OptionsDesc {
-        /// Contrast of neighbouring pixels, a difference of sRGB codes, from which a pixel takes all
-        /// of its samples, down to a sixteenth of them where there is none. Otherwise all pixels
-        /// take as many.
+        /// Contrast of neighbouring pixels, a difference of sRGB codes, from which a pixel takes
+        /// all of its samples, down to a sixteenth of them where there is none. Otherwise all
+        /// pixels take as many.
         adaptive: Option<f32> = None => ["adaptive": above(0.0)];
         /// Sample every pixel at its centre only.
         disable_pixel_jitter: bool = false => ["disablepixeljitter"];

@@ -43,6 +43,7 @@ pub(super) struct ChosenLobe<R: Real> {
 
 impl<R: Real> Chances<R> {
     /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
+    #[expect(clippy::needless_range_loop, reason = "kernels have no iterators")]
     #[inline(always)]
     pub fn new(
         surface: &OpenPbr<R>,

@@ -369,9 +369,8 @@ impl OpenPbrTable {
         let mut places = [R::zero(); 12];
         if !self.axes.is_empty() {
             let mut p = *p;
-            for i in 0..self.axes.len() {
-                let axis = &self.axes[i];
-                places[i] = axis.place(*number(&mut p, axis.number));
+            for (place, axis) in places.iter_mut().zip(&self.axes) {
+                *place = axis.place(*number(&mut p, axis.number));
             }
         }
         Location(places)
