@@ -174,8 +174,8 @@ impl MaterialModel for OpenPbrMaterial {
     ) -> OpenPbr<'a, R> {
         let zero = R::zero();
         let mut numbers = [zero; OpenPbrDesc::NUMBERS.len()];
-        for i in 0..numbers.len() {
-            numbers[i] = R::splat(self.constants[i]);
+        for (number, &constant) in numbers.iter_mut().zip(&self.constants) {
+            *number = R::splat(constant);
         }
         for &i in &self.varying {
             let [least, most] = OpenPbrDesc::NUMBERS[i].range;
