@@ -1,7 +1,8 @@
 // The buffers of a scene, and the random numbers of a sample.
 //
-// Kernels have bindings of their own at 5 and 6. `world` has what Rust calls a `Head`. Tables are words; a record refers to another by the index
-// of its first word. The files of `src/flatten/` describe the records.
+// Kernels have bindings of their own at 5 and 6. `world` has what Rust calls a `Head`. Tables are
+// words; a record refers to another by the index of its first word. The files of `src/flatten/`
+// describe the records.
 
 struct World {
     roots: vec2u,
