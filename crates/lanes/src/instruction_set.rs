@@ -87,6 +87,34 @@ impl InstructionSet {
         }
     }
 
+    /// As [`dispatch`](Self::dispatch), for a kernel of so much code that it is compiled only for
+    /// the sets that processors of this build choose by themselves: another one runs it lane by
+    /// lane, with the same results.
+    ///
+    /// # Panics
+    /// If the processor does not have it.
+    #[inline]
+    pub fn dispatch_large<K: Kernel>(self, kernel: K) -> K::Output {
+        assert!(self.is_available(), "{self:?} on a processor without it");
+        let task = Widest(kernel);
+        // SAFETY: as just checked.
+        unsafe {
+            match self {
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx512 => avx512::run(task),
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx2 => avx2::run(task),
+                #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+                Self::Sse2 => sse2::run(task),
+                #[cfg(target_arch = "aarch64")]
+                Self::Neon => neon::run(task),
+                #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+                Self::Portable => portable::run(task),
+                _ => scalar::run(task),
+            }
+        }
+    }
+
     /// Runs a task with it; with `Scalar` instead of `Portable`, because the vectors that tasks
     /// name are arrays in both, and each set is one more copy of the ray engine.
     ///

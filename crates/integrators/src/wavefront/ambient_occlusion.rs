@@ -37,7 +37,7 @@ impl WaveIntegrator for AmbientOcclusion {
         }
         let BatchColumns { segments, hits, points, .. } = &mut *batch.columns;
         scene.world().points(segments.rays(), hits, &turns, points);
-        batch.pass.instruction_set.dispatch(Occlude {
+        batch.pass.instruction_set.dispatch_large(Occlude {
             pass: batch.pass,
             algorithm: self,
             points: &batch.columns.points,

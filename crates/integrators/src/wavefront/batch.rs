@@ -83,7 +83,7 @@ impl<'a> Batch<'a> {
         paths.start(bounds, |pixel| pass.pixels.takes(pixel), with_weights, besides.media);
         segments.start_from_camera(paths.len(), besides, pass.pixels.view.medium);
         queues.next.start(paths.len(), besides);
-        instruction_set.dispatch(Begin { pass: *pass, paths, segments, besides });
+        instruction_set.dispatch_large(Begin { pass: *pass, paths, segments, besides });
         queues.waiting.clear();
         if with_weights {
             // Rays that the camera's lens blocks are not traced.
@@ -111,7 +111,7 @@ impl<'a> Batch<'a> {
         self.columns.lit.clear();
         self.columns.escaped.clear();
         let mut left = std::mem::take(&mut self.columns.left);
-        self.pass.instruction_set.dispatch(Grouping {
+        self.pass.instruction_set.dispatch_large(Grouping {
             materials: self.pass.materials,
             segments: &self.columns.segments,
             geometries: &self.columns.hits.geometry,
@@ -154,7 +154,7 @@ impl<'a> Batch<'a> {
 
     /// Adds the emission at hits of lights that shine in lanes.
     fn emit(&mut self, direct: &DirectLighting) {
-        self.pass.instruction_set.dispatch(Emit {
+        self.pass.instruction_set.dispatch_large(Emit {
             pass: self.pass,
             direct,
             hits: &self.columns.hits,
@@ -169,7 +169,7 @@ impl<'a> Batch<'a> {
         let &PixelSamples { scene, .. } = self.pass.pixels;
         let BatchColumns { escaped: queue, segments, paths, .. } = &mut *self.columns;
         if Escape::is_enough(scene) {
-            self.pass.instruction_set.dispatch(Escape { scene, direct, queue, segments, paths });
+            self.pass.instruction_set.dispatch_large(Escape { scene, direct, queue, segments, paths });
             return;
         }
         for turn in queue.iter().map(|&turn| turn as usize) {
@@ -217,7 +217,7 @@ impl<'a> Batch<'a> {
         rows: &[u32],
     ) {
         let with_footprint = self.pass.materials.shading(id, false) == Shading::LanesWithFootprint;
-        self.pass.instruction_set.dispatch(Shade {
+        self.pass.instruction_set.dispatch_large(Shade {
             pass: self.pass,
             algorithm,
             material,
@@ -323,7 +323,7 @@ impl<'a> Batch<'a> {
             if with_first_hits {
                 finish_with_first_hits(&self.pass, &mut self.sampler, &mut self.stats, finish)?;
             } else if is_full {
-                self.pass.instruction_set.dispatch(finish);
+                self.pass.instruction_set.dispatch_large(finish);
             } else {
                 finish_some(finish);
             }

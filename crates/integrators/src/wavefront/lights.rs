@@ -58,7 +58,7 @@ pub(super) fn sample<R: Real>(
     lambda: &SampledWavelengths<R>,
     active: R::Mask,
 ) -> LightLanes<R> {
-    pass.instruction_set.dispatch(Sample {
+    pass.instruction_set.dispatch_large(Sample {
         pass,
         direct,
         light,

@@ -149,7 +149,7 @@ impl<'a> Draw<'a> {
 
     #[inline(always)]
     fn numbers(self, pass: &Pass) -> Numbers {
-        pass.instruction_set.dispatch(self)
+        pass.instruction_set.dispatch_large(self)
     }
 }
 

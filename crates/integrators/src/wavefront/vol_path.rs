@@ -120,7 +120,7 @@ impl Batch<'_> {
     /// Scatters the paths at their vertices in media.
     fn scatter_in_media(&mut self, algorithm: &Path) {
         let BatchColumns { medium_vertices, segments, paths, queues, light_samples, .. } = &mut *self.columns;
-        self.pass.instruction_set.dispatch(ScatterInMedia {
+        self.pass.instruction_set.dispatch_large(ScatterInMedia {
             pass: self.pass,
             algorithm,
             vertices: medium_vertices,
