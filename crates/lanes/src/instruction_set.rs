@@ -30,6 +30,17 @@ impl InstructionSet {
     pub const ALL: [Self; 6] =
         [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Portable, Self::Scalar];
 
+    /// Those that processors of this build choose by themselves, and `Scalar`.
+    pub const CHOSEN: &[Self] = if cfg!(target_arch = "aarch64") {
+        &[Self::Neon, Self::Scalar]
+    } else if cfg!(not(target_arch = "x86_64")) {
+        &[Self::Portable, Self::Scalar]
+    } else if cfg!(target_feature = "avx2") {
+        &[Self::Avx512, Self::Avx2, Self::Scalar]
+    } else {
+        &[Self::Avx512, Self::Avx2, Self::Sse2, Self::Scalar]
+    };
+
     /// The environment variable that names the instruction set to use: `avx512`, `avx2`, `neon`,
     /// `sse2`, `portable` or `scalar`.
     pub const VARIABLE: &str = "ALHAZEN_INSTRUCTION_SET";
@@ -88,8 +99,7 @@ impl InstructionSet {
     }
 
     /// As [`dispatch`](Self::dispatch), for a kernel of so much code that it is compiled only for
-    /// the sets that processors of this build choose by themselves: another one runs it lane by
-    /// lane, with the same results.
+    /// the [`CHOSEN`](Self::CHOSEN) sets: another one runs it lane by lane, with the same results.
     ///
     /// # Panics
     /// If the processor does not have it.

@@ -53,7 +53,7 @@ fn assert_same_hits(world: &World, geometries: &[Geometry], rays: &[Ray], what: 
     for ray in rays {
         let expected = brute_force(geometries, ray);
         assert_eq!(nearest(world, ray).map(|hit| hit.t), expected, "{what} {ray:?}");
-        let hit = world.occluded(ray, f32::INFINITY, &keep_all, &mut RayStats::default());
+        let hit = world.occluded(ray, f32::INFINITY, &KEEP_ALL, &mut RayStats::default());
         assert_eq!(hit, expected.is_some(), "{what} {ray:?}");
     }
 }
@@ -116,7 +116,7 @@ fn spatial_splits_save_tests_of_thin_triangles() {
         let world = build(quality, std::slice::from_ref(&geometry));
         let mut stats = RayStats::default();
         for ray in rays(&mut Rng::new(42, 0), 3000, 1.5) {
-            world.intersect(&ray, f32::INFINITY, &keep_all, &mut stats);
+            world.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut stats);
         }
         (stats.extents / 8 + stats.primitives / 4) as f64
     };

@@ -202,7 +202,7 @@ fn the_bvh_finds_the_nearest_hit() {
             let found = nearest(&world, &ray);
             assert_eq!(found.map(|hit| hit.t), expected.map(|(_, hit)| hit.t), "{ray:?}");
             let stats = &mut RayStats::default();
-            assert_eq!(world.occluded(&ray, f32::INFINITY, &keep_all, stats), expected.is_some());
+            assert_eq!(world.occluded(&ray, f32::INFINITY, &KEEP_ALL, stats), expected.is_some());
             if let (Some(hit), Some((part, met))) = (found, expected) {
                 hits += 1;
                 let (surface, same) = (world.surface(&ray, &hit), curves.surface(part, &ray, &met));

@@ -158,7 +158,7 @@ fn turned_boxes_are_closed() {
 #[test]
 fn batches_and_instruction_sets_agree() {
     let rng = &mut Rng::new(5, 0);
-    let most = |hit: &Hit, _: &Ray| !(hit.geometry.0 + hit.primitive).is_multiple_of(5);
+    let most = Accepts(&|hit| !(hit.geometry.0 + hit.primitive).is_multiple_of(5));
     for _ in 0..5 {
         let geometries = few(rng);
         let rays: Vec<(Ray, f32)> = rays(rng, &geometries, 2003)

@@ -25,10 +25,10 @@ fn bodies(m: &Transform) -> Vec<(&'static str, Geometry)> {
 /// All hits along a ray, by a filter that rejects each of them.
 fn hits(world: &World, ray: &Ray, t_max: f32) -> Vec<f32> {
     let found = RefCell::new(Vec::new());
-    let reject = |hit: &Hit, _: &Ray| {
+    let reject = Accepts(&|hit| {
         found.borrow_mut().push(hit.t);
         false
-    };
+    });
     assert!(world.intersect(ray, t_max, &reject, &mut RayStats::default()).is_none());
     let mut found = found.into_inner();
     found.sort_by(f32::total_cmp);
@@ -63,7 +63,7 @@ fn rejected_hits_do_not_hide_others() {
             most = most.max(there.len());
             twice += (there.len() > 1) as i32;
             for &t in &there {
-                let only = |hit: &Hit, _: &Ray| hit.t == t;
+                let only = Accepts(&|hit| hit.t == t);
                 let stats = &mut RayStats::default();
                 assert_eq!(world.intersect(&ray, 1.0, &only, stats).map(|hit| hit.t), Some(t), "{name}");
                 assert!(world.occluded(&ray, 1.0, &only, stats), "{name}");

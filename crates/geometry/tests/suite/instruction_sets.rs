@@ -28,18 +28,18 @@ fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
     for (set, world) in &worlds {
         let [mut alone, mut together] = [RayStats::default(); 2];
         for ((ray, t_max), expected) in rays.iter().zip(&expected) {
-            let hit = world.intersect(ray, *t_max, &keep_all, &mut alone);
+            let hit = world.intersect(ray, *t_max, &KEEP_ALL, &mut alone);
             assert_eq!(bits(hit), *expected, "{set:?} {ray:?}");
             for t_max in [*t_max, 1e30] {
-                let hits = world.occluded(ray, t_max, &keep_all, &mut RayStats::default());
+                let hits = world.occluded(ray, t_max, &KEEP_ALL, &mut RayStats::default());
                 assert_eq!(hits, hit.is_some_and(|hit| hit.t < t_max), "{set:?} {ray:?} up to {t_max}");
             }
         }
         let mut hits = HitColumns::default();
         let mut occluded = vec![true; rays.len()];
         let batch: RayBuffer = rays.iter().copied().collect();
-        world.intersect_batch(batch.columns(), &keep_all, &mut hits, &mut together);
-        world.occluded_batch(batch.columns(), &keep_all, &mut occluded, &mut RayStats::default());
+        world.intersect_batch(batch.columns(), &KEEP_ALL, &mut hits, &mut together);
+        world.occluded_batch(batch.columns(), &KEEP_ALL, &mut occluded, &mut RayStats::default());
         for (i, expected) in expected.iter().enumerate() {
             assert_eq!(bits(hits.get(i)), *expected, "{set:?} {:?} in a batch", rays[i]);
             assert_eq!(occluded[i], expected.is_some(), "{set:?} {:?} in a batch", rays[i]);
@@ -142,7 +142,7 @@ fn batches_call_filters() {
         )
         .into()
     };
-    let below_four = |hit: &Hit, _: &Ray| hit.geometry.0 < 4;
+    let below_four = Accepts(&|hit| hit.geometry.0 < 4);
     let rays: RayBuffer = (0..64)
         .map(|i| (Ray::new(Vec3::Z * 20.0, Vec3::new(i as f32 * 1e-3, 0.01, -1.0), 0.0), 40.0))
         .collect();
@@ -153,7 +153,7 @@ fn batches_call_filters() {
         let mut occluded = vec![false; 64];
         world.occluded_batch(
             rays.columns(),
-            &|hit: &Hit, _: &Ray| hit.geometry.0 > 9,
+            &Accepts(&|hit| hit.geometry.0 > 9),
             &mut occluded,
             &mut RayStats::default(),
         );

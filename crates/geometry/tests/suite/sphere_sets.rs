@@ -49,7 +49,7 @@ proptest! {
             let t_max = if rng.uniform_f32() < 0.5 { f32::INFINITY } else { between(rng, 0.0, 1.0) / ray.d.length() * (b - a).length() };
             let expected = brute_force(&set, &ray, t_max);
             let stats = &mut RayStats::default();
-            let found = world.intersect(&ray, t_max, &keep_all, stats);
+            let found = world.intersect(&ray, t_max, &KEEP_ALL, stats);
             // The roots of a rotated sphere differ in the last bits of double precision.
             let close = |a: f32, b: f32| (a - b).abs() <= a.abs() * 2.0 * f32::EPSILON;
             match (found, expected) {
@@ -60,7 +60,7 @@ proptest! {
                 (None, None) => {}
                 other => prop_assert!(false, "{other:?} for {ray:?}"),
             }
-            prop_assert_eq!(world.occluded(&ray, t_max, &keep_all, stats), expected.is_some());
+            prop_assert_eq!(world.occluded(&ray, t_max, &KEEP_ALL, stats), expected.is_some());
         }
     }
 
@@ -245,8 +245,8 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     let rng = &mut Rng::new(6, 0);
     for _ in 0..2000 {
         let ray = Ray::new(point_in(rng, 2.0), direction(rng), 0.0);
-        let a = one.intersect(&ray, f32::INFINITY, &keep_all, &mut first);
-        assert_eq!(a, many.intersect(&ray, f32::INFINITY, &keep_all, &mut second));
+        let a = one.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut first);
+        assert_eq!(a, many.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut second));
     }
     assert_eq!(first, second, "the same boxes and spheres were tested");
 }

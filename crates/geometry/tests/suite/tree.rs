@@ -26,9 +26,9 @@ fn compare(geometries: &[Geometry], rays: impl IntoIterator<Item = Ray>) -> Resu
         let expected = brute_force(geometries, &ray);
         let mut stats = RayStats::default();
         prop_assert_eq!(nearest(&world, &ray).map(|hit| hit.t), expected, "{:?}", ray);
-        prop_assert_eq!(world.occluded(&ray, f32::INFINITY, &keep_all, &mut stats), expected.is_some());
+        prop_assert_eq!(world.occluded(&ray, f32::INFINITY, &KEEP_ALL, &mut stats), expected.is_some());
         if let Some(t) = expected {
-            prop_assert!(!world.occluded(&ray, t, &keep_all, &mut stats), "t_max is exclusive");
+            prop_assert!(!world.occluded(&ray, t, &KEEP_ALL, &mut stats), "t_max is exclusive");
         }
     }
     Ok(())
@@ -121,8 +121,8 @@ fn a_million_duplicates() {
     let world = world([mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], indices, &Transform::IDENTITY).into()]);
     let mut stats = RayStats::default();
     let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), -Vec3::Z, 0.0);
-    assert!(world.intersect(&ray, f32::INFINITY, &keep_all, &mut stats).is_some());
-    assert!(world.occluded(&ray, f32::INFINITY, &keep_all, &mut stats));
+    assert!(world.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut stats).is_some());
+    assert!(world.occluded(&ray, f32::INFINITY, &KEEP_ALL, &mut stats));
 }
 
 #[test]
@@ -141,8 +141,8 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     let [one, many] = [1, 7].map(build);
     let [mut first, mut second] = [RayStats::default(); 2];
     for ray in rays(&mut Rng::new(6, 0), 2000) {
-        let a = one.intersect(&ray, f32::INFINITY, &keep_all, &mut first);
-        assert_eq!(a, many.intersect(&ray, f32::INFINITY, &keep_all, &mut second));
+        let a = one.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut first);
+        assert_eq!(a, many.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut second));
     }
     assert_eq!(first, second, "the same boxes and triangles were tested");
 }
@@ -152,7 +152,7 @@ fn the_bvh_saves_tests() {
     let world = world([ball(300, 0.1, &Transform::IDENTITY).into()]);
     let mut stats = RayStats::default();
     for ray in rays(&mut Rng::new(6, 0), 1000) {
-        world.intersect(&ray, f32::INFINITY, &keep_all, &mut stats);
+        world.intersect(&ray, f32::INFINITY, &KEEP_ALL, &mut stats);
     }
     assert_eq!(stats.rays, 1000);
     assert!(stats.extents > 1000 && stats.extents < 200_000, "{stats:?}");
@@ -169,7 +169,7 @@ fn rejected_candidates_are_passed_through() {
         .collect();
     let world = world(layers);
     let ray = Ray::new(Vec3::new(0.1, 0.1, 20.0), -Vec3::Z, 0.0);
-    let below_four = |hit: &Hit, _: &Ray| hit.geometry.0 < 4;
+    let below_four = Accepts(&|hit| hit.geometry.0 < 4);
     let hit = world.intersect(&ray, f32::INFINITY, &below_four, &mut RayStats::default());
     assert_eq!(hit.map(|hit| hit.geometry), Some(GeometryId(3)));
     assert!(!world.occluded(&ray, 16.5, &below_four, &mut RayStats::default()));

@@ -22,9 +22,21 @@ pub fn direction(rng: &mut Rng) -> Vec3 {
     sample_uniform_sphere(uniform_2d(rng))
 }
 
-pub fn keep_all(_: &Hit, _: &Ray) -> bool {
-    true
+/// A filter that may reject any hit. All filters of tests have this type, since each type is one more
+/// copy of the ray engine to compile.
+pub struct Accepts<'a>(pub &'a dyn Fn(&Hit) -> bool);
+
+impl Filter for Accepts<'_> {
+    fn accepts(&self, hit: &Hit, _: &Ray) -> bool {
+        self.0(hit)
+    }
+
+    fn concerns(&self, _: GeometryId) -> bool {
+        true
+    }
 }
+
+pub const KEEP_ALL: Accepts = Accepts(&|_| true);
 
 pub fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>, transform: &Transform) -> TriangleMesh {
     TriangleMesh::new(positions.into(), indices.into(), MeshAttributes::default(), transform, false)
@@ -82,7 +94,7 @@ pub fn world(geometries: impl IntoIterator<Item = Geometry>) -> World {
 }
 
 pub fn nearest(world: &World, ray: &Ray) -> Option<Hit> {
-    world.intersect(ray, f32::INFINITY, &keep_all, &mut RayStats::default())
+    world.intersect(ray, f32::INFINITY, &KEEP_ALL, &mut RayStats::default())
 }
 
 /// Shapes of every kind with one transform.
