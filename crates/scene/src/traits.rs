@@ -17,6 +17,8 @@ pub struct SceneTraits {
     pub materials_not_diffuse: Vec<Occurrence>,
     /// Whether any light is infinitely far away.
     pub is_lit_from_infinity: bool,
+    /// Whether anything moves while the shutter is open, the camera aside.
+    pub is_moving: bool,
 }
 
 /// Shapes or materials of the same kind that a fact applies to.

@@ -2,7 +2,9 @@
 //!
 //! They are computed by a kernel of their own, not as a part of those that use them: samplers are
 //! much code, which each of these kernels would have again for every instruction set. A call of it
-//! computes all numbers that are known to be needed.
+//! computes all numbers that are known to be needed. Those that nothing depends on, such as a
+//! position on the lens of a pinhole camera, are not computed, and are 0; dimensions are counted as
+//! if they were.
 
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::Vec2;
@@ -24,11 +26,12 @@ impl<R: Real> CameraNumbers<R> {
     /// The next coordinates of each lane, which are the first of a sample.
     #[inline(always)]
     pub fn draw(pass: &Pass, address: &mut Address<R::Int>) -> Self {
+        let (scene, camera) = (pass.pixels.scene, &pass.pixels.view.camera);
         let mut draw = Draw::new(pass, address);
         draw.push(Coordinates::One, address);
         draw.push(Coordinates::TwoOfPixel, address);
-        draw.push(Coordinates::One, address);
-        draw.push(Coordinates::Two, address);
+        draw.push_if(scene.traits().is_moving || camera.is_moving(), Coordinates::One, address);
+        draw.push_if(camera.has_lens(), Coordinates::Two, address);
         let u = draw.numbers(pass);
         Self { wavelength: u.one(0), place: u.two(1), time: u.one(2), lens: u.two(3) }
     }
@@ -49,7 +52,7 @@ impl<R: Real> VertexNumbers<R> {
     #[inline(always)]
     pub fn draw_in_media(pass: &Pass, address: &mut Address<R::Int>) -> Self {
         let mut draw = Draw::new(pass, address);
-        draw.push(Coordinates::One, address);
+        draw.push_if(pass.has_several_lights(), Coordinates::One, address);
         draw.push(Coordinates::Two, address);
         let passage = address.dimension;
         address.skip(2);
@@ -58,19 +61,21 @@ impl<R: Real> VertexNumbers<R> {
         Self { light: (u.one(0), u.two(1)), passage, bsdf: (R::zero(), u.two(2)) }
     }
 
-    /// The next coordinates of each lane; only some lanes sample a light.
+    /// The next coordinates of each lane; only some lanes sample a light, and not all BSDFs choose
+    /// among lobes.
     #[inline(always)]
     pub fn draw(
         pass: &Pass,
         address: &mut Address<R::Int>,
         samples_light: R::Mask,
+        chooses_lobes: bool,
         with_media: bool,
     ) -> Self {
         let mut draw = Draw::new(pass, address);
         let mut before = *address;
         let mut passage = address.dimension;
         if samples_light.any() {
-            draw.push(Coordinates::One, address);
+            draw.push_if(pass.has_several_lights(), Coordinates::One, address);
             draw.push(Coordinates::Two, address);
             passage = address.dimension;
             if with_media {
@@ -80,7 +85,7 @@ impl<R: Real> VertexNumbers<R> {
             *address = before;
         }
         let first = draw.count;
-        draw.push(Coordinates::One, address);
+        draw.push_if(chooses_lobes, Coordinates::One, address);
         draw.push(Coordinates::Two, address);
         let u = draw.numbers(pass);
         Self { light: (u.one(0), u.two(1)), passage, bsdf: (u.one(first), u.two(first + 1)) }
@@ -106,6 +111,8 @@ pub(super) fn draw_2d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> Ve
 /// Coordinates that a sampler gives at once.
 #[derive(Clone, Copy)]
 enum Coordinates {
+    /// None, in their place zeros.
+    Zero,
     One,
     Two,
     TwoOfPixel,
@@ -147,6 +154,15 @@ impl<'a> Draw<'a> {
         address.skip(if let Coordinates::One = coordinates { 1 } else { 2 });
     }
 
+    /// The same, with zeros for coordinates that are not needed.
+    #[inline(always)]
+    fn push_if<I: Int>(&mut self, is_needed: bool, coordinates: Coordinates, address: &mut Address<I>) {
+        self.push(coordinates, address);
+        if !is_needed {
+            self.coordinates[self.count - 1] = Coordinates::Zero;
+        }
+    }
+
     #[inline(always)]
     fn numbers(self, pass: &Pass) -> Numbers {
         pass.instruction_set.dispatch_large(self)
@@ -164,6 +180,7 @@ impl Kernel for Draw<'_> {
         for draw in 0..self.count {
             let address = Address { pixel, index, dimension: R::Int::load(&self.dimension[draw]) };
             let [u, v] = match self.coordinates[draw] {
+                Coordinates::Zero => continue,
                 Coordinates::One => [sampler.at_1d::<R>(&address), R::zero()],
                 Coordinates::Two => sampler.at_2d::<R>(&address),
                 Coordinates::TwoOfPixel => sampler.at_pixel_2d::<R>(&address),

@@ -18,3 +18,11 @@ pub(super) struct Pass<'a> {
     pub control: &'a Control,
     pub instruction_set: InstructionSet,
 }
+
+impl Pass<'_> {
+    /// Whether a light is chosen among several.
+    #[inline(always)]
+    pub fn has_several_lights(&self) -> bool {
+        self.pixels.scene.lights().len() > 1
+    }
+}

@@ -98,7 +98,8 @@ impl AtVertices for Path {
             let place = (vertices.turns, shade.geometries);
             VerticesInMedia::new(shade.pass.media, columns, place, vertices.lambda.secondary_terminated())
         });
-        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light, media.is_some());
+        let (address, has_media) = (&mut vertices.address, media.is_some());
+        let numbers = VertexNumbers::draw(&shade.pass, address, samples_light, B::CHOOSES, has_media);
         shade.connect((&vertices, media.as_ref()), bsdf, contexts, &numbers, samples_light);
         shade.scatter((&vertices, media.as_ref()), bsdf, contexts, numbers.bsdf);
     }

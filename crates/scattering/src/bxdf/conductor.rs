@@ -72,6 +72,8 @@ impl<R: Real> Conductor<R> {
 }
 
 impl<R: Real> Scatter<R> for Conductor<R> {
+    const CHOOSES: bool = false;
+
     #[inline(always)]
     fn flags(&self) -> BxdfFlags<R> {
         BxdfFlags::choose(

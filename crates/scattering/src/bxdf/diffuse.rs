@@ -21,6 +21,8 @@ pub struct Diffuse<R = f32> {
 const LOBE: BxdfFlags = BxdfFlags::DIFFUSE_REFLECTION;
 
 impl<R: Real> Scatter<R> for Diffuse<R> {
+    const CHOOSES: bool = false;
+
     #[inline(always)]
     fn flags(&self) -> BxdfFlags<R> {
         BxdfFlags::only_where(!self.reflectance.is_black(), LOBE)

@@ -70,6 +70,9 @@ impl BsdfSample {
 
 /// How light is scattered in the local frame, for each lane.
 pub trait Scatter<R: Real = f32> {
+    /// Whether samples depend on `uc`, by which a lobe is chosen.
+    const CHOOSES: bool = true;
+
     /// What kinds of scattering there are.
     fn flags(&self) -> BxdfFlags<R>;
 

@@ -140,6 +140,16 @@ impl Camera {
         lerp(u, R::splat(self.shutter[0]), R::splat(self.shutter[1]))
     }
 
+    /// Whether it moves while the shutter is open.
+    pub fn is_moving(&self) -> bool {
+        self.transform.animated().is_moving()
+    }
+
+    /// Whether rays depend on samples of the lens.
+    pub fn has_lens(&self) -> bool {
+        self.projection.has_lens()
+    }
+
     /// Whether all of the radiance along each ray reaches the film.
     pub fn is_unweighted(&self) -> bool {
         self.projection.is_unweighted()

@@ -35,6 +35,16 @@ impl Projection {
         (o, d, R::one())
     }
 
+    /// Whether rays depend on samples of the lens.
+    pub(super) fn has_lens(&self) -> bool {
+        match self {
+            Self::Perspective(p) => p.lens().radius > 0.0,
+            Self::Orthographic(p) => !p.is_parallel(),
+            Self::Spherical(_) => false,
+            Self::Realistic(_) => true,
+        }
+    }
+
     /// Whether all rays have weight 1.
     pub(super) fn is_unweighted(&self) -> bool {
         match self {

@@ -26,8 +26,8 @@ use crate::traits::SceneTraits;
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
-    AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, IntegratorDesc, ObjectDesc,
-    SceneDesc, Span, SpectrumDesc, SpectrumParameter,
+    AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, InstanceDesc, IntegratorDesc,
+    ObjectDesc, SceneDesc, ShapeDesc, Span, SpectrumDesc, SpectrumParameter,
 };
 use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
@@ -56,6 +56,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let render_from_world = world_from_render.inverse();
     let textures = TextureCompiler::new(&desc, &render_from_world, &mut diagnostics);
     let names = Names::new(&desc);
+    let traits = SceneTraits { is_moving: is_moving(&desc), ..SceneTraits::default() };
     let (shapes, instances) = (take(&mut desc.shapes), take(&mut desc.instances));
     let objects = Arc::new(take(&mut desc.objects));
     let mut compiler = Compiler {
@@ -82,7 +83,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         material_emissions: Vec::new(),
         last_spectrum: None,
         emitters: vec![Emitters::default()],
-        traits: SceneTraits::default(),
+        traits,
     };
     compiler.materials();
     compiler.media();
@@ -120,6 +121,18 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         traits,
     };
     Ok(Compiled { scene, warnings: diagnostics })
+}
+
+/// Whether any shape, instance, medium or light moves.
+fn is_moving(desc: &SceneDesc) -> bool {
+    let moves_in = |shapes: &Arena<ShapeDesc>, instances: &Arena<InstanceDesc>| {
+        shapes.iter().any(|(_, shape)| shape.world_from_object.is_animated())
+            || instances.iter().any(|(_, instance)| instance.world_from_object.is_animated())
+    };
+    moves_in(&desc.shapes, &desc.instances)
+        || desc.objects.iter().any(|(_, object)| moves_in(&object.shapes, &object.instances))
+        || desc.media.iter().any(|(_, medium)| medium.world_from_medium.is_animated())
+        || desc.lights.iter().any(|(_, light)| light.world_from_light.is_animated())
 }
 
 /// A scene under construction.
