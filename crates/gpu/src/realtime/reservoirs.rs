@@ -82,7 +82,8 @@ impl Reservoirs {
         self.before = None;
     }
 
-    /// Prepares a frame in motion by a camera, whose parameters have `projected` as the camera before.
+    /// Prepares a frame in motion by a camera, whose parameters have `projected` as the camera
+    /// before.
     pub fn begin(&mut self, device: &Device, eye: Eye, projected: Eye) -> Result<(), GpuError> {
         let biased = if self.weights == Weights::Biased { IS_BIASED } else { 0 };
         let before = if self.before == Some(projected) { HAS_BEFORE } else { 0 };

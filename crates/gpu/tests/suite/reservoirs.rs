@@ -126,9 +126,9 @@ fn apart(a: &[Moments], b: &[Moments]) -> Vec<String> {
 fn shared_samples_have_the_mean_of_paths() {
     let Some(kernels) = kernels() else { return };
     let mut case = case(3, SIZE);
-    // The mean of 64 frames has an error of 2.5 % in the unbiased form, whose frames have a standard
-    // deviation of 20 %, as pixels near each other share samples; that of paths, 0.5 %. A bias of
-    // an eighth is so found nine times of ten, by one of as many tests as there are means.
+    // The mean of 64 frames has an error of 2.5 % in the unbiased form, whose frames have a
+    // standard deviation of 20 %, as pixels near each other share samples; that of paths, 0.5 %. A
+    // bias of an eighth is so found nine times of ten, by one of as many tests as there are means.
     let paths = by_paths(&mut case, &kernels, 32, 16);
     let [unbiased, biased] =
         [Weights::Unbiased, Weights::Biased].map(|weights| by_sharing(&case, &kernels, weights, 64));

@@ -36,7 +36,8 @@ fn traversal_is_valid() {
 #[test]
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
-    // All parts but principled surfaces are constants of one text, whose branches are all validated.
+    // All parts but principled surfaces are constants of one text, whose branches are all
+    // validated.
     for [has, principled] in [[false, false], [false, true], [true, false], [true, true]] {
         let parts = Parts { holes: has, images: has, noise: has, coats: has, principled };
         let valid = |name: &str, source: &str| {
