@@ -30,7 +30,7 @@ pub(crate) fn integrator(
 ) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
     let film = &session.state().film;
     let Flattened { flat, algorithm, sampler } =
-        flattened(desc, session.scene(), session.view(), film, kernels, false)?;
+        flattened(desc, session.scene(), session.view(), film, kernels)?;
     match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
         Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
         Err(error) => Err(vec![failed(&error)]),
@@ -44,8 +44,7 @@ pub(crate) struct Flattened {
     pub(crate) sampler: Sampler,
 }
 
-/// A scene, by the algorithm and the sampler that `desc` describes, and whether samples of direct
-/// light are to be shared. The error says what kernels do
+/// A scene, by the algorithm and the sampler that `desc` describes. The error says what kernels do
 /// not draw.
 pub(crate) fn flattened(
     desc: &SceneDesc,
@@ -53,7 +52,6 @@ pub(crate) fn flattened(
     view: &View,
     film: &Film,
     kernels: &Kernels,
-    is_shared: bool,
 ) -> Result<Flattened, Vec<Diagnostic>> {
     let algorithm = match desc.integrator.value.clone() {
         IntegratorDesc::RayCasting => Some(Algorithm::RayCasting),
@@ -78,16 +76,7 @@ pub(crate) fn flattened(
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
     let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);
-    let allows_incomplete = algorithm.weights_lights() && !is_shared;
-    let subject = Subject {
-        scene,
-        view,
-        film,
-        algorithm: &algorithm,
-        allows_incomplete,
-        sampler: &sampler,
-        largest_buffer,
-    };
+    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler, largest_buffer };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
     Ok(Flattened { flat, algorithm, sampler })

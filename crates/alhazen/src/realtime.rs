@@ -34,7 +34,7 @@ pub struct Aim {
 impl Realtime {
     /// Takes a compiled scene to a device, with the algorithm, film and sampler of a description,
     /// whose geometry does not count. With `shared`, pixels and frames share samples of direct
-    /// light. The error says what kernels do not draw.
+    /// light while the camera moves. The error says what kernels do not draw.
     pub fn new(
         scene: &Arc<Scene>,
         desc: &SceneDesc,
@@ -43,8 +43,7 @@ impl Realtime {
     ) -> Result<Self, Vec<Diagnostic>> {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
-        let Flattened { flat, algorithm, sampler } =
-            flattened(desc, scene, &view, &film, kernels, shared.is_some())?;
+        let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
         let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)
             .map_err(|error| vec![failed(&error)])?;
         Ok(Self {

@@ -98,7 +98,7 @@ fn sample_light(
             let sample = sample_revolved(at, context, u);
             return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
         }
-        case IMAGE_LIGHT: { return sample_sky(at, u, lambda); }
+        case IMAGE_LIGHT: { return sample_sky(at, u, lambda, allow_incomplete); }
         default: {
             var sample = no_light();
             if (!allow_incomplete) {
@@ -258,7 +258,7 @@ fn sky(light: u32, d: vec3f, lambda: SampledWavelengths) -> Sky {
         st = vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
     }
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
-    let pdf = density_of(tables[at + 7], st) / solid_angle;
+    let pdf = density_of(tables[at + 27], st) / solid_angle;
     return Sky(sky_image(at, st, lambda), select(pdf, 0, solid_angle == 0));
 }
 
@@ -280,8 +280,8 @@ fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
     return l * emission(at, lambda);
 }
 
-fn sample_sky(at: u32, u: vec2f, lambda: SampledWavelengths) -> LightSample {
-    let drawn = draw_2d(tables[at + 7], u);
+fn sample_sky(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: bool) -> LightSample {
+    let drawn = draw_2d(tables[at + select(7u, 27u, allow_incomplete)], u);
     let st = drawn.xy;
     var local: vec3f;
     if (tables[at + 6] == 0) {

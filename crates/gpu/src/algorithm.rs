@@ -15,14 +15,6 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
-    /// Whether light samples are weighted against samples of the BSDF.
-    pub fn weights_lights(&self) -> bool {
-        match self {
-            Self::RayCasting | Self::AmbientOcclusion(..) => false,
-            Self::Path(_) => true,
-        }
-    }
-
     /// How it chooses a light.
     pub fn light_sampler(&self) -> LightSamplerDesc {
         match self {

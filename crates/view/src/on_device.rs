@@ -15,7 +15,7 @@ use crate::{Frame, Shot, World};
 /// The device, with what is shown there.
 pub struct OnDevice {
     kernels: Arc<Kernels>,
-    /// How samples of direct light count, if pixels and frames share them.
+    /// How samples of direct light count, if pixels and frames in motion share them.
     shared: Option<Weights>,
     /// The scene by the algorithm of this name; without it where kernels do not draw it.
     shown: Option<(String, Option<Realtime>)>,
@@ -104,10 +104,9 @@ impl OnDevice {
         let desc = world.settings(shot)?;
         let Some((_, Some(realtime))) = &mut self.shown else { return Ok((None, true)) };
         let (done, planned) = realtime.progress();
-        let samples = if self.shared.is_some() { 1 } else { shot.samples };
-        let is_last = done + samples >= planned;
+        let is_last = done + shot.samples >= planned;
         let is_shown = done == 0 || is_last || self.last.elapsed() >= SHORTEST;
-        let Some(picture) = realtime.resting(samples, is_shown)? else { return Ok((None, is_last)) };
+        let Some(picture) = realtime.resting(shot.samples, is_shown)? else { return Ok((None, is_last)) };
         let aim = realtime.look(&desc, 1).map_err(|errors| StepError::Problem(messages(&errors)))?;
         let time = self.last.elapsed();
         self.last = Instant::now();

@@ -79,7 +79,7 @@ impl Renderer {
     }
 
     /// Renders by a GPU what kernels draw. With `shared`, pixels and frames share samples of direct
-    /// light.
+    /// light while the camera moves.
     #[cfg(feature = "gpu")]
     pub fn move_to(&mut self, kernels: Arc<Kernels>, shared: Option<Weights>) {
         self.device = Some(OnDevice::new(kernels, shared));

@@ -239,8 +239,9 @@ pub struct View {
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,
-    /// With --device, pixels and frames share samples of direct light (ReSTIR): unbiased, or
-    /// biased, which is faster, and too dark where surfaces and shadows differ.
+    /// With --device, pixels and frames share samples of direct light while the camera moves
+    /// (ReSTIR): unbiased, or biased, which is faster, and too dark where surfaces and shadows
+    /// differ.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "WEIGHTS", value_enum, hide_possible_values = true)]
     pub restir: Option<Restir>,

@@ -22,6 +22,8 @@ struct Reservoir {
     u: vec2f,
     // How many samples it stands for.
     count: f32,
+    // The receiver's normal, as `packed_normal` has it.
+    normal: u32,
 }
 
 const IS_BIASED = 1u;
@@ -45,6 +47,15 @@ struct Reuse {
 @group(0) @binding(6) var<storage, read_write> film: Film;
 @group(0) @binding(8) var<storage, read_write> reservoirs: array<Reservoir>;
 @group(0) @binding(9) var<uniform> reuse: Reuse;
+
+// A direction in 32 bits.
+fn packed_normal(n: vec3f) -> u32 {
+    return pack2x16unorm(equal_area_sphere_to_square(n));
+}
+
+fn unpacked_normal(packed: u32) -> vec3f {
+    return equal_area_square_to_sphere(unpack2x16unorm(packed));
+}
 
 // A receiver with what it scatters.
 struct Receiver {

@@ -10,8 +10,15 @@ const MOST = 5u;
 // As many samples the frame before stands for at most.
 const MOST_BEFORE = 20.0;
 
-// Pixels around within which neighbours are.
-const RADIUS = 16.0;
+// Neighbours are within this part of the picture's longer side [Bitterli 2020 §5], but not so near
+// that most are the pixel itself.
+const RADIUS = 30.0 / 1920.0;
+const LEAST_RADIUS = 3.0;
+
+// Samples are of little use to other surfaces: at a distance that differs by more than this part,
+// or with normals whose angle has a smaller cosine (25°).
+const LIKE_DISTANCE = 0.1;
+const LIKE_NORMAL = 0.9063078;
 
 fn part(index: u32) -> u32 {
     return index * frame.size.x * frame.size.y;
@@ -22,7 +29,8 @@ fn other_pixel(id: vec2u, here: Reservoir) -> vec3u {
     let u = get_2d();
     if (reuse.neighbours > 0) {
         let angle = sin_cos(6.2831855 * u.x);
-        let offset = vec2f(angle.v1, angle.v0) * sqrt(u.y) * RADIUS;
+        let radius = max(RADIUS * f32(max(frame.size.x, frame.size.y)), LEAST_RADIUS);
+        let offset = vec2f(angle.v1, angle.v0) * sqrt(u.y) * radius;
         let pixel = vec2i(round(vec2f(id) + offset));
         let is_valid = all(pixel >= vec2i()) && all(pixel < vec2i(frame.size)) && any(pixel != vec2i(id));
         return vec3u(vec2u(max(pixel, vec2i())), u32(is_valid));
@@ -33,6 +41,11 @@ fn other_pixel(id: vec2u, here: Reservoir) -> vec3u {
     let is_known = (reuse.flags & HAS_BEFORE) != 0 && place.z == 1;
     let is_valid = is_known && all(pixel >= vec2i()) && all(pixel < vec2i(frame.size));
     return vec3u(vec2u(max(pixel, vec2i())), u32(is_valid));
+}
+
+fn is_like(here: Reservoir, other: Reservoir) -> bool {
+    let cosine = dot(unpacked_normal(here.normal), unpacked_normal(other.normal));
+    return abs(other.t - here.t) < LIKE_DISTANCE * here.t && cosine > LIKE_NORMAL;
 }
 
 @compute @workgroup_size(8, 8)
@@ -56,8 +69,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         let index = part(reuse.source) + pixel.y * frame.size.x + pixel.x;
         let other = reservoirs[index];
-        // At very different distances samples are of little use.
-        if (other.kind != 0 && abs(other.t - here.t) < 0.2 * here.t) {
+        if (other.kind != 0 && is_like(here, other)) {
             inputs[count] = index;
             count++;
         }
@@ -136,9 +148,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     reservoirs[part(reuse.target_part) + at] = next;
     if (is_last) {
         let weight = film.pixels[at].now.w;
-        let color = vec4f(exposed(l, lambda, weight).xyz, 0);
-        film.pixels[at].now += color;
-        film.pixels[at].sum += color;
+        film.pixels[at].now += vec4f(exposed(l, lambda, weight).xyz, 0);
     }
     atomicAdd(&film.rays, rays);
 }

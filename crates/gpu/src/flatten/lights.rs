@@ -9,7 +9,7 @@
 //! | 5 sphere | centre, radius, 1 or −1 where the outside is inside |
 //! | 6 uniform infinite | none |
 //! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
-//! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels |
+//! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
 //! spectrum.
@@ -111,7 +111,8 @@ impl Flattener<'_> {
             [spectrum.scale(), a, b, c]
         });
         let pixels = self.slab.add_numbers(numbers);
-        let distribution = self.distribution(light.distribution(self.allows_incomplete));
+        let [complete, incomplete] =
+            [false, true].map(|allows| self.distribution(light.distribution(allows)));
         let illuminant = self.spectrum(&light.color_space.illuminant());
         let kind = match light.projection {
             Projection::EqualArea => 0,
@@ -120,10 +121,10 @@ impl Flattener<'_> {
         let render_from_light = light.render_from_light.start().matrix().as_dmat4();
         let rows = |matrix: DMat4| [0, 1, 2].map(|row| matrix.row(row).truncate().as_vec3().to_array());
         let scale = light.scale.to_bits();
-        let at = self.slab.add([IMAGE_INFINITE, illuminant, scale, 0, width, height, kind, distribution]);
+        let at = self.slab.add([IMAGE_INFINITE, illuminant, scale, 0, width, height, kind, complete]);
         let rotations = [rows(render_from_light.inverse()), rows(render_from_light)];
         self.slab.add_numbers(rotations.as_flattened().as_flattened().iter().copied());
-        self.slab.add([pixels]);
+        self.slab.add([pixels, incomplete]);
         at
     }
 

@@ -125,8 +125,6 @@ pub struct Subject<'a> {
     pub film: &'a Film,
     /// The algorithm.
     pub algorithm: &'a Algorithm,
-    /// Whether lights may leave directions to sampling of the BSDF.
-    pub allows_incomplete: bool,
     /// The source of random numbers.
     pub sampler: &'a Sampler,
     /// The most bytes of a buffer.
@@ -136,10 +134,9 @@ pub struct Subject<'a> {
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer } = subject;
+    let Subject { scene, view, film, algorithm, sampler, largest_buffer } = subject;
     let mut flattener = Flattener {
         scene,
-        allows_incomplete,
         slab: Slab::new(),
         spectra: Default::default(),
         textures: Default::default(),
@@ -190,8 +187,6 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
 /// Tables under construction.
 struct Flattener<'a> {
     scene: &'a Scene,
-    /// Whether lights may leave directions to sampling of the BSDF.
-    allows_incomplete: bool,
     slab: Slab,
     spectra: spectra::Shared,
     /// The offsets of textures and of pyramids of images, by their ids.

@@ -9,8 +9,8 @@ use crate::device::{Buffer, Device, GpuError};
 
 /// Bytes of the head of a film, and of what there is for a pixel: the structures of
 /// `shaders/realtime/frame.wgsl`.
-const HEAD: u64 = 16;
-const LIGHT: u64 = 48;
+pub const HEAD: u64 = 16;
+pub const LIGHT: u64 = 48;
 const SEEN: u64 = 48;
 const HISTORY: u64 = 32;
 const ESTIMATE: u64 = 16;

@@ -9,8 +9,8 @@
 //! Direct light of first surfaces is that of the algorithm, or of samples that pixels and frames
 //! share ([`Weights`]).
 //!
-//! When the camera rests, samples are added up, and the picture goes over from the filtered one to
-//! their mean.
+//! When the camera rests, samples of the algorithm are added up, and the picture goes over from the
+//! filtered one to their mean: frames that share samples have errors in common, which a mean keeps.
 
 mod canvas;
 mod frame;
@@ -114,8 +114,8 @@ impl From<GpuError> for AimError {
 }
 
 impl Realtime {
-    /// Takes a scene to the device. With `shared`, pixels and frames share samples of direct light,
-    /// if that is a part of the algorithm; lights must not leave directions to the BSDF then.
+    /// Takes a scene to the device. With `shared`, pixels and frames in motion share samples of
+    /// direct light, if that is a part of the algorithm.
     pub fn new(
         kernels: Arc<Kernels>,
         flat: &Flat,
@@ -136,7 +136,7 @@ impl Realtime {
             device.buffer("texels of the scene", &flat.texels)?,
         ];
         let parameters = device.parameters(&Frame::default())?;
-        let light = kernels.get("light", shaders::light(algorithm, flat.parts, shared.is_some()))?;
+        let light = kernels.get("light", shaders::light(algorithm, flat.parts, false))?;
         let surfaces = kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts))?;
         let [temporal, variance, wavelet, develop] = shaders::filters();
         let filters = [
@@ -147,7 +147,8 @@ impl Realtime {
         ];
         let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
         let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
-        let reservoirs = shared.map(|weights| Reservoirs::new(&kernels, flat.parts, weights)).transpose()?;
+        let reservoirs =
+            shared.map(|weights| Reservoirs::new(&kernels, algorithm, flat.parts, weights)).transpose()?;
         Ok(Self {
             reservoirs,
             surfaces,
@@ -222,7 +223,7 @@ impl Realtime {
         let [temporal, variance, wavelet, _] = &self.filters;
         let looked = [world, nodes, triangles, items, tables, parameters, seen, texels];
         commands.run(TRACE, &self.surfaces, &looked, groups);
-        self.trace(&mut commands, canvas, groups);
+        self.trace(&mut commands, canvas, groups, self.reservoirs.as_ref());
         commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
         commands.run(FILTER, variance, &[parameters, seen, history, even], groups);
         let (mut from, mut to) = (even, odd);
@@ -241,8 +242,6 @@ impl Realtime {
     /// after another. A picture if it is wanted.
     pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
         let Some(canvas) = &self.canvas else { return Ok(None) };
-        // Samples that are shared are those of one place in each pixel.
-        let samples = if self.reservoirs.is_some() { samples.min(1) } else { samples };
         let before = self.rested;
         self.rested += samples;
         // There is no filtered picture of this camera without a frame in motion from there.
@@ -251,15 +250,22 @@ impl Realtime {
         let (half, eye) = (self.half, self.eye);
         let frame = Frame { index: before, before, samples, half, prior, eye, ..canvas.frame() };
         let groups = groups(&frame);
-        if let Some(reservoirs) = &mut self.reservoirs {
-            reservoirs.begin(self.kernels.device(), eye, eye)?;
-        }
         let mut commands = self.begin(canvas, self.head, frame)?;
-        self.trace(&mut commands, canvas, groups);
+        self.trace(&mut commands, canvas, groups, None);
         if !is_shown {
             return commands.finish().map(|()| None);
         }
         self.develop(commands, canvas, &canvas.estimates[0], groups).map(Some)
+    }
+
+    /// The light of the last frame in motion as its samples have found it, before it is filtered:
+    /// colours as those of a [`Picture`]. Empty before the camera is aimed.
+    pub fn unfiltered(&self) -> Result<Vec<[f32; 3]>, GpuError> {
+        let Some(canvas) = &self.canvas else { return Ok(Vec::new()) };
+        let words = self.kernels.device().read::<f32>(&canvas.film)?;
+        let pixels = words[canvas::HEAD as usize / 4..].chunks_exact(canvas::LIGHT as usize / 4);
+        let mean = |light: &[f32]| [0, 1, 2].map(|i| if light[3] == 0.0 { 0.0 } else { light[i] / light[3] });
+        Ok(pixels.map(mean).collect())
     }
 
     fn begin<'a>(&'a self, canvas: &'a Canvas, head: Head, frame: Frame) -> Result<Commands<'a>, GpuError> {
@@ -269,13 +275,14 @@ impl Realtime {
         Ok(Commands::new(device, &canvas.timer, 2))
     }
 
-    /// Finds the light of the frame.
-    fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2]) {
+    /// Finds the light of the frame, direct light by shared samples if there are any.
+    fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2], shared: Option<&Reservoirs>) {
         let [world, nodes, triangles, items, tables, texels] = &self.scene;
         let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
-        commands.run(TRACE, &self.light, &traced, groups);
-        if let (Some(reservoirs), Some(buffer)) = (&self.reservoirs, &canvas.reservoirs) {
-            let Reservoirs { candidates, reuse, steps, .. } = reservoirs;
+        commands.run(TRACE, shared.map_or(&self.light, |shared| &shared.light), &traced, groups);
+        if let (Some(Reservoirs { candidates, reuse, steps, .. }), Some(buffer)) =
+            (shared, &canvas.reservoirs)
+        {
             for (kernel, step) in [candidates, reuse, reuse].into_iter().zip(steps) {
                 let buffers: Vec<&Buffer> = traced.into_iter().chain([buffer, step]).collect();
                 commands.run(TRACE, kernel, &buffers, groups);

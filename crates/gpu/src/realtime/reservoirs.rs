@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::frame::Eye;
+use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::renderer::Kernels;
 use crate::shaders::{self, Parts};
@@ -44,6 +45,8 @@ struct Reuse {
 /// The kernels, and what is known of the frame before.
 pub struct Reservoirs {
     weights: Weights,
+    /// Finds all other light.
+    pub light: Arc<Kernel>,
     pub candidates: Arc<Kernel>,
     pub reuse: Arc<Kernel>,
     /// What the steps are told: candidates, reuse of the frame before, and of neighbours.
@@ -55,11 +58,17 @@ pub struct Reservoirs {
 
 impl Reservoirs {
     /// Without samples.
-    pub fn new(kernels: &Kernels, parts: Parts, weights: Weights) -> Result<Self, GpuError> {
+    pub fn new(
+        kernels: &Kernels,
+        algorithm: &Algorithm,
+        parts: Parts,
+        weights: Weights,
+    ) -> Result<Self, GpuError> {
         let [candidates, reuse] = shaders::reservoirs(parts);
         let step = || kernels.device().parameters(&Reuse { source: 0, target: 0, neighbours: 0, flags: 0 });
         Ok(Self {
             weights,
+            light: kernels.get("light", shaders::light(algorithm, parts, true))?,
             candidates: kernels.get("candidates", candidates)?,
             reuse: kernels.get("reuse", reuse)?,
             steps: [step()?, step()?, step()?],
@@ -73,7 +82,8 @@ impl Reservoirs {
         self.before = None;
     }
 
-    /// Prepares a frame by a camera, whose parameters have `projected` as the camera before.
+    /// Prepares a frame in motion by a camera, whose parameters have `projected` as the camera
+    /// before.
     pub fn begin(&mut self, device: &Device, eye: Eye, projected: Eye) -> Result<(), GpuError> {
         let biased = if self.weights == Weights::Biased { IS_BIASED } else { 0 };
         let before = if self.before == Some(projected) { HAS_BEFORE } else { 0 };

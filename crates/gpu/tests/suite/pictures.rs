@@ -19,10 +19,19 @@ use spectrum::RgbColorSpace;
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
 
-/// The kernels of the first device, which are compiled once.
+/// Kernels that tests share, so that they are compiled once. A driver in software compiles the
+/// kernels of a device one after another, so that kernels of different kinds have a device each.
+pub type Shared = OnceLock<Option<Arc<Kernels>>>;
+
+/// The kernels of some tests.
+pub fn kernels_of(shared: &Shared) -> Option<Arc<Kernels>> {
+    shared.get_or_init(|| crate::device().map(|device| Arc::new(Kernels::new(device)))).clone()
+}
+
+/// The kernels of whole pictures.
 pub fn kernels() -> Option<Arc<Kernels>> {
-    static KERNELS: OnceLock<Option<Arc<Kernels>>> = OnceLock::new();
-    KERNELS.get_or_init(|| crate::device().map(|device| Arc::new(Kernels::new(device)))).clone()
+    static KERNELS: Shared = Shared::new();
+    kernels_of(&KERNELS)
 }
 
 /// A small picture of a scene.
@@ -79,16 +88,11 @@ impl Case {
     }
 
     pub fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
-        self.flatten_for(algorithm, algorithm.weights_lights())
-    }
-
-    /// The same, where lights may leave directions to the BSDF or not.
-    pub fn flatten_for(&self, algorithm: &Algorithm, allows_incomplete: bool) -> Result<Flat, Vec<Refusal>> {
         let Self { scene, view, sampler, .. } = self;
         let lights = scene.light_sampler(algorithm.light_sampler(), &Default::default()).expect("a choice");
         let film = &self.film();
         let largest_buffer = 1 << 27;
-        flatten(Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer }, &lights)
+        flatten(Subject { scene, view, film, algorithm, sampler, largest_buffer }, &lights)
     }
 
     fn on_gpu(&self, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Image {
@@ -460,7 +464,8 @@ Shape "disk" "float radius" 0.6 "float height" 0.2
 
 #[test]
 fn principled_surfaces_have_the_picture_of_the_cpu() {
-    let Some(kernels) = kernels() else { return };
+    // No other picture has this kernel, the largest.
+    let Some(kernels) = kernels_of(&Shared::new()) else { return };
     let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
     assert_eq!(Case::of_text(PRINCIPLED).compare("principled", &kernels, &path), None);
 }

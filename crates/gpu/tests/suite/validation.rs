@@ -36,16 +36,22 @@ fn traversal_is_valid() {
 #[test]
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
-    for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
-        for bits in 0..32 {
-            let [holes, images, noise, coats, principled] = [1, 2, 4, 8, 16].map(|bit| bits & bit != 0);
-            let parts = Parts { holes, images, noise, coats, principled };
-            let kernels = [shaders::pixels(&algorithm, parts), shaders::surfaces(&algorithm, parts)];
-            let lights = [false, true].map(|has| shaders::light(&algorithm, parts, has));
-            for source in kernels.iter().chain(&lights).chain(&shaders::reservoirs(parts)) {
-                validate(source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
-            }
+    // All parts but principled surfaces are constants of one text, whose branches are all
+    // validated.
+    for [has, principled] in [[false, false], [false, true], [true, false], [true, true]] {
+        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled };
+        let valid = |name: &str, source: &str| {
+            validate(source).unwrap_or_else(|error| panic!("{name}, {parts:?}: {error}"));
+        };
+        let path = Algorithm::Path(Default::default());
+        for algorithm in [&Algorithm::RayCasting, &occlusion, &path] {
+            let name = format!("{algorithm:?}");
+            valid(&name, &shaders::pixels(algorithm, parts));
+            valid(&name, &shaders::surfaces(algorithm, parts));
+            valid(&name, &shaders::light(algorithm, parts, false));
         }
+        valid("other light", &shaders::light(&path, parts, true));
+        shaders::reservoirs(parts).iter().for_each(|source| valid("reservoirs", source));
     }
 }
 
