@@ -50,6 +50,7 @@ fn OpenPbrTable_locate(table: u32, p: OpenPbrParameters) -> array<f32, 12> {
         switch (tables[axis + 1]) {
             case 1: { unit = sqrt(unit) / (1 + sqrt(unit)); }
             case 2: { unit = (unit - 1) / (unit + 1); }
+            case 3: { unit = sqrt(unit); }
             default: {}
         }
         let part = (unit - number(axis + 3)) / (number(axis + 4) - number(axis + 3));
@@ -63,7 +64,7 @@ fn openpbr_corners(table: u32) -> u32 {
     return select(1u, 2u, OpenPbrTable_has_film(table)) << tables[table];
 }
 
-// One of them, under a film of so many wavelengths.
+// One of them, under a film of the optical thickness of so many wavelengths.
 fn openpbr_corner(table: u32, location: array<f32, 12>, waves: f32, corner: u32) -> Node {
     var places = location;
     var node = Node(0, 1);

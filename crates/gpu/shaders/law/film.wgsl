@@ -61,9 +61,9 @@ fn both_sides(first: Complex, second: Complex, turn_1: Complex) -> f32 {
     return Complex_norm2(ratio);
 }
 
-// The reflectance of a film of `thickness` wavelengths of vacuum and index `film`, between the
-// indices `above` and `below`, for light from above with the cosine `cosine`.
-fn film_reflectance(cosine: f32, above: f32, film: f32, below: Complex, thickness: f32) -> f32 {
+// The reflectance of a film of index `film` and the optical thickness of `waves` wavelengths,
+// n₁d/λ, between the indices `above` and `below`, for light from above with the cosine `cosine`.
+fn film_reflectance(cosine: f32, above: f32, film: f32, below: Complex, waves: f32) -> f32 {
     let cosine_1 = real_max(cosine, 1e-3f);
     let across2 = Complex_real(sqr(above) * (1.0f - sqr(cosine_1)));
     let s0 = Complex_real(sqr(above));
@@ -72,7 +72,7 @@ fn film_reflectance(cosine: f32, above: f32, film: f32, below: Complex, thicknes
     let q0 = Complex_real(above * cosine_1);
     let q1 = Complex_root(Complex_minus(s1, across2));
     let q2 = Complex_root(Complex_minus(s2, across2));
-    let turn_1 = Complex_exp_i(Complex_times(q1, Complex_real((4.0f * 3.1415927f) * thickness)));
+    let turn_1 = Complex_exp_i(Complex_times(q1, Complex_real(((4.0f * 3.1415927f) * waves) / film)));
     let perpendicular = both_sides(Complex_contrast(q0, q1), Complex_contrast(q1, q2), turn_1);
     let above_film = Complex_contrast(Complex_times(s1, q0), Complex_times(s0, q1));
     let below_film = Complex_contrast(Complex_times(s2, q1), Complex_times(s1, q2));

@@ -55,7 +55,7 @@ fn OpenPbr_new(table: u32, p: OpenPbrParameters, lambda: SampledWavelengths) -> 
     }
     let is_filmed = p.thin_film_weight > 0.0f;
     if (is_filmed) {
-        let thickness = 1000.0f * p.thin_film_thickness;
+        let thickness = (1000.0f * p.thin_film_thickness) * p.thin_film_ior;
         for (var i = 0u; i < sampled_N; i++) {
             surface.waves[i] = select(0.0f, thickness / SampledWavelengths_lambda(lambda)[i], is_filmed);
         }

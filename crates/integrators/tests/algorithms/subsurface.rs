@@ -141,6 +141,38 @@ fn diffusion_is_near_to_a_walk_in_a_half_space() {
     }
 }
 
+/// Of the light of a uniform sky that enters, a walk returns the reflectance that was asked for:
+/// the mean over directions by their cosine, whose squares are uniform.
+#[test]
+fn walks_return_the_reflectance_that_is_asked_for() {
+    const DIRECTIONS: usize = 8;
+    let plane = || quad(v(-1e4, -1e4, 0.0), v(2e4, 0.0, 0.0), v(0.0, 2e4, 0.0));
+    for (reflectance, g, roughness) in [(0.3, 0.0, 0.0), (0.8, 0.0, 0.0), (0.6, 0.7, 0.0), (0.6, 0.0, 0.3)] {
+        let mut material = body(reflectance, 0.1, roughness);
+        if let MaterialKind::Subsurface { g: asymmetry, method, .. } = &mut material {
+            (*asymmetry, *method) = (g, RandomWalk);
+        }
+        let scene = scene(white_sky, plane(), material);
+        let (mut returned, mut entered, mut variance) = (0.0, 0.0, 0.0);
+        for i in 0..DIRECTIONS {
+            let cosine = ((i as f32 + 0.5) / DIRECTIONS as f32).sqrt();
+            let d = v((1.0 - cosine * cosine).sqrt(), 0.0, -cosine);
+            let found = radiance(&mut path(1), &scene, v(0.0, 0.0, 1.0), d, 10_000);
+            let reflected = f64::from(fr_dielectric(cosine, ETA));
+            returned += found.mean - reflected;
+            entered += 1.0 - reflected;
+            variance += found.variance_of_mean();
+        }
+        let (share, error) = (returned / entered, variance.sqrt() / entered);
+        // Half a percent for the errors of the table, and a rough boundary reflects a little less.
+        let bound = 4.0 * error + 0.005;
+        assert!(
+            (share - f64::from(reflectance)).abs() < bound,
+            "{reflectance} {g} {roughness}: {share} ± {error}"
+        );
+    }
+}
+
 #[test]
 fn a_body_that_hardly_absorbs_gains_no_light() {
     let scene = scene(white_sky, sphere(1.0), body(0.95, 0.05, 0.2));

@@ -21,10 +21,11 @@
 mod diffusion;
 mod spline;
 mod table;
+mod walks;
 
 pub use table::BssrdfTable;
 
-use crate::{HenyeyGreenstein, Interior, NormalizedFresnel};
+use crate::{HenyeyGreenstein, Interior, NormalizedFresnel, SubsurfaceMethod};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};
 use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;
@@ -63,13 +64,14 @@ impl<'a> Bssrdf<'a> {
         Self { table, sigma_t, albedo: sigma_s.safe_div(sigma_t) }
     }
 
-    /// Of a medium of an effective albedo and a mean free path.
+    /// Of a medium of a mean free path that has an effective albedo by a method.
     pub fn from_reflectance(
         table: &'a BssrdfTable,
+        method: SubsurfaceMethod,
         effective_albedo: SampledSpectrum,
         mean_free_path: SampledSpectrum,
     ) -> Self {
-        let albedo = effective_albedo.map(|share| table.albedo(share));
+        let albedo = effective_albedo.map(|share| table.albedo(method, share));
         // At no distance at all the profile has no value.
         Self { table, sigma_t: mean_free_path.map(|l| 1.0 / l.max(1e-6)), albedo }
     }
@@ -94,7 +96,7 @@ impl<'a> Bssrdf<'a> {
         NormalizedFresnel::new(self.table)
     }
 
-    /// The share of the light that entered which leaves again.
+    /// The share of the light that entered which leaves again, by the profile.
     pub fn effective_albedo(&self) -> SampledSpectrum {
         self.albedo.map(|albedo| self.table.effective_albedo(albedo))
     }

@@ -2,8 +2,11 @@
 
 use super::diffusion::HalfSpace;
 use super::spline::{self, Weights};
+use super::walks;
+use crate::SubsurfaceMethod;
 use std::f32::consts::TAU;
 use std::fmt;
+use std::sync::OnceLock;
 
 /// Albedos, more closely spaced towards 1, where the profile changes fast.
 const ALBEDOS: usize = 100;
@@ -25,6 +28,8 @@ pub struct BssrdfTable {
     cdf: Vec<f32>,
     /// The integrals of the rows.
     effective_albedos: Vec<f32>,
+    /// What random walks return for each albedo, once it is asked for.
+    of_walks: OnceLock<Vec<f32>>,
 }
 
 impl BssrdfTable {
@@ -42,6 +47,7 @@ impl BssrdfTable {
             profile: Vec::with_capacity(ALBEDOS * RADII),
             cdf: Vec::with_capacity(ALBEDOS * RADII),
             effective_albedos: Vec::with_capacity(ALBEDOS),
+            of_walks: OnceLock::new(),
             albedos,
             radii,
         };
@@ -74,14 +80,22 @@ impl BssrdfTable {
         self.exit_norm
     }
 
-    /// The share of the light that entered which leaves again, for an albedo in [0, 1].
+    /// The share of the light that entered which leaves again, for an albedo in [0, 1], by the
+    /// profile.
     pub fn effective_albedo(&self, albedo: f32) -> f32 {
         Weights::at(&self.albedos, albedo).map_or(0.0, |at| at.sum(|i| self.effective_albedos[i])).max(0.0)
     }
 
-    /// The albedo of a medium with an effective albedo, or with the nearest there is.
-    pub fn albedo(&self, effective_albedo: f32) -> f32 {
-        spline::invert(&self.albedos, &self.effective_albedos, effective_albedo)
+    /// The albedo of a medium that returns a share of the light that entered, or the nearest to it
+    /// that there is: by the profile, or by random walks, of light from a uniform sky.
+    pub fn albedo(&self, method: SubsurfaceMethod, effective_albedo: f32) -> f32 {
+        let effective_albedos = match method {
+            SubsurfaceMethod::Diffusion => &self.effective_albedos,
+            SubsurfaceMethod::RandomWalk => {
+                self.of_walks.get_or_init(|| walks::effective_albedos(self.g, self.eta, &self.albedos))
+            }
+        };
+        spline::invert(&self.albedos, effective_albedos, effective_albedo)
     }
 
     /// The profile at a radius, per area, of a medium with an albedo in [0, 1], and its density,

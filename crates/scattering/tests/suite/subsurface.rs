@@ -39,10 +39,10 @@ fn effective_albedos_are_inverted() {
             let effective = table.effective_albedo(albedo);
             assert!(effective >= last && effective <= 1.001, "{albedo}: {effective}");
             last = effective;
-            let found = table.albedo(effective);
+            let found = table.albedo(SubsurfaceMethod::Diffusion, effective);
             assert!((table.effective_albedo(found) - effective).abs() < 1e-4, "{albedo}: {found}");
         }
-        assert_eq!([table.albedo(-0.5), table.albedo(2.0)], [0.0, 1.0]);
+        assert_eq!([-0.5, 2.0].map(|x| table.albedo(SubsurfaceMethod::Diffusion, x)), [0.0, 1.0]);
     }
     assert!((WATER.effective_albedo(1.0) - 1.0).abs() < 1e-4);
 }
@@ -69,7 +69,8 @@ fn effective_albedos_are_the_integrals_of_profiles() {
 #[test]
 fn a_mean_free_path_scales_the_profile() {
     let given = SampledSpectrum::new([0.1, 0.3, 0.6, 0.7]);
-    let of = |mfp: f32| Bssrdf::from_reflectance(&WATER, given, SampledSpectrum::splat(mfp));
+    let method = SubsurfaceMethod::Diffusion;
+    let of = |mfp: f32| Bssrdf::from_reflectance(&WATER, method, given, SampledSpectrum::splat(mfp));
     let (short, long) = (of(0.5), of(2.0));
     for r in [0.01, 0.2, 1.0, 3.0] {
         let (a, b) = (short.profile(r), long.profile(4.0 * r) * 16.0);
@@ -77,6 +78,35 @@ fn a_mean_free_path_scales_the_profile() {
             assert!((a[i] - b[i]).abs() <= 1e-4 * a[i], "{a:?} {b:?}");
             assert!((short.effective_albedo()[i] - given[i]).abs() < 1e-3);
         }
+    }
+}
+
+/// A half space without a boundary that scatters evenly returns 1 − 2√(1 − α) ∫ H(μ) μ dμ of the
+/// light of a uniform sky, with 1/H(μ) = √(1 − α) + α/2 ∫ μ' H(μ')/(μ + μ') dμ' [Chandrasekhar
+/// 1960].
+#[test]
+fn walks_without_a_boundary_return_what_the_h_function_says() {
+    const STEPS: usize = 200;
+    let table = BssrdfTable::new(0.0, 1.0);
+    let cosine = |i: usize| (i as f64 + 0.5) / STEPS as f64;
+    for albedo in [0.2f64, 0.5, 0.8, 0.95, 0.99] {
+        let mut h = vec![1.0; STEPS];
+        for _ in 0..400 {
+            let next = |i: usize| {
+                let share = |j: usize| cosine(j) * h[j] / (cosine(i) + cosine(j)) / STEPS as f64;
+                1.0 / ((1.0 - albedo).sqrt() + 0.5 * albedo * (0..STEPS).map(share).sum::<f64>())
+            };
+            h = (0..STEPS).map(|i| 0.5 * (h[i] + next(i))).collect();
+        }
+        let moment = (0..STEPS).map(|i| h[i] * cosine(i) / STEPS as f64).sum::<f64>();
+        let returned = 1.0 - 2.0 * (1.0 - albedo).sqrt() * moment;
+        let found = table.albedo(SubsurfaceMethod::RandomWalk, returned as f32);
+        // Three standard errors of the share, by the change of the albedo with it.
+        let more = table.albedo(SubsurfaceMethod::RandomWalk, returned as f32 + 0.006);
+        assert!(
+            (f64::from(found) - albedo).abs() < f64::from(more - found) + 1e-4,
+            "{albedo}: {found} {more}"
+        );
     }
 }
 

@@ -68,7 +68,7 @@ impl SubsurfaceMaterial {
             }
             SubsurfaceInside::Reflectance { reflectance, mfp, scale } => {
                 let (share, path) = (spectrum(reflectance).clamp(0.0, 1.0), spectrum(mfp) * scale);
-                Bssrdf::from_reflectance(&self.table, share, path)
+                Bssrdf::from_reflectance(&self.table, self.method, share, path)
             }
         };
         let distribution = self.roughness.distribution(textures, context);

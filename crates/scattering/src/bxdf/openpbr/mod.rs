@@ -74,7 +74,7 @@ pub struct OpenPbr<'a, R: Real = f32> {
     /// The place in the table.
     location: Location<R>,
     stack: Stack<R>,
-    /// The thickness of the film in wavelengths.
+    /// The optical thickness of the film in wavelengths.
     waves: SampledSpectrum<R>,
     metalness: R,
     transmission: R,
@@ -161,7 +161,7 @@ impl<'a, R: Real> OpenPbr<'a, R> {
         }
         let is_filmed = p.thin_film_weight.gt(zero);
         if is_filmed.any() {
-            let thickness = R::splat(1000.0) * p.thin_film_thickness;
+            let thickness = R::splat(1000.0) * p.thin_film_thickness * p.thin_film_ior;
             for i in 0..N {
                 surface.waves[i] = R::select(is_filmed, thickness / lambda.lambda()[i], zero);
             }

@@ -286,11 +286,12 @@ impl Stack {
         let here = self.dielectric(cosine, waves);
         let mut refracted = 0.0;
         if let Some(SeenGlass::Body([glass, _])) = &seen.glass {
-            // At the direction's own reflectance where facets are smooth.
+            // At the direction's own reflectance where facets are smooth. The layers pass what they
+            // pass for the facet, if that is less.
             let kept: f32 = glass.refracted.iter().sum();
-            let passed =
-                |k: usize| (1.0 - facing[k]) * glass.refracted[k] + (facing[k] - here) * own[k] * kept;
-            refracted = (0..HATS).map(passed).sum::<f32>().clamp(0.0, 1.0) * below_coat;
+            let passed = |k: usize| (1.0 - facing[k]) * below_coat.min(above.coat[k]);
+            let turned: f32 = (0..HATS).map(|k| passed(k) * (glass.refracted[k] - own[k] * kept)).sum();
+            refracted = ((1.0 - here) * kept * below_coat + turned).clamp(0.0, 1.0);
         }
         Taken {
             fuzz_once: fuzz.once,

@@ -1,9 +1,9 @@
 //! What the layers of a material do with light from any direction, in a table.
 //!
 //! The table has a row for each node of the cosine, and of whatever varies: of the azimuth, where
-//! facets are not alike both ways; of the thickness of the film in wavelengths, where there is one;
-//! and of each number that is not the same everywhere. Between nodes everything is linear, so that
-//! what is left for the last layer and its means fit together as exactly as at the nodes.
+//! facets are not alike both ways; of the optical thickness of the film in wavelengths, where there
+//! is one; and of each number that is not the same everywhere. Between nodes everything is linear,
+//! so that what is left for the last layer and its means fit together as exactly as at the nodes.
 
 use super::OpenPbrParameters;
 use super::grid::{Place, nodes};
@@ -18,34 +18,34 @@ use std::fmt;
 const COSINES: usize = 37;
 /// Cosines of the azimuth, where it matters.
 const AZIMUTHS: usize = 13;
-/// Tables have about so many nodes at most, without those of cosines.
-const MOST_NODES: usize = 16384;
-/// Nodes of one number.
-const NODES: [usize; 2] = [2, 17];
-/// The most nodes of a film's thickness where numbers vary.
-const FEW_FILMS: usize = 64;
+/// Tables have so many nodes at most, without those of cosines.
+const MOST_NODES: usize = 32768;
 /// A film of more wavelengths counts as one of so many.
-const MOST_WAVES: f32 = 8.0;
-/// Nodes for each wavelength of a film's thickness, which is 2n periods of its reflectance.
-const NODES_PER_WAVE: f32 = 40.0;
+const MOST_WAVES: f32 = 24.0;
+/// Intervals for each wavelength of a film's optical thickness, two periods of its reflectance.
+const INTERVALS_PER_WAVE: f32 = 12.0;
+/// By how much nodes are closer where there is room for that.
+const FINEST: f32 = 2.0;
 
 /// How many numbers the layers depend on.
 const NUMBERS: usize = 12;
 
-/// How the range of each is made [0, 1].
-const SCALES: [Scale; NUMBERS] = [
-    Scale::Share,
-    Scale::Weight,
-    Scale::Index,
-    Scale::Share,
-    Scale::Presence(3),
-    Scale::Share,
-    Scale::Index,
-    Scale::Share,
-    Scale::Presence(2),
-    Scale::Share,
-    Scale::Presence(2),
-    Scale::Index,
+/// How the range of each is made [0, 1], and the intervals between nodes in which that has an error
+/// of about a percent of all light: so many that each number has an equal part in the error of a
+/// table of several, whose nodes are closer or farther in the same ratio.
+const SCALES: [(Scale, f32); NUMBERS] = [
+    (Scale::Share, 8.0),
+    (Scale::Weight, 8.0),
+    (Scale::Index, 16.0),
+    (Scale::Share, 4.0),
+    (Scale::Root, 8.0),
+    (Scale::Share, 12.0),
+    (Scale::Index, 16.0),
+    (Scale::Share, 4.0),
+    (Scale::Presence, 1.0),
+    (Scale::Share, 8.0),
+    (Scale::Presence, 1.0),
+    (Scale::Index, 16.0),
 ];
 
 /// One of these numbers.
@@ -72,8 +72,10 @@ fn number<R>(p: &mut OpenPbrParameters<R>, number: usize) -> &mut R {
 enum Scale {
     /// It is.
     Share,
-    /// It is, more or less exactly, so that so many nodes do.
-    Presence(usize),
+    /// It is, exactly, so that two nodes do.
+    Presence,
+    /// By its root: under a coat that is hardly there, light meets the base less steeply by that.
+    Root,
     /// Any number ≥ 0.
     Weight,
     /// An index of refraction.
@@ -81,18 +83,11 @@ enum Scale {
 }
 
 impl Scale {
-    /// How many nodes do, if not as many as possible.
-    fn nodes(self) -> Option<usize> {
-        match self {
-            Self::Presence(nodes) => Some(nodes),
-            _ => None,
-        }
-    }
-
     #[inline(always)]
     fn to_unit<R: Real>(self, value: R) -> R {
         match self {
-            Self::Share | Self::Presence(_) => value,
+            Self::Share | Self::Presence => value,
+            Self::Root => value.sqrt(),
             Self::Weight => value.sqrt() / (R::one() + value.sqrt()),
             Self::Index => (value - R::one()) / (value + R::one()),
         }
@@ -100,7 +95,8 @@ impl Scale {
 
     fn value(self, unit: f32) -> f32 {
         match self {
-            Self::Share | Self::Presence(_) => unit,
+            Self::Share | Self::Presence => unit,
+            Self::Root => sqr(unit),
             Self::Weight => sqr(unit / (1.0 - unit).max(1e-3)),
             Self::Index => (1.0 + unit) / (1.0 - unit),
         }
@@ -116,18 +112,27 @@ struct Axis {
 }
 
 impl Axis {
+    /// The number of its nodes, which are so many times as close as they need be.
+    fn nodes(&self, closeness: f32) -> usize {
+        let (scale, intervals) = SCALES[self.number];
+        match scale {
+            Scale::Presence => 2,
+            _ => 1 + ((self.range[1] - self.range[0]) * intervals * closeness).ceil() as usize,
+        }
+    }
+
     /// The place of a value, in nodes.
     #[inline(always)]
     fn place<R: Real>(&self, value: R) -> R {
         let [least, most] = self.range;
-        let unit = (SCALES[self.number].to_unit(value) - R::splat(least)) / R::splat(most - least);
+        let unit = (SCALES[self.number].0.to_unit(value) - R::splat(least)) / R::splat(most - least);
         unit.clamp(R::zero(), R::one()) * R::splat((self.len - 1) as f32)
     }
 
     /// The value of a node.
     fn value(&self, node: usize) -> f32 {
         let t = node as f32 / (self.len - 1) as f32;
-        SCALES[self.number].value(math::lerp(t, self.range[0], self.range[1]))
+        SCALES[self.number].0.value(math::lerp(t, self.range[0], self.range[1]))
     }
 }
 
@@ -157,7 +162,7 @@ const MEANS: usize = 6;
 pub struct OpenPbrTable {
     axes: Vec<Axis>,
     azimuths: usize,
-    /// The thickness of films in wavelengths, and the number of its nodes.
+    /// The optical thickness of films in wavelengths, and the number of its nodes.
     waves: [f32; 2],
     films: usize,
     /// The numbers of a [`Taken`] by axes, film, azimuth and cosine.
@@ -172,9 +177,10 @@ pub struct OpenPbrTable {
 #[derive(Clone, Debug)]
 pub struct PlainOpenPbrTable<'a> {
     /// The numbers that vary: which of the twelve, whether as it is (0), as a weight
-    /// (1) or as an index (2), the nodes, and the range.
+    /// (1), as an index (2) or by its root (3), the nodes, and the range.
     pub axes: Vec<(u32, u32, u32, [f32; 2])>,
-    /// How many azimuths there are, and how many films, by their thickness in wavelengths.
+    /// How many azimuths there are, and how many films, by their optical thickness in
+    /// wavelengths.
     pub azimuths: u32,
     /// See `azimuths`.
     pub films: u32,
@@ -192,10 +198,11 @@ impl OpenPbrTable {
     /// The table as plain data.
     pub fn plain(&self) -> PlainOpenPbrTable<'_> {
         let axis = |axis: &Axis| {
-            let scale = match SCALES[axis.number] {
-                Scale::Share | Scale::Presence(_) => 0,
+            let scale = match SCALES[axis.number].0 {
+                Scale::Share | Scale::Presence => 0,
                 Scale::Weight => 1,
                 Scale::Index => 2,
+                Scale::Root => 3,
             };
             (axis.number as u32, scale, axis.len as u32, axis.range)
         };
@@ -254,7 +261,7 @@ impl OpenPbrTable {
             !(has(|p| p.specular_roughness_anisotropy) || has_coat && has(|p| p.coat_roughness_anisotropy));
         let (mut low, mut high) = (*least, *most);
         let mut axes = Vec::new();
-        for (axis, scale) in SCALES.into_iter().enumerate() {
+        for (axis, (scale, _)) in SCALES.into_iter().enumerate() {
             let range = [*number(&mut low, axis), *number(&mut high, axis)].map(|value| scale.to_unit(value));
             let matters = match axis {
                 4..8 => has_coat,
@@ -267,21 +274,26 @@ impl OpenPbrTable {
             }
         }
         let mut waves = [0.0; 2];
-        let mut films = 1;
         if has_film {
-            waves = [least.thin_film_thickness / LAMBDA_MAX, most.thin_film_thickness / LAMBDA_MIN]
-                .map(|waves| (1000.0 * waves).min(MOST_WAVES));
-            films = 2 + ((waves[1] - waves[0]) * NODES_PER_WAVE) as usize;
+            let optical = |p: &OpenPbrParameters| 1000.0 * p.thin_film_thickness * p.thin_film_ior;
+            waves = [optical(least) / LAMBDA_MAX, optical(most) / LAMBDA_MIN].map(|w| w.min(MOST_WAVES));
+            waves[1] = waves[1].max(waves[0] + 1e-3);
         }
-        if !axes.is_empty() {
-            films = films.min(FEW_FILMS);
-        }
+        let films = |closeness: f32| match has_film {
+            true => 2 + ((waves[1] - waves[0]) * INTERVALS_PER_WAVE * closeness) as usize,
+            false => 1,
+        };
         let azimuths = if is_round { 1 } else { AZIMUTHS };
-        let few: usize = axes.iter().filter_map(|axis| SCALES[axis.number].nodes()).product();
-        let others = axes.iter().filter(|axis| SCALES[axis.number].nodes().is_none()).count();
-        let each = (MOST_NODES / (films * azimuths * few)).max(1) as f64;
-        let len = (each.powf(1.0 / others.max(1) as f64) as usize).clamp(NODES[0], NODES[1]);
-        axes.iter_mut().for_each(|axis| axis.len = SCALES[axis.number].nodes().unwrap_or(len));
+        let count = |closeness: f32| {
+            let nodes = axes.iter().map(|axis| axis.nodes(closeness)).product::<usize>();
+            nodes * films(closeness) * azimuths
+        };
+        let mut closeness = FINEST;
+        while count(closeness) > MOST_NODES && closeness > 0.02 {
+            closeness *= 0.95;
+        }
+        let films = films(closeness);
+        axes.iter_mut().for_each(|axis| axis.len = axis.nodes(closeness));
         let (taken, inside, means) = (Vec::new(), Vec::new(), Vec::new());
         let mut table = Self { axes, azimuths, waves, films, taken, inside, means };
         table.fill(least, has_fuzz, has_glass);

@@ -196,6 +196,7 @@ fn subsurface_materials_scatter_by_their_parameters() {
     assert!(skin.profile(0.1).min_component() > 0.0);
     assert!((grey.effective_albedo()[0] - 0.4).abs() < 1e-3);
     let ones = spectrum::SampledSpectrum::ONE;
-    let expected = scattering::Bssrdf::from_reflectance(&bodies[0].table, ones * 0.4, ones * 0.5);
+    let (table, method) = (&bodies[0].table, SubsurfaceMethod::Diffusion);
+    let expected = scattering::Bssrdf::from_reflectance(table, method, ones * 0.4, ones * 0.5);
     assert!((grey.profile(0.2) - expected.profile(0.2)).max_component() < 1e-3);
 }
