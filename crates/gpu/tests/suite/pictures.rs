@@ -4,12 +4,16 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten};
-use description::{AmbientOcclusionDesc, IntegratorDesc, LightSamplerDesc, PathDesc, SceneDesc};
+use description::{
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
+    WhittedDesc,
+};
 use film::Film;
 use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
-    AmbientOcclusion, Control, Limits, PixelLoop, RayCasting, RayIntegrator, Session, SessionState,
+    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, PixelLoop, RayCasting, RayIntegrator,
+    Session, SessionState, Whitted,
 };
 use sampling::Sampler;
 use sampling::sampler::Independent;
@@ -31,6 +35,7 @@ pub struct Case {
     pub view: View,
     pub desc: SceneDesc,
     pub sampler: Sampler,
+    pub light_sampler: Sampler,
 }
 
 impl Case {
@@ -48,8 +53,9 @@ impl Case {
         desc.film.save_fp16 = false;
         let scene = scene::compile(desc.clone()).expect("a scene").scene;
         let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
-        let sampler = Sampler::Independent(Independent::new(SAMPLES, 7));
-        Self { scene: Arc::new(scene), view, desc, sampler }
+        let [sampler, light_sampler] =
+            [7, 8].map(|seed| Sampler::Independent(Independent::new(SAMPLES, seed)));
+        Self { scene: Arc::new(scene), view, desc, sampler, light_sampler }
     }
 
     pub fn of_text(text: &str) -> Self {
@@ -84,11 +90,21 @@ impl Case {
 
     /// The same, where lights may leave directions to the BSDF or not.
     pub fn flatten_for(&self, algorithm: &Algorithm, allows_incomplete: bool) -> Result<Flat, Vec<Refusal>> {
-        let Self { scene, view, sampler, .. } = self;
+        let Self { scene, view, sampler, light_sampler, .. } = self;
         let lights = scene.light_sampler(algorithm.light_sampler(), &Default::default()).expect("a choice");
         let film = &self.film();
         let largest_buffer = 1 << 27;
-        flatten(Subject { scene, view, film, algorithm, allows_incomplete, sampler, largest_buffer }, &lights)
+        let subject = Subject {
+            scene,
+            view,
+            film,
+            algorithm,
+            allows_incomplete,
+            sampler,
+            light_sampler,
+            largest_buffer,
+        };
+        flatten(subject, &lights)
     }
 
     fn on_gpu(&self, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Image {
@@ -104,15 +120,23 @@ impl Case {
     }
 
     pub fn on_cpu(&self, algorithm: &Algorithm) -> Image {
+        let [sampler, light_sampler] = [&self.sampler, &self.light_sampler].map(Clone::clone);
         match algorithm {
-            Algorithm::RayCasting => self.by(RayCasting),
-            Algorithm::AmbientOcclusion(desc, space) => self.by(AmbientOcclusion::new(*desc, space)),
-            Algorithm::Path(desc) => self.by(integrators::Path::new(*desc, Interfaces::Stop)),
+            Algorithm::RayCasting => self.by_rays(RayCasting),
+            Algorithm::Whitted(desc) => self.by_rays(Whitted::new(*desc)),
+            Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
+            Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
+            Algorithm::LightTracing(desc) => self.by(LightTracing::new(*desc, sampler, light_sampler)),
+            Algorithm::Bdpt(desc) => self.by(Bdpt::new(*desc, sampler, light_sampler)),
         }
     }
 
-    fn by(&self, rays: impl RayIntegrator + 'static) -> Image {
-        let integrator = Box::new(PixelLoop::new(rays, self.sampler.clone()));
+    fn by_rays(&self, rays: impl RayIntegrator + 'static) -> Image {
+        self.by(PixelLoop::new(rays, self.sampler.clone()))
+    }
+
+    fn by(&self, integrator: impl Integrator + 'static) -> Image {
+        let integrator = Box::new(integrator);
         let state = SessionState::new(self.film());
         let mut session = Session::new(self.scene.clone(), self.view.clone(), integrator, state);
         session.run(0..SAMPLES, &Limits::default(), &Control::default(), &mut |_| ()).expect("all passes");
@@ -207,6 +231,23 @@ fn blue_noise_has_the_picture_of_the_cpu() {
         assert!(matches!(case.sampler, Sampler::ZSobol(_)), "{name}");
         assert_eq!(case.compare(name, &kernels, &Algorithm::Path(case.path())), None);
     }
+}
+
+#[test]
+fn whitted_has_the_picture_of_the_cpu() {
+    compare_all(&["mirror-room", "refraction", "prism"], |_| Algorithm::Whitted(WhittedDesc::default()));
+}
+
+#[test]
+fn light_paths_have_the_picture_of_the_cpu() {
+    compare_all(&["cornell-box", "caustic-ball"], |_| Algorithm::LightTracing(LightTracingDesc { max_depth: 4 }));
+}
+
+#[test]
+fn bidirectional_paths_have_the_picture_of_the_cpu() {
+    compare_all(&["cornell-box", "caustic-ball"], |_| {
+        Algorithm::Bdpt(BdptDesc { max_depth: 4, ..BdptDesc::default() })
+    });
 }
 
 #[test]

@@ -36,13 +36,25 @@ fn traversal_is_valid() {
 #[test]
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
-    for algorithm in [Algorithm::RayCasting, occlusion, Algorithm::Path(Default::default())] {
+    let algorithms = [
+        Algorithm::RayCasting,
+        Algorithm::Whitted(Default::default()),
+        occlusion,
+        Algorithm::Path(Default::default()),
+        Algorithm::LightTracing(Default::default()),
+        Algorithm::Bdpt(Default::default()),
+    ];
+    for algorithm in algorithms {
         for bits in 0..32 {
             let [holes, images, noise, coats, principled] = [1, 2, 4, 8, 16].map(|bit| bits & bit != 0);
-            let parts = Parts { holes, images, noise, coats, principled };
-            let kernels = [shaders::pixels(&algorithm, parts), shaders::surfaces(&algorithm, parts)];
-            let lights = [false, true].map(|has| shaders::light(&algorithm, parts, has));
-            for source in kernels.iter().chain(&lights).chain(&shaders::reservoirs(parts)) {
+            let parts = Parts { holes, images, noise, coats, principled, padded_sobol: holes };
+            let mut kernels = vec![shaders::pixels(&algorithm, parts)];
+            if algorithm.splats().is_none() {
+                kernels.push(shaders::surfaces(&algorithm, parts));
+                kernels.extend([false, true].map(|has| shaders::light(&algorithm, parts, has)));
+                kernels.extend(shaders::reservoirs(parts));
+            }
+            for source in &kernels {
                 validate(source).unwrap_or_else(|error| panic!("{algorithm:?}: {error}"));
             }
         }
