@@ -41,7 +41,9 @@ impl Algorithm {
             IntegratorDesc::Whitted(settings) if settings.reflections != ReflectionsDesc::Traced => {
                 Err(format!("integrator `{name}` with reflections that are not traced"))
             }
-            IntegratorDesc::Whitted(settings) => bounded(settings.max_depth).map(|()| Self::Whitted(settings)),
+            IntegratorDesc::Whitted(settings) => {
+                bounded(settings.max_depth).map(|()| Self::Whitted(settings))
+            }
             IntegratorDesc::AmbientOcclusion(settings) => Ok(Self::AmbientOcclusion(settings, space)),
             IntegratorDesc::Path(settings) | IntegratorDesc::VolPath(settings) => Ok(Self::Path(settings)),
             IntegratorDesc::LightTracing(settings) => Ok(Self::LightTracing(settings)),

@@ -99,9 +99,8 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
             return traced(parts, &[NO_RESERVOIRS, radiance(algorithm), pixels]);
         }
     };
-    let constants = format!(
-        "const HAS_CAMERA_PATHS = {has_camera_paths};\nconst MOST_VERTICES = {most_vertices}u;\n"
-    );
+    let constants =
+        format!("const HAS_CAMERA_PATHS = {has_camera_paths};\nconst MOST_VERTICES = {most_vertices}u;\n");
     traced(parts, &[&constants, LENS, LIGHT_PATHS, radiance(algorithm)])
 }
 

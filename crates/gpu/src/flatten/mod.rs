@@ -143,7 +143,8 @@ pub struct Subject<'a> {
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, allows_incomplete, sampler, light_sampler, largest_buffer } = subject;
+    let Subject { scene, view, film, algorithm, allows_incomplete, sampler, light_sampler, largest_buffer } =
+        subject;
     let mut flattener = Flattener {
         scene,
         allows_incomplete,

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten};
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
-    WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc,
+    ReflectionsDesc, SceneDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
@@ -16,7 +16,7 @@ use integrators::{
     Session, SessionState, Whitted,
 };
 use sampling::Sampler;
-use sampling::sampler::Independent;
+use sampling::sampler::{Independent, PaddedSobol, Randomize};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
@@ -240,14 +240,45 @@ fn whitted_has_the_picture_of_the_cpu() {
 
 #[test]
 fn light_paths_have_the_picture_of_the_cpu() {
-    compare_all(&["cornell-box", "caustic-ball"], |_| Algorithm::LightTracing(LightTracingDesc { max_depth: 4 }));
+    let light_tracing = Algorithm::LightTracing(LightTracingDesc { max_depth: 4 });
+    compare_all(&["cornell-box", "caustic-ball", "environment"], |_| light_tracing.clone());
+    let Some(kernels) = kernels() else { return };
+    assert_eq!(Case::of_text(MEDLEY).compare("medley", &kernels, &light_tracing), None);
+    // With room for so many splats, strips are a row of tiles.
+    let long = Algorithm::LightTracing(LightTracingDesc { max_depth: 1000 });
+    assert_eq!(Case::named("cornell-box").compare("splats in strips", &kernels, &long), None);
 }
 
 #[test]
 fn bidirectional_paths_have_the_picture_of_the_cpu() {
-    compare_all(&["cornell-box", "caustic-ball"], |_| {
-        Algorithm::Bdpt(BdptDesc { max_depth: 4, ..BdptDesc::default() })
-    });
+    let settings = BdptDesc { max_depth: 4, regularize: true, ..BdptDesc::default() };
+    compare_all(&["cornell-box", "depth-of-field", "environment", "prism"], |_| Algorithm::Bdpt(settings));
+    let Some(kernels) = kernels() else { return };
+    assert_eq!(Case::of_text(MEDLEY).compare("medley", &kernels, &Algorithm::Bdpt(settings)), None);
+}
+
+#[test]
+fn padded_points_have_the_picture_of_the_cpu() {
+    let Some(kernels) = kernels() else { return };
+    let mut case = Case::named("depth-of-field");
+    case.sampler = Sampler::PaddedSobol(PaddedSobol::new(SAMPLES, Randomize::FastOwen, 7));
+    assert_eq!(case.compare("padded", &kernels, &Algorithm::RayCasting), None);
+}
+
+/// Algorithms without kernels, and settings that kernels do not have.
+#[test]
+fn what_algorithms_have_no_kernel_for_is_refused() {
+    let new = |desc: IntegratorDesc| Algorithm::new(&desc, RgbColorSpace::srgb()).map(|_| ());
+    let bdpt = |desc: BdptDesc| new(IntegratorDesc::Bdpt(desc));
+    assert_eq!(bdpt(BdptDesc { max_depth: 16, ..Default::default() }), Ok(()));
+    let refused = bdpt(BdptDesc { max_depth: 17, ..Default::default() });
+    assert_eq!(refused, Err("integrator `bdpt` with a `maxdepth` above 16".into()));
+    let refused = bdpt(BdptDesc { visualize_weights: true, ..Default::default() });
+    assert_eq!(refused, Err("pictures of the strategies of integrator `bdpt`".into()));
+    let hybrid = WhittedDesc { reflections: ReflectionsDesc::Hybrid, ..Default::default() };
+    let refused = new(IntegratorDesc::Whitted(hybrid));
+    assert_eq!(refused, Err("integrator `whitted` with reflections that are not traced".into()));
+    assert_eq!(new(IntegratorDesc::Vcm(Default::default())), Err("integrator `vcm`".into()));
 }
 
 #[test]
