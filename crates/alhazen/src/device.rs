@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use description::schema::Settings;
 use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;

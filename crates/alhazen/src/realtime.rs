@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use description::schema::Settings;
 use description::{Diagnostic, SceneDesc};
 use gpu::AimError;
 use math::Bounds2i;
