@@ -3,8 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use description::schema::Settings;
-use description::{Diagnostic, IntegratorDesc, SceneDesc, Span};
+use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
 use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
@@ -53,22 +52,16 @@ pub(crate) fn flattened(
     film: &Film,
     kernels: &Kernels,
 ) -> Result<Flattened, Vec<Diagnostic>> {
-    let algorithm = match desc.integrator.value.clone() {
-        IntegratorDesc::RayCasting => Some(Algorithm::RayCasting),
-        IntegratorDesc::AmbientOcclusion(settings) => {
-            Some(Algorithm::AmbientOcclusion(settings, color_space(desc.film.color_space)))
-        }
-        IntegratorDesc::Path(settings) | IntegratorDesc::VolPath(settings) => Some(Algorithm::Path(settings)),
-        _ => None,
-    };
     let mut refused = Vec::new();
-    if algorithm.is_none() {
-        let message = format!("the engine for GPUs does not have integrator `{}`", desc.integrator.name());
+    let mut refuse = |what: String| {
+        let message = format!("the engine for GPUs does not have {what}");
         refused.push(Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span));
-    }
-    let sampler = integrators::sampler(desc);
-    if !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_)) {
-        let message = "the engine for GPUs has the samplers `zsobol` and `independent` only";
+    };
+    let algorithm = Algorithm::new(&desc.integrator.value, color_space(desc.film.color_space));
+    let algorithm = algorithm.map_err(&mut refuse).ok();
+    let (sampler, light_sampler) = (integrators::sampler(desc), integrators::light_sampler(desc));
+    if !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_) | Sampler::PaddedSobol(_)) {
+        let message = "the engine for GPUs has the samplers `zsobol`, `paddedsobol` and `independent` only";
         let warning = Diagnostic::warning("not-on-gpu", message, desc.sampler.origin.span);
         refused.push(warning.with_help("`--set sampler=zsobol` selects the first one"));
     }
@@ -76,7 +69,15 @@ pub(crate) fn flattened(
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
     let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);
-    let subject = Subject { scene, view, film, algorithm: &algorithm, sampler: &sampler, largest_buffer };
+    let subject = Subject {
+        scene,
+        view,
+        film,
+        algorithm: &algorithm,
+        sampler: &sampler,
+        light_sampler: &light_sampler,
+        largest_buffer,
+    };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
     Ok(Flattened { flat, algorithm, sampler })
@@ -90,6 +91,10 @@ pub(crate) fn failed(error: &GpuError) -> Diagnostic {
 impl Integrator for OnDevice {
     fn passes(&self) -> u32 {
         self.sampler.samples_per_pixel()
+    }
+
+    fn splats(&self) -> bool {
+        self.renderer.splats()
     }
 
     /// All is on the device already.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use description::schema::Settings;
 use description::{Diagnostic, SceneDesc};
 use gpu::AimError;
 use math::Bounds2i;
@@ -44,6 +45,11 @@ impl Realtime {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
         let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
+        if algorithm.splats().is_some() {
+            let name = desc.integrator.name();
+            let message = format!("the engine for GPUs draws integrator `{name}` only as a whole picture");
+            return Err(vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]);
+        }
         let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)
             .map_err(|error| vec![failed(&error)])?;
         Ok(Self {

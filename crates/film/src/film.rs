@@ -16,13 +16,13 @@ use std::sync::Arc;
 
 use description::GBufferSpace;
 use image::{ImageError, require_memory};
-use math::Bounds2i;
+use math::{Bounds2, Bounds2i};
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
 use crate::exposure::Exposure;
 use crate::grid::Grid;
 use crate::layer::Layout;
-use crate::splats::SplatSums;
+use crate::splats::{SplatSums, reach};
 use crate::sum::{SUM_BYTES, Sums, maps, reserved, zeros};
 use crate::tile::{FilmTile, IdSums, TileData};
 use crate::{Buckets, Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample, Splatter};
@@ -190,6 +190,11 @@ impl Film {
     /// The pixels to render.
     pub fn pixel_bounds(&self) -> Bounds2i {
         self.grid.0
+    }
+
+    /// The film positions that light paths reach: [`Splatter::reach`].
+    pub fn reach(&self) -> Bounds2 {
+        reach(self.grid, &self.filter)
     }
 
     /// Diagonal of the film in metres.

@@ -113,10 +113,7 @@ impl<'film> Splatter<'film> {
     /// All film positions (in pixels, (0, 0) being the top left corner of the whole picture) that
     /// reach a pixel which is rendered: the pixels, and around them as far as the filter goes.
     pub fn reach(&self) -> Bounds2 {
-        let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
-        // Pixels reach as far as the filter from their centres.
-        let margin = self.filter.radius() - 0.5;
-        Bounds2 { min: corner(self.grid.0.min) - margin, max: corner(self.grid.0.max) + margin }
+        reach(self.grid, self.filter)
     }
 
     /// Adds the light `l` of one path that arrives at a film position.
@@ -192,6 +189,14 @@ impl<'film> Splatter<'film> {
         );
         self.grid.0.intersection(&reached)
     }
+}
+
+/// All film positions that reach a pixel.
+pub(crate) fn reach(grid: Grid, filter: &Filter) -> Bounds2 {
+    let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
+    // Pixels reach as far as the filter from their centres.
+    let margin = filter.radius() - 0.5;
+    Bounds2 { min: corner(grid.0.min) - margin, max: corner(grid.0.max) + margin }
 }
 
 fn lock(tile: &Mutex<OwnTileSums>) -> MutexGuard<'_, OwnTileSums> {

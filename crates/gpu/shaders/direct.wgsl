@@ -33,8 +33,9 @@ fn direct_light(s: Surface, context: ShapeSampleContext, bsdf: Bsdf, lambda: Sam
     return l * (weight / pdf);
 }
 
-// The light of all lights that a surface scatters, as if nothing were in between.
-fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths) -> vec4f {
+// The light of all lights that a surface scatters; as if nothing were in between, unless that is
+// to cast shadows.
+fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths, has_shadows: bool) -> vec4f {
     let flags = bsdf_flags(bsdf);
     var sum = vec4f();
     if (!is_non_specular(flags)) {
@@ -43,9 +44,17 @@ fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths) -> vec4f {
     let context = light_context(s, flags);
     for (var i = 0u; i < world.light_count; i++) {
         let light = sample_light(i, context, get_2d(), lambda, false);
-        if (light.valid) {
-            sum += scattered(s, bsdf, light) / light.pdf;
+        if (!light.valid) {
+            continue;
         }
+        let l = scattered(s, bsdf, light);
+        if (has_shadows && !is_black(l)) {
+            let shadow = shadow_ray(s, light);
+            if (occluded(shadow.ray, shadow.t_max)) {
+                continue;
+            }
+        }
+        sum += l / light.pdf;
     }
     return sum;
 }

@@ -173,6 +173,12 @@ fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
     return Cone(toward / distance, sine, sine * sine / (1 + safe_sqrt(1 - sine * sine)));
 }
 
+// The direction from the centre of a sphere to a point of it, by area.
+fn outward_by_area(at: u32, u: vec2f) -> vec3f {
+    let rotation = Rows(vector(at + 9), vector(at + 12), vector(at + 15));
+    return times(rotation, sample_uniform_sphere(vec2f(1 - u.x, u.y)));
+}
+
 // A point of a sphere: by the cone from outside, by area from inside.
 fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
     let center = vector(at + 4);
@@ -189,7 +195,7 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
         let x = coordinate_system(cone.axis).v1;
         outward = -(x * local.x + cross(cone.axis, x) * local.y + cone.axis * local.z);
     } else {
-        outward = sample_uniform_sphere(u);
+        outward = outward_by_area(at, u);
     }
     let p = center + outward * radius;
     let n = outward * number(at + 8);
@@ -199,8 +205,15 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
     return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
 }
 
-// A point of a disk or a cylinder, by area.
+// A point of a disk or a cylinder, by area, but with its density per solid angle.
 fn sample_revolved(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
+    var point = revolved_by_area(at, u);
+    point.pdf *= ShapeSampleContext_area_per_solid_angle(context, point.p.p, point.n);
+    return point;
+}
+
+// The same, with its density per area.
+fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
     let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
     let translation = vec3f(number(at + 7), number(at + 11), number(at + 15));
     let first = number(at + 16);
@@ -217,15 +230,19 @@ fn sample_revolved(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSampl
     let placed = times(m, p) + translation;
     let size = times(absolute(m), abs(p)) + abs(translation);
     let normal = Vec3_normalize(times(m, n)) * number(at + 20);
-    let pdf = ShapeSampleContext_area_per_solid_angle(context, placed, normal) / number(at + 21);
-    return ShapeSample(Point3Error(placed, POINT_ERROR * size), normal, vec2f(), pdf);
+    return ShapeSample(Point3Error(placed, POINT_ERROR * size), normal, vec2f(), 1 / number(at + 21));
 }
 
 // The density per solid angle with which a light's surface is sampled where a ray hits it.
 fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f) -> f32 {
+    return pdf_of_point(light, context, s.p.p, s.n, uv);
+}
+
+// The same, for a point of the surface and its normal.
+fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv: vec2f) -> f32 {
     let at = light_record(light);
     if (tables[at] == DISK_LIGHT || tables[at] == CYLINDER_LIGHT) {
-        return ShapeSampleContext_area_per_solid_angle(context, s.p.p, s.n) / number(at + 21);
+        return ShapeSampleContext_area_per_solid_angle(context, p, n) / number(at + 21);
     }
     if (tables[at] != SPHERE_LIGHT) {
         return FlatShape_pdf_from(flat_light(at), context, uv);
@@ -235,7 +252,7 @@ fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f
         return 1 / (6.2831855 * cone.one_minus_cos);
     }
     let radius = number(at + 7);
-    return ShapeSampleContext_area_per_solid_angle(context, s.p.p, s.n) / (4 * 3.1415927 * radius * radius);
+    return ShapeSampleContext_area_per_solid_angle(context, p, n) / (4 * 3.1415927 * radius * radius);
 }
 
 // The radiance of an infinite light along a ray that leaves the scene, and the density with which
@@ -250,16 +267,24 @@ fn sky(light: u32, d: vec3f, lambda: SampledWavelengths) -> Sky {
     if (tables[at] == UNIFORM_LIGHT) {
         return Sky(emission(at, lambda), 0);
     }
+    let st = sky_position(at, d);
+    return Sky(sky_image(at, st, lambda), sky_density(at, st, true));
+}
+
+// The position in an image of the sphere that is seen along a direction.
+fn sky_position(at: u32, d: vec3f) -> vec2f {
     let w = Vec3_normalize(times(Rows(vector(at + 8), vector(at + 11), vector(at + 14)), d));
-    var st: vec2f;
     if (tables[at + 6] == 0) {
-        st = equal_area_sphere_to_square(w);
-    } else {
-        st = vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
+        return equal_area_sphere_to_square(w);
     }
+    return vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
+}
+
+// The density per solid angle with which the direction to a position is sampled, completely or not.
+fn sky_density(at: u32, st: vec2f, allow_incomplete: bool) -> f32 {
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
-    let pdf = density_of(tables[at + 27], st) / solid_angle;
-    return Sky(sky_image(at, st, lambda), select(pdf, 0, solid_angle == 0));
+    let density = density_of(tables[at + select(7u, 27u, allow_incomplete)], st);
+    return select(density / solid_angle, 0, solid_angle == 0);
 }
 
 // Solid angle per area of an image of the sphere, as a part of 4π.

@@ -24,6 +24,8 @@ struct Bsdf {
     facets: TrowbridgeReitz,
     coat: Coat,
     surface: OpenPbr,
+    // What it carries: radiance, unless it is a vertex of a light path.
+    mode: u32,
 }
 
 // What lies above a base: the numbers of a `Layered` but for the base.
@@ -227,22 +229,22 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
         return vec4f();
     }
     if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
-        return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, TransportMode_Radiance);
+        return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, bsdf.mode);
     }
     if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
-        return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, TransportMode_Radiance);
+        return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, bsdf.mode);
     }
     switch (bsdf.kind) {
-        case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, TransportMode_Radiance); }
+        case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
         case DIFFUSE_TRANSMISSION: {
-            return DiffuseTransmission_f(DiffuseTransmission(bsdf.a, bsdf.b), wo, wi, TransportMode_Radiance);
+            return DiffuseTransmission_f(DiffuseTransmission(bsdf.a, bsdf.b), wo, wi, bsdf.mode);
         }
         case CONDUCTOR: {
-            return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, TransportMode_Radiance);
+            return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
         }
-        case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, TransportMode_Radiance); }
+        case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
         case DIELECTRIC: {
-            return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, TransportMode_Radiance);
+            return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode);
         }
         default: { return vec4f(); }
     }
@@ -254,7 +256,7 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     if (!is_normal(wo.z)) {
         return 0;
     }
-    let mode = TransportMode_Radiance;
+    let mode = bsdf.mode;
     if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
         return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
     }
@@ -280,38 +282,43 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
 
 // A direction in render space; not valid where it carries no light.
 fn bsdf_sample(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f) -> BsdfSample {
+    return bsdf_sample_of(bsdf, outer_o, uc, u, Directions_All);
+}
+
+// The same, of one side.
+fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32) -> BsdfSample {
     let wo = Frame_to_local(bsdf.frame, outer_o);
     if (!is_normal(wo.z) || bsdf_flags(bsdf) == 0) {
         return BsdfSample_invalid();
     }
-    let mode = TransportMode_Radiance;
+    let mode = bsdf.mode;
     var sample: BsdfSample;
     switch (bsdf.kind) {
-        case DIFFUSE: { sample = Diffuse_sample_f(Diffuse(bsdf.a), wo, uc, u, mode, Directions_All); }
+        case DIFFUSE: { sample = Diffuse_sample_f(Diffuse(bsdf.a), wo, uc, u, mode, directions); }
         case DIFFUSE_TRANSMISSION: {
             let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
-            sample = DiffuseTransmission_sample_f(bxdf, wo, uc, u, mode, Directions_All);
+            sample = DiffuseTransmission_sample_f(bxdf, wo, uc, u, mode, directions);
         }
         case CONDUCTOR: {
             let bxdf = Conductor(bsdf.facets, bsdf.a, bsdf.b);
-            sample = Conductor_sample_f(bxdf, wo, uc, u, mode, Directions_All);
+            sample = Conductor_sample_f(bxdf, wo, uc, u, mode, directions);
         }
         case DIELECTRIC: {
-            sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, Directions_All);
+            sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
         }
         case THIN_DIELECTRIC: {
-            sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, Directions_All);
+            sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
         }
         case PRINCIPLED: {
-            sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, Directions_All);
+            sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, directions);
         }
         default: {}
     }
     if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
-        sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, Directions_All);
+        sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, directions);
     }
     if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
-        sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, Directions_All);
+        sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, directions);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);

@@ -28,6 +28,7 @@ struct World {
     cos_sample: u32,
     has_footprints: u32,
     sensor: u32,
+    light_paths: u32,
 }
 
 @group(0) @binding(0) var<storage, read_write> world: World;
@@ -52,25 +53,35 @@ fn vector(at: u32) -> vec3f {
 }
 
 const INDEPENDENT = 0u;
+const PADDED_SOBOL = 2u;
+
+// Whether random numbers are those of a light path.
+var<private> is_light_path: bool;
 
 // The coordinates at the current place, of which samplers make the second one if it is wanted.
-fn coordinates() -> vec2f {
-    let at = world.random_numbers;
+fn coordinates(is_pair: bool) -> vec2f {
+    var at = world.random_numbers;
+    if (is_light_path) {
+        at = tables[world.light_paths];
+    }
     let key = tables[at + 1];
     if (tables[at] == INDEPENDENT) {
         return Independent_at_2d(Independent(1, key, place), place);
+    }
+    if (HAS_PADDED_SOBOL && tables[at] == PADDED_SOBOL) {
+        return padded_sobol(place, key, tables[at + 2], tables[at + 3], is_pair);
     }
     return ZSobol_at_2d(ZSobol(tables[at + 2], tables[at + 3], tables[at + 4], key, place), place);
 }
 
 fn get_1d() -> f32 {
-    let u = coordinates().x;
+    let u = coordinates(false).x;
     place.dimension += 1;
     return u;
 }
 
 fn get_2d() -> vec2f {
-    let u = coordinates();
+    let u = coordinates(true);
     place.dimension += 2;
     return u;
 }

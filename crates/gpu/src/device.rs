@@ -239,10 +239,23 @@ impl Device {
 
     /// The contents of a buffer, when all that was started is done.
     pub fn read<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
-        let size = buffer.0.size();
+        self.read_part(buffer, 0, buffer.0.size() as usize / size_of::<T>())
+    }
+
+    /// So many values of a buffer's contents from a byte on, when all that was started is done.
+    pub fn read_part<T: bytemuck::Pod>(
+        &self,
+        buffer: &Buffer,
+        byte: u64,
+        count: usize,
+    ) -> Result<Vec<T>, GpuError> {
+        let size = (count * size_of::<T>()) as u64;
+        if size == 0 {
+            return Ok(Vec::new());
+        }
         let copy = self.empty("copies", size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&buffer.0, 0, &copy, 0, size);
+        encoder.copy_buffer_to_buffer(&buffer.0, byte, &copy, 0, size);
         self.queue.submit([encoder.finish()]);
         self.mapped(&copy)
     }

@@ -3,8 +3,9 @@
 
 use crate::Algorithm;
 
-/// What translated laws use and WGSL has not.
-const PRELUDE: &str = include_str!("../shaders/prelude.wgsl");
+/// What translated laws use and WGSL has not, and what computes with wide words.
+const BY_HAND: [&str; 2] =
+    [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/padded_sobol.wgsl")];
 
 /// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
 pub const TRACE: &str = include_str!("../shaders/trace.wgsl");
@@ -47,12 +48,16 @@ const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 /// From light to colours.
 const SENSOR: &str = include_str!("../shaders/sensor.wgsl");
 
+/// The camera's and the lights' ends of paths.
+const LENS: &str = include_str!("../shaders/importance.wgsl");
+const LIGHT_PATHS: &str = include_str!("../shaders/light_paths.wgsl");
+
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
 
 /// A shader: the laws, and what uses them.
 pub fn with_laws(parts: &[&str]) -> String {
-    let all = [PRELUDE].iter().chain(&LAWS).chain(parts);
+    let all = BY_HAND.iter().chain(&LAWS).chain(parts);
     all.copied().collect::<Vec<_>>().join("\n")
 }
 
@@ -77,11 +82,26 @@ pub struct Parts {
     pub coats: bool,
     /// Principled surfaces.
     pub principled: bool,
+    /// The sampler `paddedsobol`.
+    pub padded_sobol: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm.
 pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
-    traced(parts, &[NO_RESERVOIRS, radiance(algorithm), include_str!("../shaders/pixels.wgsl")])
+    let (has_camera_paths, most_vertices) = match algorithm {
+        Algorithm::LightTracing(_) => (false, 1),
+        Algorithm::Bdpt(desc) => (true, desc.max_depth.saturating_sub(1).max(1)),
+        Algorithm::RayCasting
+        | Algorithm::Whitted(_)
+        | Algorithm::AmbientOcclusion(..)
+        | Algorithm::Path(_) => {
+            let pixels = include_str!("../shaders/pixels.wgsl");
+            return traced(parts, &[NO_RESERVOIRS, radiance(algorithm), pixels]);
+        }
+    };
+    let constants =
+        format!("const HAS_CAMERA_PATHS = {has_camera_paths};\nconst MOST_VERTICES = {most_vertices}u;\n");
+    traced(parts, &[&constants, LENS, LIGHT_PATHS, radiance(algorithm)])
 }
 
 /// The kernel that finds the light of a real-time frame by an algorithm; but for direct light at
@@ -109,8 +129,12 @@ pub fn reservoirs(parts: Parts) -> [String; 2] {
 pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
     // Of ambient occlusion light does not depend on the reflectance.
     let is_reflected = match algorithm {
-        Algorithm::RayCasting | Algorithm::Path(_) => "const IS_REFLECTED = true;\n",
         Algorithm::AmbientOcclusion(..) => "const IS_REFLECTED = false;\n",
+        Algorithm::RayCasting
+        | Algorithm::Whitted(_)
+        | Algorithm::Path(_)
+        | Algorithm::LightTracing(_)
+        | Algorithm::Bdpt(_) => "const IS_REFLECTED = true;\n",
     };
     traced(parts, &[is_reflected, FRAME, include_str!("../shaders/realtime/surfaces.wgsl")])
 }
@@ -130,22 +154,25 @@ pub fn filters() -> [String; 4] {
     texts.map(|text| [FRAME, text].concat())
 }
 
-/// The function `radiance` of an algorithm.
+/// The function `radiance` of an algorithm, or the whole of one whose paths begin at lights, which
+/// is not for real-time frames.
 fn radiance(algorithm: &Algorithm) -> &'static str {
     match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
+        Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
+        Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
     }
 }
 
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled } = parts;
+    let Parts { holes, images, noise, coats, principled, padded_sobol } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_COATS = {coats};\n"
+        const HAS_COATS = {coats};\nconst HAS_PADDED_SOBOL = {padded_sobol};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

@@ -53,6 +53,14 @@ pub fn sampler(scene: &SceneDesc) -> Sampler {
     sampler_with_seed(scene, seed(scene))
 }
 
+/// The sampler of light paths of a scene, independent of that of camera paths.
+pub fn light_sampler(scene: &SceneDesc) -> Sampler {
+    const LIGHTS: u32 = 0x6c69_6768;
+    let seed = hash(&[seed(scene), LIGHTS]) as u32;
+    let samples = sampler(scene).samples_per_pixel();
+    Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
+}
+
 /// The seed of the sampler of a scene.
 fn seed(scene: &SceneDesc) -> u32 {
     scene.sampler.seed.unwrap_or(scene.options.seed) as u32
@@ -170,14 +178,6 @@ impl Builder<'_> {
         self.diagnostics.push(Diagnostic::warning("not-adaptive", message, integrator.origin.span));
     }
 
-    /// The sampler of light paths, independent of that of camera paths.
-    fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
-        const LIGHTS: u32 = 0x6c69_6768;
-        let seed = hash(&[seed(self.desc), LIGHTS]) as u32;
-        let samples = of_camera.samples_per_pixel();
-        Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
-    }
-
     /// The seed of photons, independent of the other samplers.
     fn photon_seed(&self, seed: Option<i32>) -> u32 {
         const PHOTONS: u32 = 0x7068_6f74;
@@ -202,11 +202,11 @@ impl Builder<'_> {
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
             IntegratorDesc::SimpleVolPath(desc) => self.pixels(VolPath::simple(desc.max_depth), sampler),
             IntegratorDesc::LightTracing(desc) => {
-                let light_sampler = self.light_sampler(&sampler);
+                let light_sampler = light_sampler(self.desc);
                 Box::new(LightTracing::new(desc, sampler, light_sampler))
             }
             IntegratorDesc::Bdpt(desc) => {
-                let light_sampler = self.light_sampler(&sampler);
+                let light_sampler = light_sampler(self.desc);
                 let bdpt = Bdpt::new(desc, sampler, light_sampler);
                 self.techniques(&desc, &bdpt);
                 Box::new(bdpt)
@@ -216,7 +216,7 @@ impl Builder<'_> {
                 Box::new(PhotonMapping::new(desc, sampler, self.photon_seed(None)))
             }
             IntegratorDesc::Vcm(desc) => {
-                let light_sampler = self.light_sampler(&sampler);
+                let light_sampler = light_sampler(self.desc);
                 let seed = self.photon_seed(None);
                 Box::new(Vcm::new(desc, [sampler, light_sampler], seed, MAX_PHOTON_PATHS))
             }

@@ -9,7 +9,7 @@
 //! A node of the tree is 13 words, the numbers of its cluster and its kind.
 
 use description::Span;
-use scene::light_sampler::LightSampler;
+use scene::light_sampler::{LightSampler, PowerLightSampler};
 
 use super::Flattener;
 
@@ -23,11 +23,9 @@ impl Flattener<'_> {
         match lights {
             LightSampler::Uniform(_) => self.slab.add([UNIFORM]),
             LightSampler::Power(power) => {
-                let bins = power.table().into_iter().flat_map(|table| table.bins());
-                let words =
-                    bins.flat_map(|(threshold, pmf, alias)| [threshold.to_bits(), pmf.to_bits(), alias]);
-                let words: Vec<u32> = [POWER].into_iter().chain(words).collect();
-                self.slab.add(words)
+                let at = self.slab.add([POWER]);
+                self.power(power);
+                at
             }
             LightSampler::Bvh(tree) => {
                 let nodes = tree.nodes();
@@ -46,5 +44,12 @@ impl Flattener<'_> {
                 0
             }
         }
+    }
+
+    /// The three words of each light that is chosen in proportion to power; their offset.
+    pub fn power(&mut self, power: &PowerLightSampler) -> u32 {
+        let bins = power.table().into_iter().flat_map(|table| table.bins());
+        let words = bins.flat_map(|(threshold, pmf, alias)| [threshold.to_bits(), pmf.to_bits(), alias]);
+        self.slab.add(words.collect::<Vec<u32>>())
     }
 }

@@ -6,7 +6,7 @@
 //! | 1 spot | position, axis, cosines of the start and of the end of the falloff |
 //! | 2 distant | direction |
 //! | 3 triangle, 4 rectangle | corner, sides, normal |
-//! | 5 sphere | centre, radius, 1 or −1 where the outside is inside |
+//! | 5 sphere | centre, radius, 1 or −1 where the outside is inside, the rows of the rotation from object to render space |
 //! | 6 uniform infinite | none |
 //! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
@@ -178,7 +178,10 @@ fn revolved(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
     match kind {
         RevolvedKind::Sphere if second == -first && third == first => {
             let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
-            Some((SPHERE, vec![center.x, center.y, center.z, first * scale as f32, side]))
+            let rotation =
+                [0, 1, 2].map(|row| (render_from_object.row(row).truncate() / scale).as_vec3().to_array());
+            let numbers = [&center.to_array()[..], &[first * scale as f32, side], rotation.as_flattened()];
+            Some((SPHERE, numbers.concat()))
         }
         RevolvedKind::Disk if third == 0.0 => Some((DISK, placed())),
         RevolvedKind::Cylinder => Some((CYLINDER, placed())),

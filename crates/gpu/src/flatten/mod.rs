@@ -13,6 +13,7 @@ mod filters;
 mod geometries;
 mod images;
 mod light_choices;
+mod light_paths;
 mod lights;
 mod materials;
 mod openpbr;
@@ -90,7 +91,7 @@ pub(crate) struct Head {
     /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
     pub(crate) is_centered: u32,
     pub(crate) has_one_wavelength: u32,
-    /// Of `path`: the most scattering events, and whether surfaces are roughened.
+    /// The most scattering events, and whether surfaces are roughened.
     pub(crate) max_depth: u32,
     pub(crate) regularize: u32,
     /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
@@ -103,6 +104,10 @@ pub(crate) struct Head {
     pub(crate) has_footprints: u32,
     /// The offset of the sensor.
     pub(crate) sensor: u32,
+    /// The offset of what light paths need, if there are any.
+    pub(crate) light_paths: u32,
+    /// Heads are whole pairs of words.
+    pub(crate) unused: u32,
 }
 
 impl Flat {
@@ -127,6 +132,8 @@ pub struct Subject<'a> {
     pub algorithm: &'a Algorithm,
     /// The source of random numbers.
     pub sampler: &'a Sampler,
+    /// That of light paths.
+    pub light_sampler: &'a Sampler,
     /// The most bytes of a buffer.
     pub largest_buffer: usize,
 }
@@ -134,7 +141,7 @@ pub struct Subject<'a> {
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, sampler, largest_buffer } = subject;
+    let Subject { scene, view, film, algorithm, sampler, light_sampler, largest_buffer } = subject;
     let mut flattener = Flattener {
         scene,
         slab: Slab::new(),
@@ -165,6 +172,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.choice = flattener.light_choice(lights);
     match algorithm {
         Algorithm::RayCasting => {}
+        Algorithm::Whitted(desc) => head.max_depth = desc.max_depth,
         Algorithm::AmbientOcclusion(desc, space) => {
             let white = space.illuminant();
             head.white = flattener.spectrum(&white);
@@ -176,6 +184,14 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
             head.max_depth = desc.max_depth;
             head.regularize = desc.regularize.into();
         }
+        Algorithm::LightTracing(desc) => head.max_depth = desc.max_depth,
+        Algorithm::Bdpt(desc) => {
+            head.max_depth = desc.max_depth;
+            head.regularize = desc.regularize.into();
+        }
+    }
+    if algorithm.splats().is_some() {
+        head.light_paths = flattener.light_paths(light_sampler, film);
     }
     let bvh = flattener.bvh();
     head.top = bvh.top;

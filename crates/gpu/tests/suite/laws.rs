@@ -4,7 +4,7 @@
 use crate::twins::{INPUTS, Law, OUTPUTS};
 use geometry::{FlatShape, ShapeSample, ShapeSampleContext};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, Vector3};
-use sampling::sampler::{Address, Independent, Randomize, ZSobol};
+use sampling::sampler::{Address, Independent, PaddedSobol, Randomize, ZSobol};
 use sampling::warp::*;
 use sampling::{HashSequence, Sampler};
 use scattering::*;
@@ -138,7 +138,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 43] = [
+pub const LAWS: [Law; 44] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -289,6 +289,28 @@ pub const LAWS: [Law; 43] = [
         let sampler_ = ZSobol(samples[kind], sides[kind], kind, mix_word(7), address);
         let a = ZSobol_at_2d(sampler_, address);
         y[0] = a.x; y[1] = a.y; y[2] = ZSobol_at_1d(sampler_, address);"),
+    law!("PaddedSobol" 0.0 0.0,
+        x => {
+            let (samples, randomize) = [
+                (1, Randomize::None),
+                (6, Randomize::PermuteDigits),
+                (64, Randomize::FastOwen),
+                (4096, Randomize::Owen),
+            ][(4.0 * x[10]) as usize % 4];
+            let mut sampler = Sampler::PaddedSobol(PaddedSobol::new(samples, randomize, x[11].to_bits()));
+            let pixel = [(x[6] * 1000.0) as i32, (x[7] * 1000.0) as i32];
+            let (index, dimension) = ((x[8] * 5000.0) as u32, (x[9] * 99.0) as u32);
+            sampler.start_pixel_sample(pixel, index, dimension);
+            let p = sampler.get_2d();
+            sampler.start_pixel_sample(pixel, index, dimension);
+            vec![p.x, p.y, sampler.get_1d()]
+        },
+        "let kind = u32(4.0 * x[10]) % 4;
+        var samples = array(1u, 6u, 64u, 4096u);
+        let address = Address(array(u32(x[6] * 1000.0), u32(x[7] * 1000.0)), u32(x[8] * 5000.0), u32(x[9] * 99.0));
+        let seed = bitcast<u32>(x[11]);
+        let a = padded_sobol(address, seed, samples[kind], kind, true);
+        y[0] = a.x; y[1] = a.y; y[2] = padded_sobol(address, seed, samples[kind], kind, false).x;"),
     law!("Ray" 1e-6 0.0,
         x => {
             let p = Point3Error::new(Vec3::new(x[6], x[7], x[8]), Vec3::new(x[9], x[10], x[11]) * 1e-4);

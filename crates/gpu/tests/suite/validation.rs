@@ -36,20 +36,30 @@ fn traversal_is_valid() {
 #[test]
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
+    let algorithms = [
+        Algorithm::RayCasting,
+        Algorithm::Whitted(Default::default()),
+        occlusion,
+        Algorithm::Path(Default::default()),
+        Algorithm::LightTracing(Default::default()),
+        Algorithm::Bdpt(Default::default()),
+    ];
     // All parts but principled surfaces are constants of one text, whose branches are all
     // validated.
     for [has, principled] in [[false, false], [false, true], [true, false], [true, true]] {
-        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled };
+        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled, padded_sobol: has };
         let valid = |name: &str, source: &str| {
             validate(source).unwrap_or_else(|error| panic!("{name}, {parts:?}: {error}"));
         };
-        let path = Algorithm::Path(Default::default());
-        for algorithm in [&Algorithm::RayCasting, &occlusion, &path] {
+        for algorithm in &algorithms {
             let name = format!("{algorithm:?}");
             valid(&name, &shaders::pixels(algorithm, parts));
-            valid(&name, &shaders::surfaces(algorithm, parts));
-            valid(&name, &shaders::light(algorithm, parts, false));
+            if algorithm.splats().is_none() {
+                valid(&name, &shaders::surfaces(algorithm, parts));
+                valid(&name, &shaders::light(algorithm, parts, false));
+            }
         }
+        let path = Algorithm::Path(Default::default());
         valid("other light", &shaders::light(&path, parts, true));
         shaders::reservoirs(parts).iter().for_each(|source| valid("reservoirs", source));
     }

@@ -27,6 +27,11 @@ impl PaddedSobol {
         PaddedSobol { samples_per_pixel, randomize, seed, pixel: [0; 2], index: 0, dimension: 0 }
     }
 
+    /// The randomisation and the seed.
+    pub fn parts(&self) -> (Randomize, u32) {
+        (self.randomize, self.seed)
+    }
+
     pub(super) fn samples_per_pixel(&self) -> u32 {
         self.samples_per_pixel
     }

@@ -1,0 +1,236 @@
+// The lights' ends of paths: the record of `src/flatten/light_paths.rs`, how light paths begin, and
+// the densities with which they do.
+
+const UNIFORM_DIRECTION = 0.07957747;
+
+// A point of a light, or a direction to it; the normal is zero where it has none.
+struct LightPoint {
+    light: u32,
+    p: vec3f,
+    n: vec3f,
+    uv: vec2f,
+    is_distant: bool,
+}
+
+// The ray with which a light path begins; of its throughput the choice of the light is a part.
+struct Emission {
+    ray: Ray,
+    beta: vec4f,
+    origin: LightPoint,
+    valid: bool,
+}
+
+// Of the light's end of a path: the density per solid angle with which a surface chooses it, that
+// per area and solid angle with which the light sends the ray, and the cosine at the light.
+struct LightEnd {
+    direct: f32,
+    emission: f32,
+    cos_theta: f32,
+    is_delta: bool,
+}
+
+fn count_of_light_paths() -> f32 {
+    return number(world.light_paths + 2);
+}
+
+fn sphere_of_scene() -> vec4f {
+    return vec4f(vector(world.light_paths + 4), number(world.light_paths + 7));
+}
+
+// Whether light paths to a film position add to a pixel.
+fn is_reached(film: vec2f) -> bool {
+    let at = world.light_paths + 8;
+    let low = vec2f(number(at), number(at + 1));
+    let high = vec2f(number(at + 2), number(at + 3));
+    return all(film >= low) && all(film <= high);
+}
+
+// The density of a direction from the point of a spot light, at a cosine to its axis.
+fn spot_density(at: u32, cosine: f32) -> f32 {
+    let start = number(at + 10);
+    let end = number(at + 11);
+    let solid_angle = 6.2831855 * ((1 - start) + (start - end) / 2);
+    return select(0, smooth_step(cosine, end, start) / solid_angle, solid_angle > 0);
+}
+
+// A direction around the axis of a spot light: in the cone of full intensity or in the ring around
+// it, which has half as much on average.
+fn spot_direction(at: u32, u: vec2f) -> vec3f {
+    let start = number(at + 10);
+    let end = number(at + 11);
+    let cone = 1 - start;
+    let ring = 0.5 * (start - end);
+    let chosen = u.x * (cone + ring);
+    if (ring <= 0 || cone > 0 && chosen < cone) {
+        return sample_uniform_cone(vec2f(clamp(chosen / cone, 0, float_ONE_MINUS_EPSILON), u.y), start);
+    }
+    // The root of 2t³ − t⁴, to which Newton's iteration falls.
+    let share = clamp((chosen - cone) / ring, 0, float_ONE_MINUS_EPSILON);
+    var t = pow(share, 1.0 / 3.0);
+    if (t > 0) {
+        for (var i = 0; i < 5; i++) {
+            t -= (t * t * t * (2 - t) - share) / (t * t * (6 - 4 * t));
+        }
+    }
+    let cosine = lerp(t, end, start);
+    return spherical_direction(safe_sqrt(1 - cosine * cosine), cosine, 6.2831855 * u.y);
+}
+
+// A point of the surface of a light, with its density per area.
+fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let flat_shape = flat_light(at);
+            var uv = u;
+            if (flat_shape.is_triangle) {
+                uv = sample_uniform_triangle(u).yz;
+            }
+            return ShapeSample(FlatShape_point(flat_shape, uv), flat_shape.n, uv, surface_density(at));
+        }
+        case SPHERE_LIGHT: {
+            let center = vector(at + 4);
+            let radius = number(at + 7);
+            let outward = outward_by_area(at, u);
+            let error = POINT_ERROR * (abs(center) + vec3f(radius));
+            let p = Point3Error(center + outward * radius, error);
+            return ShapeSample(p, outward * number(at + 8), vec2f(), surface_density(at));
+        }
+        default: { return revolved_by_area(at, u); }
+    }
+}
+
+// The density of these points.
+fn surface_density(at: u32) -> f32 {
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let flat_shape = flat_light(at);
+            let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
+            return select(1.0, 2.0, flat_shape.is_triangle) / area;
+        }
+        case SPHERE_LIGHT: {
+            let radius = number(at + 7);
+            return 1 / (4 * 3.1415927 * radius * radius);
+        }
+        default: { return 1 / number(at + 21); }
+    }
+}
+
+// The density of a direction from a surface.
+fn surface_direction_density(at: u32, n: vec3f, w: vec3f) -> f32 {
+    let cosine = dot(n, w);
+    if (tables[at + 3] == 1) {
+        return 0.5 * cosine_hemisphere_pdf(abs(cosine));
+    }
+    return cosine_hemisphere_pdf(cosine);
+}
+
+// A ray that a light emits, chosen by `u` for the light, and by `u_position` and `u_direction`.
+fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelengths) -> Emission {
+    var e: Emission;
+    if (world.light_count == 0) {
+        return e;
+    }
+    let choice = choose_by_power(tables[world.light_paths + 1], u);
+    let at = light_record(choice.light);
+    e.origin.light = choice.light;
+    e.valid = choice.valid;
+    var l: vec4f;
+    var pdf = 1.0;
+    var w: vec3f;
+    switch (tables[at]) {
+        case POINT_LIGHT, SPOT_LIGHT: {
+            l = emission(at, lambda);
+            e.origin.p = vector(at + 4);
+            if (tables[at] == SPOT_LIGHT) {
+                let axis = vector(at + 7);
+                w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
+                let cosine = dot(w, axis);
+                l *= smooth_step(cosine, number(at + 11), number(at + 10));
+                pdf = spot_density(at, cosine);
+            } else {
+                w = sample_uniform_sphere(u_direction);
+                pdf = UNIFORM_DIRECTION;
+            }
+            e.ray = Ray(e.origin.p, w, 0);
+        }
+        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
+            let seen = sample_light(choice.light, ShapeSampleContext(), u_direction, lambda, false);
+            l = seen.l;
+            let sphere = sphere_of_scene();
+            let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);
+            let o = sphere.xyz + Frame_from_local(Frame_from_z(seen.wi), disk) * sphere.w;
+            e.ray = Ray(o, -seen.wi, 0);
+            e.origin.is_distant = true;
+            e.valid = e.valid && seen.valid;
+            pdf = seen.pdf / (3.1415927 * sphere.w * sphere.w);
+        }
+        default: {
+            let point = point_by_area(at, u_position);
+            var u_side = u_direction;
+            var side = point.n;
+            if (tables[at + 3] == 1) {
+                u_side.x *= 2;
+                if (u_side.x >= 1) {
+                    u_side.x -= 1;
+                    side = -side;
+                }
+            }
+            w = Frame_from_local(Frame_from_z(side), sample_cosine_hemisphere(u_side));
+            e.origin.p = point.p.p;
+            e.origin.n = point.n;
+            e.origin.uv = point.uv;
+            e.ray = Ray_spawn(point.p, point.n, w, 0);
+            l = light_radiance(at, point.n, w, lambda) * abs(dot(point.n, w));
+            pdf = point.pdf * surface_direction_density(at, point.n, w);
+        }
+    }
+    e.valid = e.valid && pdf > 0 && !is_black(l);
+    e.beta = l / (pdf * choice.pmf);
+    return e;
+}
+
+// The density per solid angle with which a surface chooses a light and a point of it, or a
+// direction, which is `wi`.
+fn direct_pdf(point: LightPoint, context: ShapeSampleContext, wi: vec3f) -> f32 {
+    let at = light_record(point.light);
+    var pdf = 1.0;
+    switch (tables[at]) {
+        case POINT_LIGHT, SPOT_LIGHT: { pdf = Vec3_length_squared(point.p - context.p.p); }
+        case DISTANT_LIGHT: {}
+        case UNIFORM_LIGHT: { pdf = UNIFORM_DIRECTION; }
+        case IMAGE_LIGHT: { pdf = sky_density(at, sky_position(at, wi), false); }
+        default: { pdf = pdf_of_point(point.light, context, point.p, point.n, point.uv); }
+    }
+    return light_pmf(context, point.light) * pdf;
+}
+
+// The light's end of a path, in the unit direction `wi` from a surface.
+fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEnd {
+    let at = light_record(point.light);
+    var pdf = 1.0;
+    var cosine = 1.0;
+    switch (tables[at]) {
+        case POINT_LIGHT: { pdf = UNIFORM_DIRECTION; }
+        case SPOT_LIGHT: { pdf = spot_density(at, dot(-wi, vector(at + 7))); }
+        case DISTANT_LIGHT: { pdf = disk_density(from_, wi); }
+        case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
+        case IMAGE_LIGHT: { pdf = disk_density(from_, wi) * sky_density(at, sky_position(at, wi), false); }
+        default: {
+            pdf = surface_density(at) * surface_direction_density(at, point.n, -wi);
+            cosine = abs(dot(point.n, wi));
+        }
+    }
+    let pmf = number(tables[world.light_paths + 1] + 3 * point.light + 1);
+    return LightEnd(direct, pmf * pdf, cosine, is_delta(at));
+}
+
+// The density of a ray's point on the disk from which distant light comes; 0 where it misses the
+// scene's sphere or begins beyond the disk.
+fn disk_density(o: vec3f, d: vec3f) -> f32 {
+    let sphere = sphere_of_scene();
+    let to_center = sphere.xyz - o;
+    let along = dot(to_center, d);
+    let beside = to_center - d * along;
+    let misses = dot(beside, beside) > sphere.w * sphere.w || -along > sphere.w;
+    return select(1 / (3.1415927 * sphere.w * sphere.w), 0, misses);
+}

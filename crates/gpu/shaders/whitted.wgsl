@@ -1,0 +1,60 @@
+// Whitted's ray tracing: the light of all lights with shadows, and perfect reflection and refraction.
+
+// The rays that may wait: one for each scattering event before.
+const MOST_RAYS = 17u;
+
+// A ray of the tree.
+struct Branch {
+    ray: Ray,
+    near: Differentials,
+    beta: vec4f,
+    depth: u32,
+}
+
+fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
+    var l = vec4f();
+    var waiting: array<Branch, MOST_RAYS>;
+    waiting[0] = Branch(ray, near, vec4f(1), 0);
+    var count = 1u;
+    while (count > 0) {
+        count--;
+        let branch = waiting[count];
+        let hit = nearest(branch.ray);
+        if (!hit.found) {
+            for (var i = 0u; i < world.infinite_count; i++) {
+                l += branch.beta * sky(tables[world.infinite + i], branch.ray.d, *lambda).l;
+            }
+            continue;
+        }
+        var s = surface_at(hit, branch.ray);
+        if (s.light != 0) {
+            l += branch.beta * light_radiance(light_record(s.light - 1), s.n, s.wo, *lambda);
+        }
+        let textures = texture_context(s, branch.near);
+        let bsdf = bsdf_at(&s, textures, lambda);
+        if (branch.depth == world.max_depth) {
+            continue;
+        }
+        l += branch.beta * all_lights(s, bsdf, *lambda, true);
+        if ((bsdf_flags(bsdf) & BxdfFlags_SPECULAR) == 0) {
+            continue;
+        }
+        // The refracted ray waits for all that the reflected one finds.
+        let sides = array(Directions_Reflection, Directions_Transmission);
+        var samples: array<BsdfSample, 2>;
+        for (var i = 0u; i < 2; i++) {
+            let uc = get_1d();
+            samples[i] = bsdf_sample_of(bsdf, s.wo, uc, get_2d(), sides[i]);
+        }
+        for (var i = 2u; i > 0; i--) {
+            let sample = samples[i - 1];
+            if (sample.valid && (sample.flags & BxdfFlags_SPECULAR) != 0) {
+                let beta = branch.beta * sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
+                let beside = scattered_differentials(s, textures, branch.near, sample);
+                waiting[count] = Branch(spawn(s, sample.wi), beside, beta, branch.depth + 1);
+                count++;
+            }
+        }
+    }
+    return l;
+}
