@@ -38,8 +38,8 @@ pub struct Argument {
     pub values: ArgumentValues,
 }
 
-/// The values of a parameter of a call. The description of the scene shares arrays of numbers and of
-/// indices with it; points are copied once more.
+/// The values of a parameter of a call. The description of the scene shares numbers and indices;
+/// points are copied once more.
 #[derive(Clone, Debug)]
 pub enum ArgumentValues {
     /// Real numbers.
