@@ -249,7 +249,7 @@ impl Task<'_> {
         } else if let Some(interruption) = summary.interruption() {
             warn(interruption)?;
         }
-        self.live.finish(&picture);
+        self.live.finish(&picture, interrupt);
         self.verbosity.warn_of(self.live.take_warnings(), &bar);
         self.live.stay(interrupt);
         Ok(if summary.ended_by.is_none() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })

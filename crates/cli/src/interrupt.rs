@@ -21,6 +21,8 @@ pub const EXIT_CODE: u8 = 130;
 pub struct Interrupt {
     rendering: Arc<AtomicBool>,
     interrupted: Arc<AtomicBool>,
+    /// Whether that was a request instead of Ctrl-C.
+    requested: Arc<AtomicBool>,
     /// Whether the checkpoint lacks passes that are done.
     unsaved: Arc<AtomicBool>,
     verbose: Arc<AtomicBool>,
@@ -68,9 +70,17 @@ impl Interrupt {
     pub fn cancel_rendering(&self) -> bool {
         let is_rendering = self.rendering.load(Ordering::SeqCst);
         if is_rendering && !self.interrupted.swap(true, Ordering::SeqCst) {
+            self.requested.store(true, Ordering::SeqCst);
             self.end_rendering();
         }
         is_rendering
+    }
+
+    /// Forgets a request that has ended a render: what comes next is a first Ctrl-C again.
+    pub fn forget_request(&self) {
+        if self.requested.swap(false, Ordering::SeqCst) {
+            self.interrupted.store(false, Ordering::SeqCst);
+        }
     }
 
     /// Whether there was a Ctrl-C, or what counts as one.

@@ -159,12 +159,7 @@ impl<'film> Development<'film> {
         let color = |c| self.sum(|film| film.color.units(tile, first, pixel, c));
         let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
         let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
-        let paths: u64 = self.films().map(|film| film.splats.paths()).sum();
-        let splat = |c| {
-            let sum = |films: &Self| films.sum(|film| film.splats.units(tile, pixel, c)) / paths as f64;
-            if paths == 0 { 0.0 } else { sum(self) }
-        };
-        let response = [0, 1, 2].map(|c| mean[c] + splat(c));
+        let response = [0, 1, 2].map(|c| mean[c] + self.splats(tile, pixel, c));
         self.color(response).into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
@@ -173,8 +168,16 @@ impl<'film> Development<'film> {
             let sum = |i| self.sum(|film| film.spectrum.units(tile, first, pixel, 2 * bucket + i));
             let weight = if self.film.counts.is_empty() { 0.0 } else { sum(1) };
             let mean = if weight == 0.0 { 0.0 } else { sum(0) / weight };
-            let light = (mean + splat(SPLAT_SUMS + bucket)) as f32;
+            let light = (mean + self.splats(tile, pixel, SPLAT_SUMS + bucket)) as f32;
             put(if self.film.half_floats() { half(light) } else { light });
+        }
+    }
+
+    /// What splats add to a response of the sensor, a bucket or a part of the light.
+    fn splats(&self, tile: usize, pixel: usize, component: usize) -> f64 {
+        match self.films().map(|film| film.splats.paths()).sum::<u64>() {
+            0 => 0.0,
+            paths => self.sum(|film| film.splats.units(tile, pixel, component)) / paths as f64,
         }
     }
 
@@ -217,9 +220,12 @@ impl<'film> Development<'film> {
                 variance.into_iter().zip(moments).for_each(|(v, (sum, _))| put(quotient(v, mean(sum))));
             }
             _ if layer.is_part() => {
-                for part in 0..self.film.layout.sums(layer) / 3 {
-                    let mean = |c| if weight == 0.0 { 0.0 } else { sum(offset + 3 * part + c) / weight };
-                    self.color([0, 1, 2].map(mean)).into_iter().for_each(&mut put);
+                let buckets = self.film.buckets.map_or(0, |buckets| buckets.count());
+                let splats = SPLAT_SUMS * (1 + self.film.layout.first_part(layer)) + buckets;
+                for i in (0..self.film.layout.sums(layer)).step_by(3) {
+                    let mean = |c| if weight == 0.0 { 0.0 } else { sum(offset + i + c) / weight };
+                    let all = |c| mean(c) + self.splats(tile, pixel, splats + i + c);
+                    self.color([0, 1, 2].map(all)).into_iter().for_each(&mut put);
                 }
             }
             _ => {

@@ -57,10 +57,16 @@ impl Exposure {
         rgb.each(|c| c * factor)
     }
 
-    /// The response to a part of the light of a sample, which is scaled as the whole is.
-    pub(crate) fn part(&self, part: &SampledSpectrum, sample: &Sample) -> [f32; 3] {
-        let (l, lambda) = (&sample.l[0], &sample.lambda[0]);
-        let factor = self.factor(self.sensor.response(l, lambda), 1.0);
+    /// The response to a part of light that counts one in `samples` of a pixel; it is scaled as the
+    /// whole, `l`, is.
+    pub(crate) fn part(
+        &self,
+        part: &SampledSpectrum,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        samples: f32,
+    ) -> [f32; 3] {
+        let factor = self.factor(self.sensor.response(l, lambda), samples);
         self.sensor.response(part, lambda).map(|c| c * factor)
     }
 

@@ -9,8 +9,8 @@
 //! Sums are stored tile by tile, so that each tile is a contiguous slice that one thread can fill.
 //! A pixel takes [`PIXEL_BYTES`] for its colour, 12 bytes for each further sum (a layer has one for
 //! each of its numbers, and two serve all layers of first hits; a bucket of a spectral film has
-//! two), [`SPLAT_BYTES`] and 12 bytes for each bucket once there are splats, and about [`ID_BYTES`]
-//! for each identifier in it.
+//! two), once there are splats [`SPLAT_BYTES`] for their colour and for each part of the light, and
+//! 12 bytes for each bucket, and about [`ID_BYTES`] for each identifier in it.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 use crate::exposure::Exposure;
 use crate::grid::Grid;
 use crate::layer::Layout;
-use crate::splats::{SplatSums, reach};
+use crate::splats::{SPLAT_SUMS, SplatSums, reach};
 use crate::sum::{SUM_BYTES, Sums, maps, reserved, zeros};
 use crate::tile::{FilmTile, IdSums, TileData};
 use crate::{Buckets, Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample, Splatter};
@@ -312,13 +312,14 @@ impl Film {
             let spectrum = buckets.zip(spectrum.next());
             FilmTile { bounds, exposure, color, counts, data, spectrum }
         }));
-        Ok((tiles, Splatter::new(grid, &self.filter, exposure, buckets, &self.splats)))
+        Ok((tiles, Splatter::new(grid, &self.filter, exposure, (buckets, layout), &self.splats)))
     }
 
     /// Allocates the memory of splats; refused where there is none.
     pub fn reserve_splats(&mut self) -> Result<(), ImageError> {
         let buckets = self.buckets.map_or(0, |buckets| buckets.count());
-        self.splats.reserve(self.grid, buckets).map_err(|_| no_memory(self.grid))
+        let sums = SPLAT_SUMS * (1 + self.layout.part_count()) + buckets;
+        self.splats.reserve(self.grid, sums).map_err(|_| no_memory(self.grid))
     }
 
     /// Adds the sums of another film of the same pixels and settings; refused
@@ -377,9 +378,10 @@ impl Film {
     /// without identifiers.
     pub(crate) fn pixel_bytes(settings: &FilmSettings, color: bool, splats: bool) -> u64 {
         let buckets = settings.buckets.map_or(0, |buckets| buckets.count() * SUM_BYTES);
-        let data = Layout::new(settings.layers, settings.light_groups.len()).count() * SUM_BYTES;
+        let layout = Layout::new(settings.layers, settings.light_groups.len());
+        let data = layout.count() * SUM_BYTES;
         let color = if color { PIXEL_BYTES + BUCKET_SUMS * buckets } else { 0 };
-        let splats = if splats { SPLAT_BYTES + buckets } else { 0 };
+        let splats = if splats { SPLAT_BYTES * (1 + layout.part_count()) + buckets } else { 0 };
         (color + data + splats) as u64
     }
 }

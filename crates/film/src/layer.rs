@@ -374,6 +374,17 @@ impl Layout {
         parts.filter_map(|layer| Some((layer, self.offset(layer)?)))
     }
 
+    /// The number of these parts, each of three sums; a layer of groups has one for each.
+    pub(crate) fn part_count(&self) -> usize {
+        self.parts().map(|(layer, _)| self.sums(layer) / 3).sum()
+    }
+
+    /// The first part of a layer among all of them.
+    pub(crate) fn first_part(&self, layer: Layer) -> usize {
+        let before = self.parts().take_while(|&(of, _)| of != layer);
+        before.map(|(of, _)| self.sums(of) / 3).sum()
+    }
+
     /// The number of sums per pixel.
     pub(crate) fn count(&self) -> usize {
         self.count

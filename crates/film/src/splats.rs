@@ -17,14 +17,15 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::exposure::Exposure;
 use crate::grid::Grid;
+use crate::layer::Layout;
 use crate::sum::{OwnTileSums, SUM_BYTES, can_add, reserved};
-use crate::{Buckets, Filter};
+use crate::{Buckets, Filter, Parts};
 
 /// The sums of a pixel's splats of colour: the three responses of the sensor. Those of the buckets
-/// of a spectral film follow.
+/// of a spectral film follow, and then those of the parts of the light, as many for each.
 pub(crate) const SPLAT_SUMS: usize = 3;
 
-/// The bytes of a pixel's splats.
+/// The bytes of the colour of a pixel's splats.
 pub const SPLAT_BYTES: usize = SPLAT_SUMS * SUM_BYTES;
 
 /// The sums of all splats on a film. They take no memory before it is reserved.
@@ -35,13 +36,13 @@ pub(crate) struct SplatSums {
 }
 
 impl SplatSums {
-    /// Allocates memory for a film of these tiles and this number of buckets; refused where there
-    /// is none.
-    pub(crate) fn reserve(&mut self, grid: Grid, buckets: usize) -> Result<(), ImageError> {
+    /// Allocates memory for a film of these tiles and this number of sums per pixel; refused where
+    /// there is none.
+    pub(crate) fn reserve(&mut self, grid: Grid, sums: usize) -> Result<(), ImageError> {
         if self.tiles.is_empty() {
             let mut tiles = reserved(grid.tile_count())?;
             for tile in 0..grid.tile_count() {
-                tiles.push(Mutex::new(OwnTileSums::new(grid.bounds(tile).area(), SPLAT_SUMS + buckets)?));
+                tiles.push(Mutex::new(OwnTileSums::new(grid.bounds(tile).area(), sums)?));
             }
             self.tiles = tiles;
         }
@@ -90,6 +91,7 @@ pub struct Splatter<'film> {
     filter_integral: f32,
     exposure: &'film Exposure,
     buckets: Option<Buckets>,
+    layout: &'film Layout,
     sums: &'film SplatSums,
 }
 
@@ -99,10 +101,15 @@ impl<'film> Splatter<'film> {
         grid: Grid,
         filter: &'film Filter,
         exposure: &'film Exposure,
-        buckets: Option<Buckets>,
+        (buckets, layout): (Option<Buckets>, &'film Layout),
         sums: &'film SplatSums,
     ) -> Self {
-        Self { grid, filter, filter_integral: filter.integral(), exposure, buckets, sums }
+        Self { grid, filter, filter_integral: filter.integral(), exposure, buckets, layout, sums }
+    }
+
+    /// No light, for the parts of splats; `None` if no layer of the film takes them.
+    pub fn new_parts(&self) -> Option<Parts> {
+        self.layout.layers().has_parts().then(|| Parts::new(self.layout.groups()))
     }
 
     /// Counts light paths, whether or not they have added splats.
@@ -118,6 +125,17 @@ impl<'film> Splatter<'film> {
 
     /// Adds the light `l` of one path that arrives at a film position.
     pub fn add(&self, film: Point2, l: &SampledSpectrum, lambda: &SampledWavelengths) {
+        self.add_with(film, l, lambda, None);
+    }
+
+    /// The same, with the parts of this light for the layers that take them.
+    pub fn add_with(
+        &self,
+        film: Point2,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        parts: Option<&Parts>,
+    ) {
         let Some(rgb) = self.measure(l, lambda) else {
             let center = film.clamp(Vec2::splat(-1e9), Vec2::splat(1e9)).map(f32::floor);
             self.exposure.reject([center.x as i32, center.y as i32]);
@@ -130,6 +148,9 @@ impl<'film> Splatter<'film> {
                 let weight = f64::from(self.filter.evaluate(offset) / self.filter_integral);
                 self.add_terms([x, y], rgb.map(|value| weight * value));
                 self.add_to_buckets([x, y], l, lambda, weight);
+                if let Some(parts) = parts {
+                    self.add_to_parts([x, y], (l, lambda), parts, weight);
+                }
             }
         }
     }
@@ -164,6 +185,21 @@ impl<'film> Splatter<'film> {
         let light = self.exposure.in_buckets(buckets, l, lambda, self.grid.0.area() as f32);
         let terms = light.map(|light| (SPLAT_SUMS + light.bucket, weight * light.l * light.share * count));
         self.add_each(pixel, terms);
+    }
+
+    /// Adds the parts of light to the layers that take them.
+    fn add_to_parts(
+        &self,
+        pixel: [i32; 2],
+        (l, lambda): (&SampledSpectrum, &SampledWavelengths),
+        parts: &Parts,
+        weight: f64,
+    ) {
+        let before = SPLAT_SUMS + self.buckets.map_or(0, |buckets| buckets.count());
+        let parts = self.layout.parts().flat_map(|(layer, _)| parts.of(layer));
+        let terms = parts.flat_map(|part| self.exposure.part(part, l, lambda, self.grid.0.area() as f32));
+        let terms = terms.map(|term| weight * f64::from(term));
+        self.add_each(pixel, terms.enumerate().map(|(i, term)| (before + i, term)));
     }
 
     fn add_each(&self, pixel: [i32; 2], terms: impl Iterator<Item = (usize, f64)>) {

@@ -197,7 +197,11 @@ impl TileData<'_> {
         if let Some(parts) = sample.parts {
             for (layer, offset) in self.layout.parts() {
                 for (i, part) in parts.of(layer).iter().enumerate() {
-                    add_at(offset + 3 * i, weight, &exposure.part(part, sample));
+                    add_at(
+                        offset + 3 * i,
+                        weight,
+                        &exposure.part(part, &sample.l[0], &sample.lambda[0], 1.0),
+                    );
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Values of Python as parameters of a scene.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use alhazen::import::{Argument, ArgumentValues, Motion};
 use alhazen::math::DMat4;
@@ -120,9 +121,9 @@ pub fn read(value: &Bound<'_, PyAny>) -> PyResult<(Option<&'static str>, Argumen
     let plain = if let Ok(flag) = value.cast::<PyBool>() {
         ArgumentValues::Bools(vec![flag.is_true()])
     } else if value.is_instance_of::<PyInt>() {
-        ArgumentValues::Integers(vec![value.extract()?])
+        ArgumentValues::Integers([value.extract()?].into())
     } else if value.is_instance_of::<PyFloat>() {
-        ArgumentValues::Floats(vec![value.extract()?])
+        ArgumentValues::Floats([value.extract()?].into())
     } else if value.is_instance_of::<PyString>() || value.hasattr("__fspath__")? {
         ArgumentValues::Strings(vec![text(value)?])
     } else if let Some(texts) = texts(value) {
@@ -157,9 +158,7 @@ fn array(value: &Bound<'_, PyAny>) -> PyResult<ArgumentValues> {
     let of = |name: &str| numpy.call_method1("ascontiguousarray", (&array, name));
     Ok(match kind {
         b'f' => ArgumentValues::Floats(copied(&of("float32")?)?),
-        b'b' => {
-            ArgumentValues::Bools(copied::<u8>(&of("uint8")?)?.into_iter().map(|flag| flag != 0).collect())
-        }
+        b'b' => ArgumentValues::Bools(copied::<u8>(&of("uint8")?)?.iter().map(|&flag| flag != 0).collect()),
         b'i' | b'u' => {
             let is_wide = array.getattr("size")?.extract::<usize>()? > 0
                 && (array.call_method0("max")?.gt(i32::MAX)? || array.call_method0("min")?.lt(i32::MIN)?);
@@ -176,10 +175,12 @@ fn array(value: &Bound<'_, PyAny>) -> PyResult<ArgumentValues> {
     })
 }
 
-fn copied<T: numpy::Element + Copy>(array: &Bound<'_, PyAny>) -> PyResult<Vec<T>> {
+/// The one copy of an array: into memory of our own, as Python may change the array at any time,
+/// also while threads without its lock render.
+fn copied<T: numpy::Element + Copy>(array: &Bound<'_, PyAny>) -> PyResult<Arc<[T]>> {
     let array: PyReadonlyArrayDyn<T> = array.cast::<PyArrayDyn<T>>()?.readonly();
     let values = array.as_slice().map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok(values.to_vec())
+    Ok(values.into())
 }
 
 /// A 4 × 4 matrix that takes column vectors to the world, or two for the start and the end of the
@@ -189,7 +190,7 @@ pub fn motion(transform: Option<&Bound<'_, PyAny>>) -> PyResult<Motion> {
     let numpy = transform.py().import("numpy")?;
     let array = numpy.call_method1("ascontiguousarray", (transform, "float64"))?;
     let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
-    let values: Vec<f64> = copied(&array)?;
+    let values = copied::<f64>(&array)?;
     let matrix = |values: &[f64]| {
         let mut all = [0.0; 16];
         all.copy_from_slice(values);

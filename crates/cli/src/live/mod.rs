@@ -88,8 +88,12 @@ impl Live {
         }
     }
 
-    /// Shows the last picture, and waits for a while until it has arrived.
-    pub fn finish(&self, picture: &dyn PixelSource) {
+    /// Shows the last picture, and waits for a while until it has arrived. Where a page has ended
+    /// the render of a server that stays, only the render has ended.
+    pub fn finish(&self, picture: &dyn PixelSource, interrupt: &Interrupt) {
+        if self.stays {
+            interrupt.forget_request();
+        }
         if !self.is_watched() {
             return;
         }

@@ -186,6 +186,19 @@ fn a_page_sees_progress_and_saves_and_stops() {
 }
 
 #[test]
+fn a_page_that_stays_outlives_the_render_that_it_ends() {
+    let folder = Folder::with_scene("serve-stays");
+    let render = Render::start(&folder, &[&ENDLESS[..], &["--serve=127.0.0.1:0,stay"]].concat());
+    render.wait(|state| state["picture"]["revision"].is_u64());
+    assert_eq!(render.request("POST", "/stop").status, 202);
+    let state = render.wait(|state| state["phase"] == "ended");
+    let revision = &state["picture"]["revision"];
+    let pixels = render.request("GET", &format!("/pixels?revision={revision}&channels=0"));
+    assert_eq!(pixels.status, 200, "{}", pixels.head);
+    render.stop();
+}
+
+#[test]
 fn strangers_are_refused() {
     let folder = Folder::with_scene("serve-strangers");
     let refused = |render: &Render, lines: &[&str]| {

@@ -8,6 +8,7 @@ use alhazen_film::{
 };
 use description::{FilmKind, GBufferSpace, SceneDesc, Span, Spanned};
 use image::{Attribute, Format, Image, PixelSource, ReadOptions, WriteOptions, encode, read};
+use math::Vec2;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
 
@@ -54,11 +55,17 @@ fn add(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit
 fn add_light(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit>, l: f32, u: f32) {
     let (l, lambda) = (SampledSpectrum::splat(l), SampledWavelengths::sample_visible(u));
     let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
-    let (mut parts, diffuse) = (Parts::new(2), SampledSpectrum([0.0, 0.25, 0.5, 1.0]));
-    parts.add(l * 0.25, 0, &FirstEvent::Transmission, 2);
-    parts.add(l * 0.75, 1, &FirstEvent::Reflection { diffuse }, 1);
+    let mut parts = Parts::new(2);
+    add_parts(&mut parts, l);
     let parts = Some(&parts);
     film.add(pixel, &Sample { alpha, first_hit, parts, ..Sample::new(&l, &lambda, weight) });
+}
+
+/// A quarter of the light is transmitted twice, the rest is reflected once.
+fn add_parts(parts: &mut Parts, l: SampledSpectrum) {
+    let diffuse = SampledSpectrum([0.0, 0.25, 0.5, 1.0]);
+    parts.add(l * 0.25, 0, &FirstEvent::Transmission, 2);
+    parts.add(l * 0.75, 1, &FirstEvent::Reflection { diffuse }, 1);
 }
 
 /// The picture with all layers, as a reader of its file sees it.
@@ -268,7 +275,7 @@ fn the_variance_is_that_of_the_mean() {
     assert!((estimate / spread - 1.0).abs() < 4.0 * (2.0 / count).sqrt(), "{estimate} {spread}");
 }
 
-/// Adds samples that depend on the pass.
+/// Adds samples and splats that depend on the pass.
 fn add_pass(film: &mut Film, pass: u32) {
     let mut random = Random::new(pass.into());
     for _ in 0..200 {
@@ -277,6 +284,16 @@ fn add_pass(film: &mut Film, pass: u32) {
         let first_hit = (random.get_1d() < 0.7).then(|| hit(100.0 * random.get_1d(), &object));
         add_light(film, pixel, 1.5 * random.get_1d() - 0.25, first_hit, random.get_1d(), random.get_1d());
     }
+    let (_, splatter) = film.tiles_and_splatter().unwrap();
+    for _ in 0..50 {
+        let at = Vec2::from_array(RESOLUTION.map(|size| random.get_1d() * size as f32));
+        let l = SampledSpectrum::splat(300.0 * random.get_1d());
+        let lambda = SampledWavelengths::sample_visible(random.get_1d());
+        let mut parts = splatter.new_parts();
+        parts.iter_mut().for_each(|parts| add_parts(parts, l));
+        splatter.add_with(at, &l, &lambda, parts.as_ref());
+    }
+    splatter.add_paths(50);
 }
 
 fn bits(film: &Film) -> Vec<u32> {

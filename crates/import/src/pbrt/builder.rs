@@ -3,6 +3,8 @@
 //! A record of all calls stands for the text of the scene, so that messages about it have places,
 //! too. Equal scenes have equal records: of long arrays they have a hash.
 
+use std::sync::Arc;
+
 use description::schema::{Kind, Settings};
 use description::{ColorSpaceDesc, FileId, OptionsDesc, SourceMap, Span, Spanned, TransformDesc};
 use math::DMat4;
@@ -36,13 +38,14 @@ pub struct Argument {
     pub values: ArgumentValues,
 }
 
-/// The values of a parameter of a call.
+/// The values of a parameter of a call. The description of the scene shares numbers and indices;
+/// points are copied once more.
 #[derive(Clone, Debug)]
 pub enum ArgumentValues {
     /// Real numbers.
-    Floats(Vec<f32>),
+    Floats(Arc<[f32]>),
     /// Integers.
-    Integers(Vec<i32>),
+    Integers(Arc<[i32]>),
     /// Truth values.
     Bools(Vec<bool>),
     /// Texts, and names of textures and spectra.
@@ -354,16 +357,16 @@ mod tests {
     }
 
     fn floats(name: &str, values: &[f32]) -> Argument {
-        argument(name, ArgumentValues::Floats(values.to_vec()))
+        argument(name, ArgumentValues::Floats(values.into()))
     }
 
     #[test]
     fn calls_give_the_scene_of_the_text() {
         let mut builder = SceneBuilder::default();
-        let film = vec![argument("xresolution", ArgumentValues::Integers(vec![7]))];
+        let film = vec![argument("xresolution", ArgumentValues::Integers([7].into()))];
         builder.set("Film", "rgb", film).unwrap();
-        builder.option("seed", ArgumentValues::Integers(vec![3])).unwrap();
-        let fov = argument("fov", ArgumentValues::Integers(vec![40]));
+        builder.option("seed", ArgumentValues::Integers([3].into())).unwrap();
+        let fov = argument("fov", ArgumentValues::Integers([40].into()));
         builder.camera("perspective", vec![fov], Motion::default(), None);
         let checks = vec![floats("tex1", &[0.1, 0.2, 0.3]), floats("tex2", &[0.5])];
         builder.texture("checks", true, "checkerboard", checks, DMat4::IDENTITY);
@@ -374,7 +377,7 @@ mod tests {
         builder.light("point", vec![floats("I", &[2.0])], motion, None);
         let mesh = vec![
             floats("P", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
-            argument("indices", ArgumentValues::Integers(vec![0, 1, 2])),
+            argument("indices", ArgumentValues::Integers([0, 1, 2].into())),
         ];
         let emission = Some(("diffuse".into(), vec![floats("L", &[1.0, 1.0, 0.5])]));
         let placement =
@@ -444,7 +447,7 @@ mod tests {
     fn wrong_settings_are_refused() {
         let mut builder = SceneBuilder::default();
         assert!(builder.set("Flim", "rgb", Vec::new()).is_err());
-        let error = builder.option("sead", ArgumentValues::Integers(vec![1])).unwrap_err();
+        let error = builder.option("sead", ArgumentValues::Integers([1].into())).unwrap_err();
         assert!(error.contains("`seed`"), "{error}");
     }
 }

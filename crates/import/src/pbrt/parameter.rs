@@ -1,5 +1,7 @@
 //! Parameter lists: `"type name" value` or `"type name" [ values ]`.
 
+use std::sync::Arc;
+
 use description::{ColorSpaceDesc, Diagnostic, Span, Spanned};
 
 use super::names;
@@ -62,11 +64,11 @@ impl ParameterType {
     }
 }
 
-/// The values of a parameter.
+/// The values of a parameter. Numbers are shared with descriptions, as far as their types allow.
 #[derive(Clone, Debug)]
 pub(crate) enum Values {
-    Floats(Vec<f32>),
-    Integers(Vec<i32>),
+    Floats(Arc<[f32]>),
+    Integers(Arc<[i32]>),
     Bools(Vec<bool>),
     Strings(Vec<Spanned<String>>),
 }
@@ -118,14 +120,14 @@ impl RawParameter {
             Values::Strings(_) => first(&[String, Spectrum, Texture]),
             Values::Bools(_) => None,
             Values::Integers(_) => Some(Integer),
-            Values::Floats(values) => match values[..] {
+            Values::Floats(values) => match **values {
                 [grey] if first(&[Float]).is_none() && first(&[Rgb]).is_some() => {
-                    *values = vec![grey; 3];
+                    *values = [grey; 3].into();
                     Some(Rgb)
                 }
                 // The same value at all wavelengths.
                 [value] if first(&[Float]).is_none() && first(&[Spectrum]).is_some() => {
-                    *values = vec![100.0, value, 1000.0, value];
+                    *values = [100.0, value, 1000.0, value].into();
                     Some(Spectrum)
                 }
                 [_, _, _] if first(&[Rgb]).is_some() => Some(Rgb),
@@ -260,23 +262,23 @@ pub(crate) fn values(
         tokens.next();
     }
     let mut values = match kind {
-        ParameterType::Integer => Values::Integers(Vec::new()),
-        ParameterType::Bool => Values::Bools(Vec::new()),
-        ParameterType::String | ParameterType::Texture => Values::Strings(Vec::new()),
-        ParameterType::Spectrum if tokens.peek().kind == TokenKind::Quoted => Values::Strings(Vec::new()),
-        _ => Values::Floats(Vec::new()),
+        ParameterType::Integer => Read::Integers(Vec::new()),
+        ParameterType::Bool => Read::Bools(Vec::new()),
+        ParameterType::String | ParameterType::Texture => Read::Strings(Vec::new()),
+        ParameterType::Spectrum if tokens.peek().kind == TokenKind::Quoted => Read::Strings(Vec::new()),
+        _ => Read::Floats(Vec::new()),
     };
     loop {
         let token = tokens.peek();
         match token.kind {
             TokenKind::Close if bracketed => {
                 tokens.next();
-                return Some((values, tokens.span(token)));
+                return Some((values.into(), tokens.span(token)));
             }
             TokenKind::Word | TokenKind::Quoted if push_value(tokens, token, &mut values, report) => {
                 tokens.next();
                 if !bracketed {
-                    return Some((values, tokens.span(token)));
+                    return Some((values.into(), tokens.span(token)));
                 }
             }
             TokenKind::End | TokenKind::Unterminated | TokenKind::Open | TokenKind::Close => {
@@ -298,10 +300,10 @@ pub(crate) fn values(
             TokenKind::Word | TokenKind::Quoted => {
                 let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
                 let expected = match values {
-                    Values::Floats(_) => "a number",
-                    Values::Integers(_) => "an integer",
-                    Values::Bools(_) => "`true` or `false`",
-                    Values::Strings(_) => "a quoted string",
+                    Read::Floats(_) => "a number",
+                    Read::Integers(_) => "an integer",
+                    Read::Bools(_) => "`true` or `false`",
+                    Read::Strings(_) => "a quoted string",
                 };
                 let message =
                     format!("`{name}` is of type `{}` and takes {expected}, not `{found}`", kind.name());
@@ -317,14 +319,33 @@ pub(crate) fn values(
     }
 }
 
+/// Values while they are read.
+enum Read {
+    Floats(Vec<f32>),
+    Integers(Vec<i32>),
+    Bools(Vec<bool>),
+    Strings(Vec<Spanned<String>>),
+}
+
+impl From<Read> for Values {
+    fn from(read: Read) -> Self {
+        match read {
+            Read::Floats(values) => Self::Floats(values.into()),
+            Read::Integers(values) => Self::Integers(values.into()),
+            Read::Bools(values) => Self::Bools(values),
+            Read::Strings(values) => Self::Strings(values),
+        }
+    }
+}
+
 /// Adds the value of a token; false if it is of another type.
 #[inline]
-fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut Report) -> bool {
+fn push_value(tokens: &Tokens, token: Token, values: &mut Read, report: &mut Report) -> bool {
     let bytes = tokens.bytes(token);
     match values {
-        Values::Floats(values) => number::float(bytes).map(|value| values.push(value)).is_some(),
-        Values::Integers(values) => number::integer(bytes).map(|value| values.push(value)).is_some(),
-        Values::Bools(values) => {
+        Read::Floats(values) => number::float(bytes).map(|value| values.push(value)).is_some(),
+        Read::Integers(values) => number::integer(bytes).map(|value| values.push(value)).is_some(),
+        Read::Bools(values) => {
             let value = match bytes {
                 b"true" | b"\"true\"" => true,
                 b"false" | b"\"false\"" => false,
@@ -340,7 +361,7 @@ fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut R
             values.push(value);
             true
         }
-        Values::Strings(values) => {
+        Read::Strings(values) => {
             let quoted = token.kind == TokenKind::Quoted;
             if quoted {
                 values.push(Spanned::new(tokens.string(token), tokens.span(token)));

@@ -1,13 +1,15 @@
 //! Connects subpaths to complete paths: one function for each kind of strategy.
 
-use film::Splatter;
+use film::{FirstEvent, Parts, Splatter};
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
+use scene::Scene;
 use scene::camera::{CameraWiSample, FilmPositions};
 use scene::light::LightId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Interaction, LightVertex, Merges, Vertex, Walk, hero_only};
 use crate::transport::Tracer;
+use crate::transport::parts::group_of;
 
 /// The contribution of a strategy.
 #[derive(Clone, Copy, Debug)]
@@ -20,12 +22,21 @@ pub(crate) struct Found {
     pub s: u32,
     /// Vertices of the camera subpath.
     pub t: u32,
+    /// The light; `None` for media that emit.
+    pub light: Option<LightId>,
+    /// The event next to the camera, where somebody takes parts of the light.
+    pub first: FirstEvent,
 }
 
 impl Found {
     /// The weighted estimate.
     pub fn weighted(&self) -> SampledSpectrum {
         self.l * self.weight
+    }
+
+    /// The number of scattering events of the path.
+    pub fn events(&self) -> u32 {
+        self.s + self.t - 2
     }
 }
 
@@ -41,7 +52,28 @@ pub(crate) struct OnFilm {
 impl OnFilm {
     /// Splats light at all of these positions.
     pub fn splat(&self, splatter: &Splatter, l: &SampledSpectrum, lambda: &SampledWavelengths) {
-        self.places.within(splatter.reach()).for_each(|film| splatter.add(film, l, lambda));
+        self.splat_with(splatter, l, lambda, None);
+    }
+
+    /// Splats the weighted contribution, and its parts where the film has layers of them.
+    pub fn splat_parts(&self, splatter: &Splatter, lambda: &SampledWavelengths, scene: &Scene) {
+        let (found, l) = (&self.found, self.found.weighted());
+        let mut parts = splatter.new_parts();
+        if let Some(parts) = &mut parts {
+            parts.add(l, group_of(scene, found.light), &found.first, found.events());
+        }
+        self.splat_with(splatter, &l, lambda, parts.as_ref());
+    }
+
+    fn splat_with(
+        &self,
+        splatter: &Splatter,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        parts: Option<&Parts>,
+    ) {
+        let places = self.places.within(splatter.reach());
+        places.for_each(|film| splatter.add_with(film, l, lambda, parts));
     }
 }
 
@@ -59,7 +91,9 @@ impl Bidirectional<'_> {
     /// finds it.
     pub fn emitted_on_the_way(&self, walk: &mut Walk) -> Option<Found> {
         let l = std::mem::replace(&mut walk.emitted, SampledSpectrum::ZERO);
-        (!l.is_black()).then(|| self.found(l, walk.lambda.secondary_terminated(), 1.0, 0, walk.depth + 2))
+        (!l.is_black()).then(|| {
+            self.found(l, walk.lambda.secondary_terminated(), 1.0, (0, walk.depth + 2), (None, walk.first))
+        })
     }
 
     /// s = 0: the camera subpath has left the scene.
@@ -91,7 +125,7 @@ impl Bidirectional<'_> {
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
-        Found { l, weight, s: 0, t: walk.depth + 2 }
+        Found { l, weight, s: 0, t: walk.depth + 2, light: Some(light), first: walk.first }
     }
 
     /// s = 1: next-event estimation at the vertex.
@@ -123,7 +157,8 @@ impl Bidirectional<'_> {
             vertex.pdf_back(wi),
             Merges { here: 0.0, ..vertex.merges() },
         );
-        Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
+        let (weight, first) = (weight(by_chance, from_light * back), vertex.first_event(wi, tracer));
+        Some(self.found(l, vertex.hero_only, weight, (1, vertex.depth + 1), (Some(light), first)))
     }
 
     /// s, t ≥ 2: two vertices are connected.
@@ -151,7 +186,8 @@ impl Bidirectional<'_> {
             to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), camera.merges()),
         );
         let hero = camera.hero_only || light.hero_only;
-        Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
+        let lengths = (light.depth + 1, camera.depth + 1);
+        Some(self.found(l, hero, weight, lengths, (light.light, camera.first_event(wi, tracer))))
     }
 
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses;
@@ -181,7 +217,8 @@ impl Bidirectional<'_> {
                 * vertex.cos_theta(wi);
         let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.merges());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
-        Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
+        let part = (vertex.light, vertex.first_event(wi, tracer));
+        Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, (vertex.depth + 1, 1), part) })
     }
 
     /// Whether a photon near the vertex may be merged with it: both lie on surfaces or both in
@@ -203,7 +240,7 @@ impl Bidirectional<'_> {
             self.balance.merging_back(&photon.partial, camera.pdf(wi), of_light),
             self.balance.merging_back(&camera.partial, camera.pdf_back(wi), of_camera),
         );
-        Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
+        self.found(l, false, weight, (photon.depth.into(), camera.depth + 1), (None, FirstEvent::None))
     }
 
     /// The unweighted contribution of [`Self::merge`].
@@ -219,8 +256,15 @@ impl Bidirectional<'_> {
         if camera.hero_only || photon.hero_only { hero_only(l) } else { l }
     }
 
-    fn found(&self, l: SampledSpectrum, hero: bool, weight: f32, s: u32, t: u32) -> Found {
-        Found { l: if hero { hero_only(l) } else { l }, weight, s, t }
+    fn found(
+        &self,
+        l: SampledSpectrum,
+        hero: bool,
+        weight: f32,
+        (s, t): (u32, u32),
+        (light, first): (Option<LightId>, FirstEvent),
+    ) -> Found {
+        Found { l: if hero { hero_only(l) } else { l }, weight, s, t, light, first }
     }
 
     /// The transmittance of a ray from a vertex up to its end; `None` if a surface occludes it. `l`

@@ -1,13 +1,16 @@
 //! Vertices of subpaths.
 
+use film::FirstEvent;
 use math::{Normal3, Point3Error, Ray, Vector3};
-use scattering::{Body, Bsdf, BxdfFlags, TransportMode};
-use scene::light::LightSampleContext;
+use scattering::{Body, Bsdf, BsdfSample, BxdfFlags, TransportMode};
+use scene::light::{LightId, LightSampleContext};
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
 
 use super::{Law, Merges, Partial};
+use crate::transport::Tracer;
 use crate::transport::direct::on_its_side;
+use crate::transport::parts::{DIFFUSE, event_at, event_of};
 
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +46,11 @@ pub(crate) struct Vertex<'a> {
     pub depth: u32,
     /// Whether an earlier vertex of the subpath is diffuse.
     pub after_diffuse: bool,
+    /// The light at which the subpath began, if it did.
+    pub light: Option<LightId>,
+    /// The event by which a camera subpath left its first vertex, where somebody takes parts of the
+    /// light.
+    pub first: FirstEvent,
     /// Whether the subpath began in a medium that emits.
     pub begins_in_medium: bool,
     /// Whether the subpath leaves a body there, under the surface of which it went.
@@ -160,6 +168,30 @@ impl<'a> Vertex<'a> {
                 let cos_wo = self.wo.dot(self.n).abs();
                 if cos_wo == 0.0 { 0.0 } else { (self.wo.dot(ns) * wi.dot(self.n)).abs() / cos_wo }
             }
+        }
+    }
+
+    /// The event next to the camera of a path that leaves this subpath along `wi`, where the tracer
+    /// takes parts of the light: at this vertex, unless it is a later one of a camera subpath.
+    pub fn first_event(&self, wi: Vector3, tracer: &Tracer) -> FirstEvent {
+        let is_first = self.mode == TransportMode::Importance || self.depth == 1;
+        match &self.law {
+            _ if !tracer.takes_parts() => FirstEvent::None,
+            _ if !is_first => self.first,
+            _ if self.is_exit => DIFFUSE,
+            Law::Surface(bsdf) if self.mode == TransportMode::Importance => event_at(bsdf, wi, self.wo),
+            Law::Surface(bsdf) => event_at(bsdf, self.wo, wi),
+            Law::Medium(_) => FirstEvent::Volume,
+        }
+    }
+
+    /// The same for a camera subpath that goes on by a sample of its law.
+    pub fn first_event_of(&self, sample: &BsdfSample, tracer: &Tracer) -> FirstEvent {
+        match &self.law {
+            Law::Surface(bsdf) if tracer.takes_parts() && self.depth == 1 && !self.is_exit => {
+                event_of(bsdf, self.wo, sample)
+            }
+            _ => self.first_event(sample.wi, tracer),
         }
     }
 

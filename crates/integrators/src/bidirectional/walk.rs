@@ -11,6 +11,7 @@
 //! surface (`under_surface.rs`): the next vertex is where it leaves, and has the same
 //! depth.
 
+use film::FirstEvent;
 use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector3};
 use sampling::Sampler;
 use scattering::{Body, BsdfSample, Directions, TransportMode};
@@ -46,6 +47,11 @@ pub(crate) struct Walk<'a> {
     medium: Option<MediumId>,
     /// Light that media emitted along the rays so far, not yet taken.
     pub emitted: SampledSpectrum,
+    /// The light where it began, if it did at one.
+    light: Option<LightId>,
+    /// The event by which a camera subpath left its first vertex, where somebody takes parts of the
+    /// light.
+    pub first: FirstEvent,
     /// Whether it is a light subpath that began in a medium.
     begins_in_medium: bool,
     /// Distance from the previous vertex.
@@ -183,6 +189,11 @@ impl<'a> Walk<'a> {
             share: SampledSpectrum::ONE,
             medium,
             emitted: SampledSpectrum::ZERO,
+            light: match origin {
+                Origin::Light(light, _) => Some(light),
+                Origin::Point | Origin::Direction => None,
+            },
+            first: FirstEvent::None,
             begins_in_medium: false,
             distance: 0.0,
             alpha: 1.0,
@@ -299,6 +310,8 @@ impl<'a> Walk<'a> {
             partial: Partial::default(),
             depth: self.depth,
             after_diffuse: self.after_diffuse,
+            light: self.light,
+            first: self.first,
             begins_in_medium: self.begins_in_medium,
             is_exit: false,
             mode: self.mode,
@@ -360,6 +373,9 @@ impl<'a> Walk<'a> {
             return false;
         };
         let scale = sample.f * (vertex.cosine(sample.wi) / (sample.pdf * way.probability));
+        if vertex.mode == TransportMode::Radiance {
+            self.first = vertex.first_event_of(&sample, tracer);
+        }
         if vertex.mode == TransportMode::Radiance
             && let Some(body) = body.filter(|body| body.is_entered_by(&sample))
         {

@@ -3,10 +3,17 @@
 use film::FirstEvent;
 use math::Vector3;
 use scattering::{Bsdf, BsdfSample, Bxdf, TransportMode};
+use scene::Scene;
+use scene::light::LightId;
 use spectrum::SampledSpectrum;
 
 /// Light that comes out of the depth of a body.
 pub(crate) const DIFFUSE: FirstEvent = FirstEvent::Reflection { diffuse: SampledSpectrum::ONE };
+
+/// The group of a light; that of light from a medium is the first.
+pub(crate) fn group_of(scene: &Scene, light: Option<LightId>) -> usize {
+    light.map_or(0, |light| scene.light(light).group())
+}
 
 /// The event by which a surface scatters light from `wi` to `wo`, unless it is specular.
 pub(crate) fn event_at(bsdf: &Bsdf<Bxdf>, wo: Vector3, wi: Vector3) -> FirstEvent {

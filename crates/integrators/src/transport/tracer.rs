@@ -10,6 +10,7 @@ use scene::{Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Step;
+use super::parts::group_of;
 use crate::{Cancelled, Control};
 
 /// Traces the rays of a sample, on one thread.
@@ -80,8 +81,7 @@ impl<'a> Tracer<'a> {
         l: SampledSpectrum,
     ) {
         if let Some(parts) = &mut self.parts {
-            let group = light.map_or(0, |light| self.scene.light(light).group());
-            parts.add(l, group, first, events);
+            parts.add(l, group_of(self.scene, light), first, events);
         }
         if !l.is_black() {
             self.take_step(|_| Step::Light { light, events, l });

@@ -2,8 +2,8 @@
 
 use alhazen_integrators::build;
 use description::{
-    CoatedDiffuseDesc, CoefficientsDesc, Handle, InfiniteRadiance, IntegratorDesc, LightDesc, LightKind,
-    MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, PathDesc,
+    BdptDesc, CoatedDiffuseDesc, CoefficientsDesc, Handle, InfiniteRadiance, IntegratorDesc, LightDesc,
+    LightKind, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, PathDesc,
     RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, Span, Spanned, SubsurfaceScattering,
 };
 use film::Layer;
@@ -36,6 +36,10 @@ fn path(max_depth: u32) -> IntegratorDesc {
 
 fn vol_path(max_depth: u32) -> IntegratorDesc {
     IntegratorDesc::VolPath(PathDesc { max_depth, ..PathDesc::default() })
+}
+
+fn bdpt(max_depth: u32) -> IntegratorDesc {
+    IntegratorDesc::Bdpt(BdptDesc { max_depth, ..BdptDesc::default() })
 }
 
 fn sky(desc: &mut SceneDesc) {
@@ -118,7 +122,9 @@ fn mean(image: &Image, part: &str) -> f64 {
 
 #[test]
 fn parts_sum_to_the_picture() {
-    for (integrator, in_fog) in [(path(5), false), (vol_path(5), true), (vol_path(5), false)] {
+    for (integrator, in_fog) in
+        [(path(5), false), (vol_path(5), true), (vol_path(5), false), (bdpt(5), true), (bdpt(5), false)]
+    {
         let mut desc = settings(integrator, 16, 1);
         still_life(&mut desc);
         sky(&mut desc);
@@ -146,8 +152,12 @@ fn parts_sum_to_the_picture() {
 
 #[test]
 fn the_light_of_a_group_is_that_of_the_scene_with_this_group_alone() {
+    [vol_path(4), bdpt(4)].into_iter().for_each(check_groups);
+}
+
+fn check_groups(integrator: IntegratorDesc) {
     let scene = |seed, lights: &[fn(&mut SceneDesc)]| {
-        let mut desc = settings(vol_path(4), 64, seed);
+        let mut desc = settings(integrator.clone(), 64, seed);
         still_life(&mut desc);
         fog(&mut desc, 0.9);
         // The medium emits, which belongs to neither group.
@@ -165,6 +175,26 @@ fn the_light_of_a_group_is_that_of_the_scene_with_this_group_alone() {
     }
 }
 
+#[test]
+fn paths_from_both_ends_have_the_parts_of_paths_from_the_camera() {
+    let scene = |integrator, seed| {
+        let mut desc = settings(integrator, 64, seed);
+        still_life(&mut desc);
+        sky(&mut desc);
+        lamp(&mut desc);
+        fog(&mut desc, 0.9);
+        rendered(&desc)
+    };
+    let (from_camera, from_both) = (scene(vol_path(4), 1), scene(bdpt(4), 2));
+    let parts = BY_EVENT.into_iter().chain(BY_LENGTH).chain(BY_GROUP);
+    for part in parts {
+        let difference =
+            |pixel| f64::from(rgb(&from_both, part, pixel)[1] - rgb(&from_camera, part, pixel)[1]);
+        let moments: Moments = pixels().map(difference).collect();
+        t_test(&moments, 0.0, 10).unwrap_or_else(|error| panic!("{part}: {error}"));
+    }
+}
+
 /// The part of the light that there is beside those of zero, each within a tolerance.
 fn expect(image: &Image, expected: &[(&str, f64)], what: &str) {
     for part in BY_EVENT.into_iter().chain(BY_LENGTH) {
@@ -176,13 +206,18 @@ fn expect(image: &Image, expected: &[(&str, f64)], what: &str) {
 
 #[test]
 fn events_are_told_apart() {
+    check_events(path, vol_path);
+    check_events(bdpt, bdpt);
+}
+
+fn check_events(integrator: fn(u32) -> IntegratorDesc, in_media: fn(u32) -> IntegratorDesc) {
     // White has this value in the film's units.
-    let mut empty = settings(path(1), 64, 1);
+    let mut empty = settings(integrator(1), 64, 1);
     sky(&mut empty);
     let white = mean(&rendered(&empty), "");
     expect(&rendered(&empty), &[("emission", white), ("direct", white)], "the sky");
     let before_a_wall = |make: &dyn Fn(&mut SceneDesc) -> Option<Handle<MaterialDesc>>| {
-        let mut desc = settings(path(5), 64, 1);
+        let mut desc = settings(integrator(5), 64, 1);
         sky(&mut desc);
         let material = make(&mut desc);
         wall(&mut desc, material);
@@ -220,7 +255,7 @@ fn events_are_told_apart() {
     assert!(black.1 < 1e-3 * white && grey.1 > 0.3 * white, "diffuse: {black:?} {grey:?}");
     assert!((black.0 - grey.0).abs() < 0.03 * black.0, "specular: {black:?} {grey:?}");
     // Within a fog there is nothing else.
-    let mut foggy = settings(vol_path(1), 64, 1);
+    let mut foggy = settings(in_media(1), 64, 1);
     sky(&mut foggy);
     fog(&mut foggy, 90.0);
     foggy.camera.medium = foggy.media.iter().map(|(handle, _)| handle).next();

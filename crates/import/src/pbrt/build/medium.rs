@@ -102,7 +102,7 @@ fn grid<T>(
     reader: &mut Reader,
     name: &str,
     resolution: [i32; 3],
-    values: Option<Vec<T>>,
+    values: Option<Arc<[T]>>,
 ) -> Option<GridDesc<T>> {
     let values = values?;
     let expected = resolution.map(|count| count as u128).into_iter().product::<u128>();
@@ -111,7 +111,7 @@ fn grid<T>(
         reader.refuse(name, message);
         return None;
     }
-    Some(GridDesc { resolution, values: Arc::from(values) })
+    Some(GridDesc { resolution, values })
 }
 
 fn uniform_grid(reader: &mut Reader) -> Option<MediumKind> {
@@ -122,9 +122,9 @@ fn uniform_grid(reader: &mut Reader) -> Option<MediumKind> {
     });
     // One value is a factor, several are a grid of factors.
     let (mut emission_scale, mut le_scale) = (1.0, None);
-    match reader.floats("Lescale").as_deref() {
-        Some(&[factor]) => emission_scale = factor,
-        Some(values) => le_scale = grid(reader, "Lescale", resolution, Some(values.to_vec())),
+    match reader.floats("Lescale") {
+        Some(values) if values.len() == 1 => emission_scale = values[0],
+        Some(values) => le_scale = grid(reader, "Lescale", resolution, Some(values)),
         None => (),
     }
     let kind = MediumKind::UniformGrid {

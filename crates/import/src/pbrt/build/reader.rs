@@ -6,6 +6,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use bytemuck::allocation::try_cast_slice_arc;
 use description::schema::{Field, Kind, Settings, Value};
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span,
@@ -253,8 +254,8 @@ impl<'b, 'a> Reader<'b, 'a> {
             Kind::Text => self.string(name).map(|text| Value::Text(text.value)),
             Kind::List(kind, count) => {
                 let values: Vec<Value> = match kind {
-                    Kind::Number => self.floats(name)?.into_iter().map(Value::Number).collect(),
-                    _ => self.integers(name)?.into_iter().map(|value| Value::Integer(value.into())).collect(),
+                    Kind::Number => self.floats(name)?.iter().map(|&value| Value::Number(value)).collect(),
+                    _ => self.integers(name)?.iter().map(|&value| Value::Integer(value.into())).collect(),
                 };
                 if values.len() != count {
                     self.count(name, count, values.len(), self.origin.parameter(name));
@@ -266,7 +267,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// Numbers.
-    pub(crate) fn floats(&mut self, name: &'static str) -> Option<Vec<f32>> {
+    pub(crate) fn floats(&mut self, name: &'static str) -> Option<Arc<[f32]>> {
         match self.take(name, &[ParameterType::Float])? {
             (_, Values::Floats(values), _) => Some(values),
             _ => None,
@@ -276,7 +277,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// A fixed count of numbers.
     pub(crate) fn float_array<const N: usize>(&mut self, name: &'static str) -> Option<[f32; N]> {
         let values = self.floats(name)?;
-        <[f32; N]>::try_from(values.as_slice())
+        <[f32; N]>::try_from(&*values)
             .map_err(|_| self.count(name, N, values.len(), self.origin.parameter(name)))
             .ok()
     }
@@ -305,7 +306,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// Integers.
-    pub(crate) fn integers(&mut self, name: &'static str) -> Option<Vec<i32>> {
+    pub(crate) fn integers(&mut self, name: &'static str) -> Option<Arc<[i32]>> {
         match self.take(name, &[ParameterType::Integer])? {
             (_, Values::Integers(values), _) => Some(values),
             _ => None,
@@ -315,7 +316,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// A fixed count of integers.
     pub(crate) fn integer_array<const N: usize>(&mut self, name: &'static str) -> Option<[i32; N]> {
         let values = self.integers(name)?;
-        <[i32; N]>::try_from(values.as_slice())
+        <[i32; N]>::try_from(&*values)
             .map_err(|_| self.count(name, N, values.len(), self.origin.parameter(name)))
             .ok()
     }
@@ -465,9 +466,9 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// Colours, in the space in force where they were given.
-    pub(crate) fn rgbs(&mut self, name: &'static str) -> Option<Vec<[f32; 3]>> {
+    pub(crate) fn rgbs(&mut self, name: &'static str) -> Option<Arc<[[f32; 3]]>> {
         match self.take(name, &[ParameterType::Rgb])? {
-            (_, Values::Floats(values), _) => Some(values.as_chunks::<3>().0.to_vec()),
+            (_, Values::Floats(values), _) => try_cast_slice_arc(values).ok(),
             _ => None,
         }
     }

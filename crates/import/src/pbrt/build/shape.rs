@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use bytemuck::allocation::try_cast_slice_arc;
 use description::{
     Arena, CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, MeshKey,
     ObjectDesc, Origin, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, ShapeType, SolidOperation, Spanned,
@@ -277,15 +278,15 @@ fn indices<const N: usize>(
         reader.refuse("indices", format!("`indices` has {bad}, but there are {vertices} points in `P`"));
         return None;
     }
-    let (faces, rest) = indices.as_chunks::<N>();
-    if !rest.is_empty() || faces.is_empty() {
+    if !indices.len().is_multiple_of(N) || indices.is_empty() {
         reader.refuse(
             "indices",
             format!("`indices` has {} numbers, which is not a multiple of {N}", indices.len()),
         );
         return None;
     }
-    Some(faces.iter().map(|face| face.map(|index| index as u32)).collect())
+    // None is negative.
+    try_cast_slice_arc(indices).ok()
 }
 
 /// An array with one value per vertex, or empty.
@@ -318,7 +319,7 @@ fn face_indices(reader: &mut Reader, faces: usize) -> Arc<[i32]> {
         reader.refuse("faceIndices", message);
         return Arc::from([]);
     }
-    values.into()
+    values
 }
 
 fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc> {
@@ -360,7 +361,7 @@ fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc>
 fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
     let positions = points(reader)?;
     let vertices = positions.len();
-    let counts = reader.integers("contours").unwrap_or_else(|| vec![vertices as i32]);
+    let counts = reader.integers("contours").unwrap_or_else(|| Arc::from([vertices as i32]));
     let lengths: Option<Vec<usize>> = counts.iter().map(|&count| usize::try_from(count).ok()).collect();
     let lengths = lengths.filter(|lengths| {
         !lengths.is_empty()
@@ -405,7 +406,7 @@ fn patch_mesh(reader: &mut Reader) -> Option<PatchMeshDesc> {
 
 fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
     let centers = points(reader)?;
-    let radii = reader.floats("radius").unwrap_or_else(|| vec![1.0]);
+    let radii = reader.floats("radius").unwrap_or_else(|| Arc::from([1.0]));
     let refusal = if radii.len() != 1 && radii.len() != centers.len() {
         Some(("radius", format!("`radius` has {} values for {} points in `P`", radii.len(), centers.len())))
     } else if let Some(i) = radii.iter().position(|r| !(*r > 0.0 && r.is_finite())) {

@@ -31,7 +31,7 @@ use techniques::Techniques;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Found, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError};
+use crate::{Cancelled, Control, Integrator, PassError, Tracer};
 
 /// Bidirectional path tracing.
 #[derive(Debug)]
@@ -105,7 +105,7 @@ impl Integrator for Bdpt {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
                     if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), lambda, tracer) {
-                        seen.splat(&splatter, &seen.found.weighted(), lambda);
+                        seen.splat_parts(&splatter, lambda, scene);
                         techniques.add(&seen.found, |splatter, l| seen.splat(splatter, l, lambda));
                     }
                     light_subpath.push(*vertex);
@@ -115,24 +115,25 @@ impl Integrator for Bdpt {
             techniques.add_path();
 
             let mut l = SampledSpectrum::ZERO;
-            let mut add = |found: &Found| {
+            let mut add = |found: &Found, tracer: &mut Tracer| {
                 l += found.weighted();
+                tracer.take_part(found.light, &found.first, found.events(), found.weighted());
                 let scale = sample.filter_weight * per_sample;
                 techniques
                     .add(found, |splatter, l| splatter.add_to_pixel(sample.pixel, &(*l * scale), lambda));
             };
             if let Some(camera_ray) = &sample.camera_ray {
                 paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| match encounter {
-                    Encounter::Light(found) => add(&found),
+                    Encounter::Light(found) => add(&found, tracer),
                     Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
-                            add(&found);
+                            add(&found, tracer);
                         }
                         for light in &light_subpath {
                             if vertex.depth + light.depth <= paths.max_depth
                                 && let Some(found) = paths.connect(vertex, light, lambda, tracer)
                             {
-                                add(&found);
+                                add(&found, tracer);
                             }
                         }
                     }
