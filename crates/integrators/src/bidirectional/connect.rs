@@ -246,9 +246,11 @@ impl Bidirectional<'_> {
     /// The unweighted contribution of [`Self::merge`].
     pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
-        // Power includes the cosine to the geometric normal; scattering has that to the shading
-        // normal.
-        let cos_theta = camera.cos_theta(wi);
+        // Power includes the cosine to the geometric normal of the surface that it reached, which may
+        // be another one, as at an edge; scattering has that to the shading normal. The larger
+        // cosine bounds the quotient: the photons of a surface are not rare where they graze the
+        // one of the camera.
+        let cos_theta = camera.cos_theta(wi).max(photon.cos_theta);
         let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
         let f = camera.law.f(camera.wo, wi, camera.mode);
         let length = if photon.is_in_medium { self.balance.merging_length() } else { 1.0 };

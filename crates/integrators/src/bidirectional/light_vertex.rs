@@ -12,6 +12,8 @@ pub(crate) struct LightVertex {
     pub p: Point3,
     /// Unit direction to the previous vertex.
     pub wo: Vector3,
+    /// |cos| of that direction to the geometric normal; 1 in a medium.
+    pub cos_theta: f32,
     /// Power that arrives along `wo`, over the density of the subpath and over alpha (in a medium,
     /// σ_s).
     pub beta: SampledSpectrum,
@@ -29,6 +31,7 @@ impl From<&Vertex<'_>> for LightVertex {
     fn from(vertex: &Vertex) -> Self {
         let &Vertex { p, wo, partial, depth, hero_only, .. } = vertex;
         let (beta, depth) = (vertex.photon_beta(), depth.min(u16::MAX.into()) as u16);
-        Self { p: p.p, wo, beta, partial, depth, hero_only, is_in_medium: vertex.is_in_medium() }
+        let cos_theta = vertex.cos_theta(wo);
+        Self { p: p.p, wo, cos_theta, beta, partial, depth, hero_only, is_in_medium: vertex.is_in_medium() }
     }
 }

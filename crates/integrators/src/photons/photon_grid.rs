@@ -122,6 +122,7 @@ mod tests {
         let photon = |(i, &p): (usize, &Point3)| LightVertex {
             p,
             wo: Vector3::Z,
+            cos_theta: 1.0,
             beta: SampledSpectrum::ONE,
             partial: Partial::default(),
             depth: i as u16,

@@ -419,7 +419,7 @@ fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
         reader.refuse(name, message);
         return None;
     }
-    Some(SpheresDesc { centers, radii: radii.into() })
+    Some(SpheresDesc { centers, radii })
 }
 
 fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
