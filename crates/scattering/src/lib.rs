@@ -19,12 +19,11 @@ mod microfacet;
 mod phase;
 
 pub use bsdf::Bsdf;
-pub use bssrdf::{Bssrdf, BssrdfTable, Probe};
+pub use bssrdf::{Bssrdf, BssrdfTable, Probe, SubsurfaceMethod};
 pub use bxdf::{
     Body, BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
     Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr, OpenPbrParameters,
-    OpenPbrTable, PlainOpenPbrTable, Scatter, Subsurface, SubsurfaceMethod, SubsurfacePart, ThinDielectric,
-    inner_reflectance,
+    OpenPbrTable, PlainOpenPbrTable, Scatter, Subsurface, SubsurfacePart, ThinDielectric, inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};

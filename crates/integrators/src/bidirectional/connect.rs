@@ -246,10 +246,10 @@ impl Bidirectional<'_> {
     /// The unweighted contribution of [`Self::merge`].
     pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
-        // Power includes the cosine to the geometric normal of the surface that it reached, which may
-        // be another one, as at an edge; scattering has that to the shading normal. The larger
-        // cosine bounds the quotient: the photons of a surface are not rare where they graze the
-        // one of the camera.
+        // Power includes the cosine to the geometric normal of the surface that it reached, which
+        // may be another one, as at an edge; scattering has that to the shading normal. The larger
+        // cosine bounds the quotient: photons are not rare where they graze only the surface of the
+        // camera's vertex.
         let cos_theta = camera.cos_theta(wi).max(photon.cos_theta);
         let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
         let f = camera.law.f(camera.wo, wi, camera.mode);

@@ -19,13 +19,15 @@
 //! Sources: [Jensen 2001], [Habel 2013], [King 2013], [Pharr 2016 §11.4, §15.4, §15.5].
 
 mod diffusion;
+mod method;
 mod spline;
 mod table;
 mod walks;
 
+pub use method::SubsurfaceMethod;
 pub use table::BssrdfTable;
 
-use crate::{HenyeyGreenstein, Interior, NormalizedFresnel, SubsurfaceMethod};
+use crate::{HenyeyGreenstein, Interior, NormalizedFresnel};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};
 use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;

@@ -2,8 +2,7 @@
 
 use super::diffusion::HalfSpace;
 use super::spline::{self, Weights};
-use super::walks;
-use crate::SubsurfaceMethod;
+use super::{SubsurfaceMethod, walks};
 use std::f32::consts::TAU;
 use std::fmt;
 use std::sync::OnceLock;

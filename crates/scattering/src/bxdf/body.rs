@@ -1,7 +1,7 @@
 //! Bodies: what paths that are followed under surfaces ask of a BxDF.
 
-use super::{BsdfSample, Bxdf, OpenPbr, Subsurface, SubsurfaceMethod, SubsurfacePart};
-use crate::{Bssrdf, BxdfFlags, Interior, Scatter, fr_dielectric};
+use super::{BsdfSample, Bxdf, OpenPbr, Subsurface, SubsurfacePart};
+use crate::{Bssrdf, BxdfFlags, Interior, Scatter, SubsurfaceMethod, fr_dielectric};
 use math::Vector3;
 
 /// A BxDF of a surface under which light is scattered, to leave elsewhere.

@@ -28,7 +28,7 @@ pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
 pub use openpbr::{OpenPbr, OpenPbrParameters, OpenPbrTable, PlainOpenPbrTable};
 pub use scatter::{BsdfSample, Scatter};
-pub use subsurface::{Subsurface, SubsurfaceMethod, SubsurfacePart};
+pub use subsurface::{Subsurface, SubsurfacePart};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};

@@ -12,22 +12,12 @@
 //! been scattered under the surface ([`Bssrdf`]).
 
 use super::{BsdfSample, Dielectric, NormalizedFresnel, Scatter};
-use crate::{Bssrdf, BxdfFlags, Directions, TransportMode, fr_dielectric};
+use crate::{Bssrdf, BxdfFlags, Directions, SubsurfaceMethod, TransportMode, fr_dielectric};
 use math::{Vec2, Vector3};
 use sampling::HashSequence;
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
-
-/// How light is followed under a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SubsurfaceMethod {
-    /// By the diffusion profile of a half space.
-    #[default]
-    Diffusion,
-    /// By a random walk.
-    RandomWalk,
-}
 
 /// What of a body scatters light at a point of its surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

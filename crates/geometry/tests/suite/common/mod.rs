@@ -22,8 +22,8 @@ pub fn direction(rng: &mut Rng) -> Vec3 {
     sample_uniform_sphere(uniform_2d(rng))
 }
 
-/// A filter that may reject any hit. All filters of tests have this type, since each type is one more
-/// copy of the ray engine to compile.
+/// A filter that may reject any hit. All filters of tests have this type, since each type is one
+/// more copy of the ray engine to compile.
 pub struct Accepts<'a>(pub &'a dyn Fn(&Hit) -> bool);
 
 impl Filter for Accepts<'_> {
