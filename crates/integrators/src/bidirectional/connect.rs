@@ -246,12 +246,12 @@ impl Bidirectional<'_> {
     /// The unweighted contribution of [`Self::merge`].
     pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
-        // Power includes the cosine to the geometric normal of the surface that it reached, which
-        // may be another one, as at an edge; scattering has that to the shading normal. The larger
-        // cosine bounds the quotient: photons are not rare where they graze only the surface of the
-        // camera's vertex.
-        let cos_theta = camera.cos_theta(wi).max(photon.cos_theta);
-        let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
+        // Power includes the cosine to the geometric normal; scattering has that to the shading
+        // normal. Photons of another face, as of a neighbour in a smooth mesh, are not rare where
+        // they graze the camera's, so that the quotient is bounded by their own cosine.
+        let cosine = camera.cosine(wi);
+        let cos_theta = camera.cos_theta(wi).max(photon.cos_theta.min(cosine));
+        let cosines = if cos_theta == 0.0 { 0.0 } else { cosine / cos_theta };
         let f = camera.law.f(camera.wo, wi, camera.mode);
         let length = if photon.is_in_medium { self.balance.merging_length() } else { 1.0 };
         let l = camera.beta * photon.beta * f * (cosines / (self.balance.merging * length));

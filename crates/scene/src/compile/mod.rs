@@ -29,7 +29,7 @@ use description::{
     AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, InstanceDesc, IntegratorDesc,
     ObjectDesc, SceneDesc, ShapeDesc, Span, SpectrumDesc, SpectrumParameter,
 };
-use geometry::{BuildQuality, World, WorldBuilder};
+use geometry::{BuildQuality, GeometryId, World, WorldBuilder};
 use math::DMat4;
 use scattering::BssrdfTable;
 use spectrum::Spectrum;
@@ -98,11 +98,12 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
         compiler.warn_of_darkness(&lights);
     }
-    let Compiler { diagnostics, textures, entries, names, instances, materials, media, traits, .. } =
+    let Compiler { diagnostics, textures, entries, names, instances, materials, media, mut traits, .. } =
         compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
+    traits.is_moving |= (0..entries.len() as u32).any(|id| world.geometry(GeometryId(id)).is_moving());
     let textures = textures.finish();
     let has_bump_maps = materials.iter().any(|entry| entry.bump_map.is_some());
     let uses_footprints = textures.are_filtered() || has_bump_maps;
@@ -123,7 +124,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     Ok(Compiled { scene, warnings: diagnostics })
 }
 
-/// Whether any shape, instance, medium or light moves.
+/// Whether any shape, instance, medium or light moves as a whole.
 fn is_moving(desc: &SceneDesc) -> bool {
     let moves_in = |shapes: &Arena<ShapeDesc>, instances: &Arena<InstanceDesc>| {
         shapes.iter().any(|(_, shape)| shape.world_from_object.is_animated())
