@@ -15,6 +15,7 @@ mod minray;
 mod mitsuba;
 mod moving_lights;
 mod nori;
+mod photons;
 mod python_settings;
 mod radiosity;
 mod references;
