@@ -181,7 +181,7 @@ mod tests {
         let mut found = Vec::new();
         grid.within(Point3::ONE, |photon| found.push(photon.depth));
         assert!(found.len() == 100 && found.is_sorted());
-        assert_eq!(size_of::<LightVertex>(), 56);
-        assert_eq!(grid.bytes(), 100 * 56 + 129 * 4);
+        assert_eq!(size_of::<LightVertex>(), 60);
+        assert_eq!(grid.bytes(), 100 * 60 + 129 * 4);
     }
 }

@@ -40,9 +40,9 @@
 //! The choice of the radius remains difficult. In the mirror room one of three times the default
 //! leaves a third of the variance; behind a door, light then leaks under it.
 //!
-//! At most [`MAX_PHOTON_PATHS`] paths of a pass store photons, which bounds memory: 180 bytes for
-//! each of at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they
-//! are sorted. In larger pictures the other pixels sample their light subpaths on demand.
+//! At most [`MAX_PHOTON_PATHS`] paths of a pass store photons, which bounds memory: some hundred
+//! bytes for each of at most `max_depth` vertices of a path, and 64 to 68 for its photon, 60 more
+//! while they are sorted. In larger pictures the other pixels sample their light subpaths on demand.
 //!
 //! Biased: merging blurs light over the radius, which shrinks as `merging` describes; consistent.
 //! Depth of field and motion blur are correct, because all paths of a pass share one time. Sources:
