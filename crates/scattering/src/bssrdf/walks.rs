@@ -16,10 +16,10 @@ use sampling::Rng;
 use sampling::warp::sample_exponential;
 use std::collections::BTreeMap;
 
-/// Walks; the shares have standard errors of 0.002 at most, which all albedos have in common.
+/// Walks; the shares have standard errors of about 0.002, which all albedos have in common.
 const WALKS: usize = 1 << 16;
 /// Events before walks are thinned out.
-const ALL: u32 = 64;
+const ALL: u32 = 256;
 
 /// The shares R that leave again, for the asymmetry `g`, the relative index `eta` of the medium,
 /// and each of some albedos of single scattering.
@@ -27,20 +27,25 @@ pub(super) fn effective_albedos(g: f32, eta: f32, albedos: &[f32]) -> Vec<f32> {
     let phase = HenyeyGreenstein { g };
     let mut rng = Rng::from_sequence(0);
     let mut leaving: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut entered = 0.0;
     for i in 0..WALKS {
         // Under a uniform sky the squares of cosines are uniform.
         let cosine = ((i as f32 + rng.uniform_f32()) / WALKS as f32).sqrt();
         let sine = safe_sqrt(1.0 - sqr(cosine)) / eta;
         let entering = 1.0 - fr_dielectric(cosine, eta);
+        entered += f64::from(entering);
         let inwards = Vec3::new(sine, 0.0, safe_sqrt(1.0 - sqr(sine)));
         if let Some((events, weight)) = walk(&phase, eta, inwards, &mut rng) {
             *leaving.entry(events).or_default() += f64::from(entering * weight);
         }
     }
-    let all: f64 = leaving.values().sum();
     let share = |&albedo: &f32| {
+        // What nothing absorbs leaves; walks that count for many say so only on average.
+        if albedo >= 1.0 {
+            return 1.0;
+        }
         let left = |(&n, &share): (&u32, &f64)| share * f64::from(albedo).powi(n as i32);
-        (leaving.iter().map(left).sum::<f64>() / all) as f32
+        (leaving.iter().map(left).sum::<f64>() / entered).min(1.0) as f32
     };
     albedos.iter().map(share).collect()
 }
