@@ -42,7 +42,8 @@
 //!
 //! At most [`MAX_PHOTON_PATHS`] paths of a pass store photons, which bounds memory: some hundred
 //! bytes for each of at most `max_depth` vertices of a path, and 64 to 68 for its photon, 60 more
-//! while they are sorted. In larger pictures the other pixels sample their light subpaths on demand.
+//! while they are sorted. In larger pictures the other pixels sample their light subpaths on
+//! demand.
 //!
 //! Biased: merging blurs light over the radius, which shrinks as `merging` describes; consistent.
 //! Depth of field and motion blur are correct, because all paths of a pass share one time. Sources:

@@ -142,7 +142,8 @@ fn diffusion_is_near_to_a_walk_in_a_half_space() {
 }
 
 /// Of the light of a uniform sky that enters through a smooth boundary, a walk returns the
-/// reflectance that was asked for: the mean over directions by their cosine, whose squares are uniform.
+/// reflectance that was asked for: the mean over directions by their cosine, whose squares are
+/// uniform.
 #[test]
 fn walks_return_the_reflectance_that_is_asked_for() {
     const DIRECTIONS: usize = 8;
