@@ -1,4 +1,4 @@
-// Whitted's ray tracing: the light of all lights with shadows, and perfect reflection and refraction.
+// Whitted's ray tracing: the light of all lights with shadows, perfect reflection and refraction.
 
 // The rays that may wait: one for each scattering event before.
 const MOST_RAYS = 17u;
