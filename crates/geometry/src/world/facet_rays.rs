@@ -4,7 +4,7 @@
 #![allow(unsafe_code)]
 
 use super::columns::{HitColumns, RayColumns};
-use super::facets::{Facets, MOST};
+use super::facets::{Facets, MOST, Spread};
 use super::filter::Filter;
 use super::geometry::{Geometry, GeometryId};
 use super::hit::Hit;
@@ -12,7 +12,7 @@ use super::instance::InstancePath;
 use super::query::Query;
 use super::tables::Tables;
 use super::trace::is_valid;
-use crate::facet::{Meeting, RayLanes};
+use crate::facet::{Meeting, RayLanes, parameters};
 use lanes::{Int, MAX_LANES, Mask, Real, Simd, Task};
 use math::{Ray, Vec2, Vec3};
 
@@ -54,20 +54,24 @@ impl<Q: Query> FacetRay<'_, Q> {
         for block in &facets.blocks {
             for (part, indices) in block.facets.chunks(R::LANES).enumerate() {
                 let (facet, twist) = block.facets::<R>(part * R::LANES);
-                let met = rays.meet(&facet, twist.as_ref(), R::splat(query.t_max()));
+                let nearest = R::splat(query.t_max());
+                let met = match &twist {
+                    None => rays.meet(&facet, nearest),
+                    Some(twist) => rays.meet_patch(&facet, twist, nearest),
+                };
                 let used = u32::MAX >> (32 - indices.len());
                 let certain = met.certain.bits();
                 let mut hits = (certain | met.uncertain.bits()) & used;
                 if hits == 0 {
                     continue;
                 }
-                let (t, [u, v]) = (met.t.to_array(), [met.uv[0].to_array(), met.uv[1].to_array()]);
+                let (t, [x, y]) = (met.t.to_array(), [met.at[0].to_array(), met.at[1].to_array()]);
                 while hits != 0 {
                     let lane = hits.trailing_zeros() as usize;
                     hits &= hits - 1;
                     let facet = indices[lane] as usize;
                     let found = if certain >> lane & 1 != 0 {
-                        Some((t[lane], Vec2::new(u[lane], v[lane])))
+                        Some((t[lane], facets.uv(facet, [x[lane], y[lane]])))
                     } else {
                         facets.resolve(facet, &tables.geometries, ray, t_max)
                     };
@@ -90,18 +94,40 @@ pub(super) struct FacetRays<'a, F> {
 }
 
 /// What rays have hit, one in each lane: their ends, or the distances of their nearest hits; that
-/// is below zero where there is nothing more to be found.
+/// is below zero where there is nothing more to be found. `at` is where a [`Meeting`] has it, at
+/// last u and v.
 #[derive(Clone, Copy)]
 struct Found<R: Real> {
     t: R,
-    uv: [R; 2],
+    at: [R; 2],
     facet: R::Int,
+}
+
+/// The lanes of each facet whose hits are uncertain, and those of any.
+struct Doubts {
+    lanes: [u32; MOST],
+    any: u32,
+}
+
+impl Doubts {
+    #[inline(always)]
+    fn add<M: Mask>(&mut self, facet: usize, lanes: M) {
+        let lanes = lanes.bits();
+        self.lanes[facet % MOST] = lanes;
+        self.any |= lanes;
+    }
+}
+
+/// The distance where nothing more is to be found.
+#[inline(always)]
+fn done<R: Real>() -> R {
+    R::splat(-1.0)
 }
 
 /// The same in arrays, for one lane after another.
 struct FoundArrays {
     t: [f32; MAX_LANES],
-    uv: [[f32; MAX_LANES]; 2],
+    at: [[f32; MAX_LANES]; 2],
     facet: [u32; MAX_LANES],
 }
 
@@ -115,52 +141,74 @@ impl<F: Filter> FacetRays<'_, F> {
 
     /// The hits of the rays from `first` on; with `ANY`, only whether there is one.
     #[inline(always)]
-    fn find<R: Real, const ANY: bool>(&self, first: usize, concerned: u64) -> Found<R> {
+    fn find<R: Real, const ANY: bool>(&self, first: usize, spread: &Spread<R>, concerned: u64) -> Found<R> {
         let Self { facets, .. } = *self;
         let (o, d, t_max) = self.rays.lanes::<R>(first);
         let (rays, valid) = RayLanes::new(o, d, t_max, self.rays.t_max.is_some());
-        let done = R::splat(-1.0);
         let mut found = Found {
-            t: R::select(valid, t_max, done),
-            uv: [R::zero(); 2],
+            t: R::select(valid, t_max, done()),
+            at: [R::zero(); 2],
             facet: R::Int::splat(facets.len() as u32),
         };
         // Uncertain hits are resolved after all others, so that a loop without branches is left.
-        let mut doubts = [0; MOST];
-        let mut any_doubts = 0;
-        for (index, (&(block, lane), doubts)) in facets.places.iter().zip(&mut doubts).enumerate() {
-            let (facet, twist) = facets.blocks[block as usize].facet::<R>(lane.into());
-            let met = rays.meet(&facet, twist.as_ref(), found.t);
+        let mut doubts = Doubts { lanes: [0; MOST], any: 0 };
+        for (turn, (index, facet)) in spread.plane.iter().enumerate() {
+            let met = rays.meet(facet, found.t);
             let hits = met.certain & met.t.lt(found.t);
-            *doubts = (met.uncertain & found.t.gt(R::zero())).bits();
-            any_doubts |= *doubts;
-            if concerned >> index & 1 != 0 {
-                if hits.any() {
-                    let mut arrays = FoundArrays::of(&found);
-                    let met = MetArrays::of(&met);
-                    self.settle::<ANY>(first, index, hits.bits(), Some(&met), &mut arrays);
-                    found = arrays.lanes();
-                }
-                continue;
-            }
-            found.t = R::select(hits, if ANY { done } else { met.t }, found.t);
-            found.uv[0] = R::select(hits, met.uv[0], found.uv[0]);
-            found.uv[1] = R::select(hits, met.uv[1], found.uv[1]);
-            found.facet = R::Int::select(hits, R::Int::splat(index as u32), found.facet);
-            if ANY && index % 8 == 7 && !found.t.gt(R::zero()).any() {
-                break;
+            doubts.add(*index, met.uncertain & found.t.gt(R::zero()));
+            self.take::<R, ANY>((first, *index), &met, hits, concerned, &mut found);
+            if ANY && turn % 8 == 7 && !found.t.gt(R::zero()).any() {
+                return found;
             }
         }
-        if any_doubts != 0 {
+        for (index, facet, twist) in &spread.patches {
+            let met = rays.meet_patch(facet, twist, found.t);
+            let is_first = met.t.eq(found.t) & R::Int::splat(*index as u32).lt(found.facet);
+            let hits = met.certain & (met.t.lt(found.t) | is_first);
+            doubts.add(*index, met.uncertain & found.t.gt(R::zero()));
+            self.take::<R, ANY>((first, *index), &met, hits, concerned, &mut found);
+        }
+        if !ANY && facets.is_skewed {
+            let [a, b] = &facets.skews;
+            found.at = parameters([R::gather(a, found.facet), R::gather(b, found.facet)], found.at);
+        }
+        if doubts.any != 0 {
             let mut arrays = FoundArrays::of(&found);
-            for (index, &doubts) in doubts[..facets.len()].iter().enumerate() {
-                if doubts != 0 {
-                    self.settle::<ANY>(first, index, doubts, None, &mut arrays);
+            for (index, &lanes) in doubts.lanes[..facets.len()].iter().enumerate() {
+                if lanes != 0 {
+                    self.settle::<ANY>(first, index, lanes, None, &mut arrays);
                 }
             }
             found = arrays.lanes();
         }
         found
+    }
+
+    /// Takes the hits of rays from `first` on, at the facet `index`; with `ANY`, no more than that
+    /// there are some. The filter is asked about those that it concerns.
+    #[inline(always)]
+    fn take<R: Real, const ANY: bool>(
+        &self,
+        (first, index): (usize, usize),
+        met: &Meeting<R>,
+        hits: R::Mask,
+        concerned: u64,
+        found: &mut Found<R>,
+    ) {
+        if concerned >> index & 1 != 0 {
+            if hits.any() {
+                let mut arrays = FoundArrays::of(found);
+                self.settle::<ANY>(first, index, hits.bits(), Some(&MetArrays::of(met)), &mut arrays);
+                *found = arrays.lanes();
+            }
+            return;
+        }
+        found.t = R::select(hits, if ANY { done() } else { met.t }, found.t);
+        found.facet = R::Int::select(hits, R::Int::splat(index as u32), found.facet);
+        if !ANY {
+            found.at[0] = R::select(hits, met.at[0], found.at[0]);
+            found.at[1] = R::select(hits, met.at[1], found.at[1]);
+        }
     }
 
     /// Tests rays one by one against a facet: takes the hits `met`, or finds them by the shape's
@@ -181,11 +229,18 @@ impl<F: Filter> FacetRays<'_, F> {
             lanes &= lanes - 1;
             let place = (first + lane).min(self.rays.len() - 1);
             let ray = self.rays.ray(place);
-            let hit = match met {
-                Some(met) => Some((met.t[lane], Vec2::new(met.uv[0][lane], met.uv[1][lane]))),
-                None => self.facets.resolve(facet, self.geometries, &ray, self.rays.t_max(place)),
+            let (t, at, uv) = match met {
+                Some(met) => {
+                    let at = [met.at[0][lane], met.at[1][lane]];
+                    (met.t[lane], at, self.facets.uv(facet, at))
+                }
+                None => {
+                    let t_max = self.rays.t_max(place);
+                    let hit = self.facets.resolve(facet, self.geometries, &ray, t_max);
+                    let Some((t, uv)) = hit else { continue };
+                    (t, [uv.x, uv.y], uv)
+                }
             };
-            let Some((t, uv)) = hit else { continue };
             // Of hits at the same distance the first facet's counts.
             let is_nearest = (t, facet as u32) < (found.t[lane], found.facet[lane]);
             if !is_nearest
@@ -195,8 +250,8 @@ impl<F: Filter> FacetRays<'_, F> {
                 continue;
             }
             found.t[lane] = if ANY { -1.0 } else { t };
-            found.uv[0][lane] = uv.x;
-            found.uv[1][lane] = uv.y;
+            found.at[0][lane] = at[0];
+            found.at[1][lane] = at[1];
             found.facet[lane] = facet as u32;
         }
     }
@@ -205,28 +260,28 @@ impl<F: Filter> FacetRays<'_, F> {
 /// A [`Meeting`] in arrays.
 struct MetArrays {
     t: [f32; MAX_LANES],
-    uv: [[f32; MAX_LANES]; 2],
+    at: [[f32; MAX_LANES]; 2],
 }
 
 impl MetArrays {
     #[inline(always)]
     fn of<R: Real>(met: &Meeting<R>) -> Self {
-        let uv = [met.uv[0].to_array(), met.uv[1].to_array()];
-        Self { t: met.t.to_array(), uv }
+        let at = [met.at[0].to_array(), met.at[1].to_array()];
+        Self { t: met.t.to_array(), at }
     }
 }
 
 impl FoundArrays {
     #[inline(always)]
     fn of<R: Real>(found: &Found<R>) -> Self {
-        let uv = [found.uv[0].to_array(), found.uv[1].to_array()];
-        Self { t: found.t.to_array(), uv, facet: found.facet.to_array() }
+        let at = [found.at[0].to_array(), found.at[1].to_array()];
+        Self { t: found.t.to_array(), at, facet: found.facet.to_array() }
     }
 
     #[inline(always)]
     fn lanes<R: Real>(&self) -> Found<R> {
-        let uv = [R::load(&self.uv[0]), R::load(&self.uv[1])];
-        Found { t: R::load(&self.t), uv, facet: R::Int::load(&self.facet) }
+        let at = [R::load(&self.at[0]), R::load(&self.at[1])];
+        Found { t: R::load(&self.t), at, facet: R::Int::load(&self.facet) }
     }
 }
 
@@ -244,13 +299,13 @@ impl<F: Filter> Task for NearestHits<'_, '_, F> {
 
 #[inline(always)]
 fn nearest<R: Real, F: Filter>(rays: &FacetRays<F>, hits: &mut HitColumns) {
-    let concerned = rays.concerned();
+    let (spread, concerned) = (Spread::of(rays.facets), rays.concerned());
     let mut first = 0;
     while first < rays.rays.len() {
-        let found = rays.find::<R, false>(first, concerned);
+        let found = rays.find::<R, false>(first, &spread, concerned);
         let geometry = R::Int::gather(&rays.facets.geometries, found.facet);
         let primitive = R::Int::gather(&rays.facets.primitives, found.facet);
-        hits.set_lanes(first, found.t, found.uv, geometry, primitive);
+        hits.set_lanes(first, found.t, found.at, geometry, primitive);
         first += R::LANES;
     }
 }
@@ -269,9 +324,9 @@ impl<F: Filter> Task for AnyHits<'_, '_, F> {
 
 #[inline(always)]
 fn any<R: Real, F: Filter>(rays: &FacetRays<F>, occluded: &mut [bool]) {
-    let concerned = rays.concerned();
+    let (spread, concerned) = (Spread::of(rays.facets), rays.concerned());
     for (part, occluded) in occluded.chunks_mut(R::LANES).enumerate() {
-        let found = rays.find::<R, true>(part * R::LANES, concerned);
+        let found = rays.find::<R, true>(part * R::LANES, &spread, concerned);
         let hits = found.facet.lt(R::Int::splat(rays.facets.len() as u32)).bits();
         for (lane, occluded) in occluded.iter_mut().enumerate() {
             *occluded = hits >> lane & 1 != 0;
@@ -280,6 +335,13 @@ fn any<R: Real, F: Filter>(rays: &FacetRays<F>, occluded: &mut [bool]) {
 }
 
 impl Facets {
+    /// The parameters of a hit that a [`Meeting`] has at x and y.
+    #[inline(always)]
+    fn uv(&self, facet: usize, at: [f32; 2]) -> Vec2 {
+        let [u, v] = parameters([self.skews[0][facet], self.skews[1][facet]], at);
+        Vec2::new(u, v)
+    }
+
     /// The hit on a facet.
     #[inline(always)]
     fn hit(&self, facet: usize, t: f32, uv: Vec2) -> Hit {

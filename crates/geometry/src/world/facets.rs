@@ -2,7 +2,7 @@
 
 use super::geometry::{Geometry, GeometryId};
 use super::points::PatchTable;
-use crate::facet::{FIELDS, Facet, FacetFrame, TWIST_FIELDS, Twist};
+use crate::facet::{FIELDS, Facet, FacetFrame, FacetValues, TWIST_FIELDS, Twist};
 use crate::shape::{Shape, Triangle};
 use crate::watertight::Sheared;
 use lanes::{MAX_LANES, Real};
@@ -26,6 +26,10 @@ pub(super) struct Facets {
     /// Geometry and primitive of each facet, in their order; the last row stands for none.
     pub geometries: Vec<u32>,
     pub primitives: Vec<u32>,
+    /// The twists of plane facets in their planes, for their parameters.
+    pub skews: [Vec<f32>; 2],
+    /// Whether any is not 0.
+    pub is_skewed: bool,
     /// Block and lane of each facet.
     pub places: Vec<(u8, u8)>,
     pub blocks: Vec<Block>,
@@ -43,6 +47,8 @@ impl Facets {
         let mut facets = Self {
             geometries: Vec::new(),
             primitives: Vec::new(),
+            skews: [Vec::new(), Vec::new()],
+            is_skewed: false,
             places: Vec::new(),
             blocks: Vec::new(),
             patches: PatchTable::new(members, geometries),
@@ -64,6 +70,7 @@ impl Facets {
         }
         facets.geometries.push(u32::MAX);
         facets.primitives.push(u32::MAX);
+        facets.skews.iter_mut().for_each(|skews| skews.push(0.0));
         Some(facets)
     }
 
@@ -73,7 +80,7 @@ impl Facets {
     }
 
     fn push(&mut self, frame: &FacetFrame, geometry: u32, primitive: u32) -> Option<()> {
-        let (values, twist) = frame.values()?;
+        let FacetValues { facet: values, twist, skew } = frame.values()?;
         let has_room =
             |block: &Block| block.twists.is_some() == twist.is_some() && block.facets.len() < MAX_LANES;
         let found = self.blocks.iter().position(has_room);
@@ -93,6 +100,8 @@ impl Facets {
         self.places.push((place as u8, lane as u8));
         self.geometries.push(geometry);
         self.primitives.push(primitive);
+        self.is_skewed |= skew != [0.0; 2];
+        self.skews.iter_mut().zip(skew).for_each(|(skews, skew)| skews.push(skew));
         Some(())
     }
 
@@ -114,38 +123,58 @@ impl Facets {
     }
 }
 
-impl Block {
-    /// The facet of a lane in all lanes.
-    #[inline(always)]
-    pub fn facet<R: Real>(&self, lane: usize) -> (Facet<R>, Option<Twist<R>>) {
-        let (mut values, mut twist) = ([R::zero(); FIELDS], None);
-        for (value, field) in values.iter_mut().zip(&self.values) {
-            *value = R::splat(field[lane % MAX_LANES]);
-        }
-        if let Some(fields) = &self.twists {
-            let mut values = [R::zero(); TWIST_FIELDS];
-            for (value, field) in values.iter_mut().zip(fields.iter()) {
-                *value = R::splat(field[lane % MAX_LANES]);
-            }
-            twist = Some(Twist::of(values));
-        }
-        (Facet::of(values), twist)
-    }
+/// Facets with each number in all lanes of a vector, so that instructions take them from memory.
+pub(super) struct Spread<R: Real> {
+    /// Plane facets and their indices.
+    pub plane: Vec<(usize, Facet<R>)>,
+    /// Other patches.
+    pub patches: Vec<(usize, Facet<R>, Twist<R>)>,
+}
 
+impl<R: Real> Spread<R> {
+    #[inline(always)]
+    pub fn of(facets: &Facets) -> Self {
+        let (mut plane, mut patches) = (Vec::with_capacity(facets.len()), Vec::new());
+        for (index, &(block, lane)) in facets.places.iter().enumerate() {
+            let block = &facets.blocks[usize::from(block)];
+            let facet = Facet::of(spread(&block.values, lane.into()));
+            match &block.twists {
+                None => plane.push((index, facet)),
+                Some(twists) => patches.push((index, facet, Twist::of(spread(twists, lane.into())))),
+            }
+        }
+        Self { plane, patches }
+    }
+}
+
+/// The numbers of one lane.
+#[inline(always)]
+fn spread<R: Real, const N: usize>(fields: &[[f32; MAX_LANES]; N], lane: usize) -> [R; N] {
+    let mut values = [R::zero(); N];
+    for (value, field) in values.iter_mut().zip(fields) {
+        *value = R::splat(field[lane]);
+    }
+    values
+}
+
+/// The numbers of the lanes from `first` on.
+#[inline(always)]
+fn row<R: Real, const N: usize>(fields: &[[f32; MAX_LANES]; N], first: usize) -> [R; N] {
+    let mut values = [R::zero(); N];
+    for (value, field) in values.iter_mut().zip(fields) {
+        *value = R::load(&field[first..]);
+    }
+    values
+}
+
+impl Block {
     /// The facets from a lane on.
     #[inline(always)]
     pub fn facets<R: Real>(&self, first: usize) -> (Facet<R>, Option<Twist<R>>) {
-        let (mut values, mut twist) = ([R::zero(); FIELDS], None);
-        for (value, field) in values.iter_mut().zip(&self.values) {
-            *value = R::load(&field[first..]);
+        let facet = Facet::of(row(&self.values, first));
+        match &self.twists {
+            None => (facet, None),
+            Some(twists) => (facet, Some(Twist::of(row(twists, first)))),
         }
-        if let Some(fields) = &self.twists {
-            let mut values = [R::zero(); TWIST_FIELDS];
-            for (value, field) in values.iter_mut().zip(fields.iter()) {
-                *value = R::load(&field[first..]);
-            }
-            twist = Some(Twist::of(values));
-        }
-        (Facet::of(values), twist)
     }
 }
