@@ -52,20 +52,13 @@ pub(crate) fn flattened(
     film: &Film,
     kernels: &Kernels,
 ) -> Result<Flattened, Vec<Diagnostic>> {
-    let mut refused = Vec::new();
-    let mut refuse = |what: String| {
+    let refuse = |what: String| {
         let message = format!("the engine for GPUs does not have {what}");
-        refused.push(Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span));
+        vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]
     };
-    let algorithm = Algorithm::new(&desc.integrator.value, color_space(desc.film.color_space));
-    let algorithm = algorithm.map_err(&mut refuse).ok();
+    let algorithm =
+        Algorithm::new(&desc.integrator.value, color_space(desc.film.color_space)).map_err(refuse)?;
     let (sampler, light_sampler) = (integrators::sampler(desc), integrators::light_sampler(desc));
-    if !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_) | Sampler::PaddedSobol(_)) {
-        let message = "the engine for GPUs has the samplers `zsobol`, `paddedsobol` and `independent` only";
-        let warning = Diagnostic::warning("not-on-gpu", message, desc.sampler.origin.span);
-        refused.push(warning.with_help("`--set sampler=zsobol` selects the first one"));
-    }
-    let Some(algorithm) = algorithm.filter(|_| refused.is_empty()) else { return Err(refused) };
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
     let largest_buffer = usize::try_from(kernels.device().largest_buffer()).unwrap_or(usize::MAX);

@@ -5,7 +5,7 @@ use crate::Algorithm;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.
 const BY_HAND: [&str; 2] =
-    [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/padded_sobol.wgsl")];
+    [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/samplers.wgsl")];
 
 /// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
 pub const TRACE: &str = include_str!("../shaders/trace.wgsl");
@@ -82,8 +82,8 @@ pub struct Parts {
     pub coats: bool,
     /// Principled surfaces.
     pub principled: bool,
-    /// The sampler `paddedsobol`.
-    pub padded_sobol: bool,
+    /// Samplers other than `independent` and `zsobol`.
+    pub rare_samplers: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm.
@@ -169,10 +169,10 @@ fn radiance(algorithm: &Algorithm) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, padded_sobol } = parts;
+    let Parts { holes, images, noise, coats, principled, rare_samplers } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_COATS = {coats};\nconst HAS_PADDED_SOBOL = {padded_sobol};\n"
+        const HAS_COATS = {coats};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

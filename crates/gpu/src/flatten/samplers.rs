@@ -1,40 +1,70 @@
-//! Sources of random numbers: the kind and the hash of the seed; of `zsobol` then the binary
-//! logarithm of the number of samples, the digits of a pixel's code, and the randomisation. Of
-//! `paddedsobol` the kind, the seed, the number of samples, and the randomisation.
+//! Sources of random numbers: the kind and numbers. Keys are hashes of seeds.
+//!
+//! | kind | numbers |
+//! |---|---|
+//! | 0 independent | key |
+//! | 1 zsobol | key, binary logarithm of the number of samples, digits of a pixel's code, randomisation |
+//! | 2 paddedsobol | seed, number of samples, randomisation |
+//! | 3 sobol | randomisation, binary logarithm of the side of the square of pixels, number of dimensions, offset of their hashes, offset of their matrices |
+//! | 4 halton | key, randomisation, number of bases, their offset |
+//! | 5 stratified | key, seed, columns, rows, 1 where positions in cells are random |
+//! | 6 pmj02bn | key, binary logarithm of the number of samples |
 
 use description::Span;
-use sampling::Sampler;
-use sampling::sampler::Randomize;
+use sampling::low_discrepancy::{PRIME_COUNT, prime};
+use sampling::{Randomize, Sampler};
 
 use super::Flattener;
 
 const INDEPENDENT: u32 = 0;
 const ZSOBOL: u32 = 1;
 const PADDED_SOBOL: u32 = 2;
+const SOBOL: u32 = 3;
+const HALTON: u32 = 4;
+const STRATIFIED: u32 = 5;
+const PMJ02BN: u32 = 6;
 
 impl Flattener<'_> {
     /// A sampler; its offset.
     pub fn sampler(&mut self, sampler: &Sampler) -> u32 {
-        let name = match sampler {
-            Sampler::Independent(sampler) => return self.slab.add([INDEPENDENT, sampler.key()]),
+        self.parts.rare_samplers |= !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_));
+        match sampler {
+            Sampler::Independent(sampler) => self.slab.add([INDEPENDENT, sampler.key()]),
             Sampler::ZSobol(sampler) => {
                 let (samples, side, randomize, key) = sampler.parts();
-                return self.slab.add([ZSOBOL, key, samples, side, randomize_word(randomize)]);
+                self.slab.add([ZSOBOL, key, samples, side, randomize_word(randomize)])
             }
             Sampler::PaddedSobol(padded) => {
-                self.parts.padded_sobol = true;
                 let (randomize, seed) = padded.parts();
                 let samples = sampler.samples_per_pixel();
-                return self.slab.add([PADDED_SOBOL, seed, samples, randomize_word(randomize)]);
+                self.slab.add([PADDED_SOBOL, seed, samples, randomize_word(randomize)])
             }
-            Sampler::Stratified(_) => "stratified",
-            Sampler::Halton(_) => "halton",
-            Sampler::Sobol(_) => "sobol",
-            Sampler::Pmj02Bn(_) => "pmj02bn",
-            Sampler::PrimarySample(_) => "of mutations",
-        };
-        self.refuse(format!("sampler `{name}`"), Span::NONE);
-        0
+            Sampler::Sobol(sobol) => {
+                let (randomize, seeds, log2_side, matrices) = sobol.parts();
+                let seeds_at = self.slab.add(seeds.iter().copied());
+                let matrices_at = self.slab.add(matrices.as_flattened().as_flattened().iter().copied());
+                let [randomize, dimensions] = [randomize_word(randomize), seeds.len() as u32];
+                self.slab.add([SOBOL, randomize, log2_side, dimensions, seeds_at, matrices_at])
+            }
+            Sampler::Halton(halton) => {
+                let (randomize, key) = halton.parts();
+                let primes = self.slab.add((0..PRIME_COUNT).map(prime));
+                self.slab.add([HALTON, key, randomize_word(randomize), PRIME_COUNT as u32, primes])
+            }
+            Sampler::Stratified(stratified) => {
+                let ([columns, rows], seed, jitter) = stratified.parts();
+                let key = jitter.unwrap_or_default();
+                self.slab.add([STRATIFIED, key, seed, columns, rows, jitter.is_some().into()])
+            }
+            Sampler::Pmj02Bn(sampler) => {
+                let (log2_samples, key) = sampler.parts();
+                self.slab.add([PMJ02BN, key, log2_samples])
+            }
+            Sampler::PrimarySample(_) => {
+                self.refuse("random numbers of mutations", Span::NONE);
+                0
+            }
+        }
     }
 }
 

@@ -4,7 +4,10 @@
 use crate::twins::{INPUTS, Law, OUTPUTS};
 use geometry::{FlatShape, ShapeSample, ShapeSampleContext};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, Vector3};
-use sampling::sampler::{Address, Independent, PaddedSobol, Randomize, ZSobol};
+use sampling::low_discrepancy::{
+    owen_scrambled_radical_inverse, permuted_radical_inverse, prime, radical_inverse,
+};
+use sampling::sampler::{Address, Independent, PaddedSobol, Pmj02Bn, Randomize, Stratified, ZSobol};
 use sampling::warp::*;
 use sampling::{HashSequence, Sampler};
 use scattering::*;
@@ -138,7 +141,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 44] = [
+pub const LAWS: [Law; 47] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -311,6 +314,64 @@ pub const LAWS: [Law; 44] = [
         let seed = bitcast<u32>(x[11]);
         let a = padded_sobol(address, seed, samples[kind], kind, true);
         y[0] = a.x; y[1] = a.y; y[2] = padded_sobol(address, seed, samples[kind], kind, false).x;"),
+    law!("Halton" 1e-6 0.0,
+        x => {
+            let dimension = [0, 1, 2, 5, 24, 167, 500, 999][(8.0 * x[9]) as usize % 8];
+            let index = (x[8] * 5000.0) as u32;
+            let hash = x[11].to_bits();
+            let numbers = [
+                radical_inverse(dimension, index.into()),
+                permuted_radical_inverse(dimension, index, hash),
+                owen_scrambled_radical_inverse(dimension, index.into(), hash),
+                prime(dimension) as f32,
+            ];
+            numbers.to_vec()
+        },
+        "var bases = array(2u, 3u, 5u, 13u, 97u, 997u, 3581u, 7919u);
+        let base = bases[u32(8.0 * x[9]) % 8];
+        let index = u32(x[8] * 5000.0);
+        let hash = bitcast<u32>(x[11]);
+        y[0] = halton(index, base, 0, hash); y[1] = halton(index, base, PERMUTE_DIGITS, hash);
+        y[2] = halton(index, base, FAST_OWEN, hash); y[3] = f32(base);"),
+    law!("Pmj02Bn" 0.0 0.0,
+        x => {
+            let samples = [1, 6, 64, 4096][(4.0 * x[10]) as usize % 4];
+            let pixel = [(x[6] * 100_000.0) as i32, (x[7] * 1000.0) as i32];
+            let (index, dimension) = ((x[8] * 5000.0) as u32, (x[9] * 99.0) as u32);
+            let pmj = Pmj02Bn::new(samples, x[11].to_bits());
+            let (log2_samples, key) = pmj.parts();
+            let mut sampler = Sampler::Pmj02Bn(pmj);
+            sampler.start_pixel_sample(pixel, index, dimension);
+            let p = sampler.get_2d();
+            sampler.start_pixel_sample(pixel, index, dimension);
+            vec![p.x, p.y, sampler.get_1d(), log2_samples as f32, (key % 1024) as f32]
+        },
+        "var log2_samples = array(0u, 3u, 6u, 12u);
+        let log2 = log2_samples[u32(4.0 * x[10]) % 4];
+        let pixel = array(u32(x[6] * 100000.0), u32(x[7] * 1000.0));
+        let address = Address(pixel, u32(x[8] * 5000.0), u32(x[9] * 99.0));
+        let key = mix_word(bitcast<u32>(x[11]));
+        let a = pmj02bn(address, log2, key, true);
+        y[0] = a.x; y[1] = a.y; y[2] = pmj02bn(address, log2, key, false).x;
+        y[3] = f32(log2); y[4] = f32(key % 1024);"),
+    law!("Stratified" 0.0 1e-7,
+        x => {
+            let grid = [[1, 1], [2, 3], [8, 8], [64, 16]][(4.0 * x[10]) as usize % 4];
+            let pixel = [(x[6] * 1000.0) as i32, (x[7] * 1000.0) as i32];
+            let (index, dimension) = ((x[8] * 5000.0) as u32, (x[9] * 99.0) as u32);
+            let mut sampler = Sampler::Stratified(Stratified::new(grid, x[9] < 0.5, x[11].to_bits()));
+            sampler.start_pixel_sample(pixel, index, dimension);
+            let p = sampler.get_2d();
+            sampler.start_pixel_sample(pixel, index, dimension);
+            vec![p.x, p.y, sampler.get_1d()]
+        },
+        "var grids = array(vec2u(1, 1), vec2u(2, 3), vec2u(8, 8), vec2u(64, 16));
+        let grid = grids[u32(4.0 * x[10]) % 4];
+        let address = Address(array(u32(x[6] * 1000.0), u32(x[7] * 1000.0)), u32(x[8] * 5000.0), u32(x[9] * 99.0));
+        let seed = bitcast<u32>(x[11]);
+        let key = mix_word(seed);
+        let a = stratified(address, grid, seed, key, x[9] < 0.5, true);
+        y[0] = a.x; y[1] = a.y; y[2] = stratified(address, grid, seed, key, x[9] < 0.5, false).x;"),
     law!("Ray" 1e-6 0.0,
         x => {
             let p = Point3Error::new(Vec3::new(x[6], x[7], x[8]), Vec3::new(x[9], x[10], x[11]) * 1e-4);

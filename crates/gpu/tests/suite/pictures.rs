@@ -15,8 +15,8 @@ use integrators::{
     AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, PixelLoop, RayCasting, RayIntegrator,
     Session, SessionState, Whitted,
 };
-use sampling::Sampler;
-use sampling::sampler::{Independent, PaddedSobol, Randomize};
+use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
+use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
@@ -264,11 +264,28 @@ fn bidirectional_paths_have_the_picture_of_the_cpu() {
 }
 
 #[test]
-fn padded_points_have_the_picture_of_the_cpu() {
+fn points_of_all_samplers_have_the_picture_of_the_cpu() {
     let Some(kernels) = kernels() else { return };
     let mut case = Case::named("depth-of-field");
-    case.sampler = Sampler::PaddedSobol(PaddedSobol::new(SAMPLES, Randomize::FastOwen, 7));
-    assert_eq!(case.compare("padded", &kernels, &Algorithm::RayCasting), None);
+    let size = case.desc.film.resolution;
+    let [none, digits, fast, owen] =
+        [Randomize::None, Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
+    case.light_sampler = Sampler::Stratified(Stratified::new([2, 1], true, 8));
+    for sampler in [
+        Sampler::PaddedSobol(PaddedSobol::new(SAMPLES, fast, 7)),
+        Sampler::Sobol(Sobol::new(SAMPLES, size, none, 7)),
+        Sampler::Sobol(Sobol::new(SAMPLES, size, owen, 7)),
+        Sampler::Halton(Halton::new(SAMPLES, none, 7)),
+        Sampler::Halton(Halton::new(SAMPLES, digits, 7)),
+        Sampler::Halton(Halton::new(SAMPLES, owen, 7)),
+        Sampler::Stratified(Stratified::new([1, 2], true, 7)),
+        Sampler::Stratified(Stratified::new([2, 1], false, 7)),
+        Sampler::Pmj02Bn(Pmj02Bn::new(SAMPLES, 7)),
+    ] {
+        let name = format!("{sampler:?}").chars().take(20).collect::<String>();
+        case.sampler = sampler;
+        assert_eq!(case.compare(&name, &kernels, &Algorithm::RayCasting), None);
+    }
 }
 
 /// Algorithms without kernels, and settings that kernels do not have.

@@ -47,7 +47,7 @@ fn kernels_are_valid() {
     // All parts but principled surfaces are constants of one text, whose branches are all
     // validated.
     for [has, principled] in [[false, false], [false, true], [true, false], [true, true]] {
-        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled, padded_sobol: has };
+        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled, rare_samplers: has };
         let valid = |name: &str, source: &str| {
             validate(source).unwrap_or_else(|error| panic!("{name}, {parts:?}: {error}"));
         };

@@ -5,7 +5,7 @@
 //! digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
 //! See [Pharr 2023 §8.6].
 
-use crate::{mix_bits, permutation_element};
+use crate::{mix_word, permutation_element};
 use math::ONE_MINUS_EPSILON;
 use std::sync::LazyLock;
 
@@ -39,7 +39,7 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
     if base == 2 {
         return to_unit(a.reverse_bits() as f64 * 0.5f64.powi(64));
     }
-    mirror(base, a, |a, _| a > 0, |_, digit| digit)
+    mirror(base, a, |a, _| a > 0, |digit| digit)
 }
 
 /// [`radical_inverse`] with each digit, leading zeros too, permuted by its position and `hash`.
@@ -49,15 +49,15 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
 /// same probability, as by random permutations, so that integrals have the same variance. The s are
 /// the digits of one random number; what is left of it stands for all leading zeros.
 #[inline]
-pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u64) -> f32 {
+pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u32) -> f32 {
     let base = prime(prime_index);
     let inverse_base = 1.0 / base as f64;
     // Binary fractions, whose digits in a base are the integer parts of repeated products.
-    let (mut shifts, mut multipliers) = (mix_bits(hash), mix_bits(!hash));
-    let next_digit = |fraction: &mut u64, base: u32| {
-        let product = *fraction as u128 * base as u128;
-        *fraction = product as u64;
-        (product >> 64) as u32
+    let (mut shifts, mut multipliers) = (mix_word(hash), mix_word(!hash));
+    let next_digit = |fraction: &mut u32, base: u32| {
+        let product = *fraction as u64 * base as u64;
+        *fraction = product as u32;
+        (product >> 32) as u32
     };
     let (mut mirrored, mut scale) = (0u64, 1.0);
     while a > 0 {
@@ -68,7 +68,7 @@ pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u64) -> f3
         scale *= inverse_base;
         a = next;
     }
-    to_unit((mirrored as f64 + shifts as f64 * 0.5f64.powi(64)) * scale)
+    to_unit((mirrored as f64 + shifts as f64 * 0.5f64.powi(32)) * scale)
 }
 
 /// [`radical_inverse`] with Owen scrambling: each digit permuted by those before it and
@@ -77,8 +77,12 @@ pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u64) -> f3
 pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> f32 {
     let base = prime(prime_index);
     let shows = |_, scale: f64| scale > VISIBLE;
-    let permute = |before: u64, digit| {
-        permutation_element(digit as u32, base, mix_bits(hash as u64 ^ before) as u32) as u64
+    // The permuted digits so far after a one, so that leading zeros count.
+    let mut before = 1_u32;
+    let permute = |digit| {
+        let permuted = permutation_element(digit as u32, base, mix_word(hash ^ before));
+        before = before.wrapping_mul(base).wrapping_add(permuted);
+        permuted as u64
     };
     mirror(base as u64, a, shows, permute)
 }
@@ -87,16 +91,21 @@ pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> 
 const VISIBLE: f64 = 0.5 * f32::EPSILON as f64;
 
 /// Mirrors the digits of `a`, while `more(rest, scale of the last digit)`, each replaced by
-/// `permute(mirrored digits before it, digit)`.
+/// `permute(digit)`.
 #[inline]
-fn mirror(base: u64, mut a: u64, more: impl Fn(u64, f64) -> bool, permute: impl Fn(u64, u64) -> u64) -> f32 {
+fn mirror(
+    base: u64,
+    mut a: u64,
+    more: impl Fn(u64, f64) -> bool,
+    mut permute: impl FnMut(u64) -> u64,
+) -> f32 {
     // Beyond this the mirrored integer might overflow.
     let limit = u64::MAX / base - base;
     let inverse_base = 1.0 / base as f64;
     let (mut mirrored, mut scale) = (0u64, 1.0f64);
     while more(a, scale) && mirrored < limit {
         let next = a / base;
-        mirrored = mirrored * base + permute(mirrored, a - next * base);
+        mirrored = mirrored * base + permute(a - next * base);
         scale *= inverse_base;
         a = next;
     }
@@ -130,7 +139,7 @@ mod tests {
     fn two_digits_become_any_two() {
         let mut counts = [0; 25];
         for hash in 0..20_000 {
-            let [x, y] = [1, 3].map(|a| (permuted_radical_inverse(2, a, mix_bits(hash)) * 5.0) as usize);
+            let [x, y] = [1, 3].map(|a| (permuted_radical_inverse(2, a, mix_word(hash)) * 5.0) as usize);
             counts[5 * x + y] += 1;
         }
         let expected: [f64; 25] = std::array::from_fn(|i| if i / 5 == i % 5 { 0.0 } else { 1000.0 });
@@ -142,8 +151,7 @@ mod tests {
         for prime_index in [0, 1, 3] {
             let base = prime(prime_index) as usize;
             for seed in 0..10 {
-                let permuted =
-                    |a: u64| permuted_radical_inverse(prime_index, a as u32, mix_bits(1 + seed as u64));
+                let permuted = |a: u64| permuted_radical_inverse(prime_index, a as u32, mix_word(1 + seed));
                 let owen = |a| owen_scrambled_radical_inverse(prime_index, a, seed);
                 for scrambled in [&permuted as &dyn Fn(u64) -> f32, &owen] {
                     let count = base * base;

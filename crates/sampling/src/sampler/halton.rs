@@ -10,7 +10,7 @@ use super::randomize::{Randomize, wrapped};
 use crate::low_discrepancy::{
     PRIME_COUNT, owen_scrambled_radical_inverse, permuted_radical_inverse, radical_inverse,
 };
-use crate::{hash, mix_bits};
+use crate::mix_word;
 use math::Vec2;
 
 /// Radical inverses in prime bases, randomised for each pixel, of any number of samples.
@@ -18,8 +18,9 @@ use math::Vec2;
 pub struct Halton {
     samples_per_pixel: u32,
     randomize: Randomize,
-    seed: u32,
-    pixel_hash: u64,
+    /// A hash of the seed.
+    key: u32,
+    pixel_hash: u32,
     index: u32,
     dimension: usize,
 }
@@ -29,7 +30,12 @@ impl Halton {
     /// for base 2.
     pub fn new(samples_per_pixel: u32, randomize: Randomize, seed: u32) -> Halton {
         let samples_per_pixel = samples_per_pixel.max(1);
-        Halton { samples_per_pixel, randomize, seed, pixel_hash: 0, index: 0, dimension: 0 }
+        Halton { samples_per_pixel, randomize, key: mix_word(seed), pixel_hash: 0, index: 0, dimension: 0 }
+    }
+
+    /// Randomisation, and the hash of the seed.
+    pub fn parts(&self) -> (Randomize, u32) {
+        (self.randomize, self.key)
     }
 
     pub(super) fn samples_per_pixel(&self) -> u32 {
@@ -37,8 +43,9 @@ impl Halton {
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
-        self.pixel_hash = hash(&[pixel[0] as u32, pixel[1] as u32, self.seed]);
-        let start = if self.randomize == Randomize::None { self.pixel_hash as u32 } else { 0 };
+        let [x, y] = pixel.map(|i| i as u32);
+        self.pixel_hash = mix_word(mix_word(self.key ^ x) ^ y);
+        let start = if self.randomize == Randomize::None { self.pixel_hash } else { 0 };
         self.index = start.wrapping_add(index);
         self.dimension = dimension as usize;
     }
@@ -70,12 +77,12 @@ impl Halton {
     }
 
     fn coordinate(&self, dimension: usize) -> f32 {
-        let hash = mix_bits(self.pixel_hash ^ dimension as u64);
+        let hash = mix_word(self.pixel_hash ^ mix_word(dimension as u32));
         match self.randomize {
             Randomize::None => radical_inverse(dimension, self.index as u64),
             Randomize::PermuteDigits => permuted_radical_inverse(dimension, self.index, hash),
             Randomize::FastOwen | Randomize::Owen => {
-                owen_scrambled_radical_inverse(dimension, self.index as u64, hash as u32)
+                owen_scrambled_radical_inverse(dimension, self.index as u64, hash)
             }
         }
     }

@@ -45,6 +45,11 @@ impl Pmj02Bn {
         Pmj02Bn { log2_samples, key: mix_word(seed), address: Address::new([0; 2], 0, 0) }
     }
 
+    /// The binary logarithm of the number of samples, and the hash of the seed.
+    pub fn parts(&self) -> (u32, u32) {
+        (self.log2_samples, self.key)
+    }
+
     pub(super) fn samples_per_pixel(&self) -> u32 {
         1 << self.log2_samples
     }

@@ -51,6 +51,13 @@ impl Sobol {
         }
     }
 
+    /// Randomisation, the hash of each dimension, the binary logarithm of the side of the square of
+    /// pixels, and for each dimension the digits that each bit of a pixel (x's above y's) adds, and
+    /// those of each bit of the index.
+    pub fn parts(&self) -> (Randomize, &[u32], u32, &[[[u32; 32]; 2]]) {
+        (self.randomize, &self.seeds, self.log2_side, &self.matrices)
+    }
+
     pub(super) fn samples_per_pixel(&self) -> u32 {
         self.samples_per_pixel
     }
