@@ -12,9 +12,9 @@
 //! Facets that refract all light are expanded likewise, over the cosine in the thinner medium.
 //! Roughness is √α.
 
-use super::grid::{Grid, Place};
+use crate::grid::{Grid, Place, from, round};
 use crate::{TrowbridgeReitz, reflect, refract};
-use math::{Vec2, Vec3, Vector3, safe_sqrt, sqr};
+use math::{Vector3, safe_sqrt, sqr};
 use std::sync::LazyLock;
 
 /// Hat functions, of maxima at the squares of 0, 1/9, … 1, which are nodes of the tables.
@@ -81,12 +81,12 @@ impl White {
     fn compute(facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         let mut sums = [[0f64; HATS]; 2];
         let own = hats(wo.z);
-        for wm in visible_normals(facets, wo) {
+        for wm in facets.visible_normals(wo, STEPS) {
             let wi = reflect(wo, wm);
             if wi.z <= 0.0 {
                 continue;
             }
-            let kept = kept(facets, wo, wi);
+            let kept = facets.kept(wo, wi);
             let [met, lower] = [hats(wo.dot(wm)), hats(wo.z.min(wi.z))];
             for k in 0..HATS {
                 sums[0][k] += f64::from(kept * met[k]);
@@ -141,13 +141,13 @@ impl Glass {
     fn compute(eta: f32, facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         let mut sums = [[0f64; HATS]; 2];
         let mut total = 0.0;
-        for wm in visible_normals(facets, wo) {
+        for wm in facets.visible_normals(wo, STEPS) {
             let reflected = reflect(wo, wm);
             let (refracted, _, is_refracted) = refract(wo, wm, eta);
             let outer = if eta < 1.0 { -refracted.dot(wm) } else { wo.dot(wm) };
             let met = hats(outer);
             for (i, wi) in [reflected, -refracted].into_iter().enumerate() {
-                let share = if wi.z > 0.0 { f64::from(kept(facets, wo, wi)) } else { 0.0 };
+                let share = if wi.z > 0.0 { f64::from(facets.kept(wo, wi)) } else { 0.0 };
                 if is_refracted {
                     (0..HATS).for_each(|k| sums[i][k] += share * f64::from(met[k]));
                 } else if i == 0 {
@@ -158,26 +158,4 @@ impl Glass {
         let [reflected, refracted] = sums.map(|sum| sum.map(|value| (value / NORMALS) as f32));
         Self { reflected, refracted, total: (total / NORMALS) as f32 }
     }
-}
-
-/// Facets that are alike both ways.
-fn round(roughness: f32) -> TrowbridgeReitz {
-    TrowbridgeReitz::new(sqr(roughness), sqr(roughness))
-}
-
-/// A direction of a cosine.
-fn from(cosine: f32) -> Vector3 {
-    let cosine = cosine.max(1e-4);
-    Vec3::new(safe_sqrt(1.0 - sqr(cosine)), 0.0, cosine)
-}
-
-/// Normals of facets that a direction sees, each of the same share of what it sees.
-fn visible_normals(facets: &TrowbridgeReitz, wo: Vector3) -> impl Iterator<Item = Vector3> {
-    let middle = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    (0..STEPS * STEPS).map(move |i| facets.sample_wm(wo, Vec2::new(middle(i % STEPS), middle(i / STEPS))))
-}
-
-/// The share of the light from facets seen by `wo` that leaves to `wi`.
-fn kept(facets: &TrowbridgeReitz, wo: Vector3, wi: Vector3) -> f32 {
-    facets.g(wo, wi) / facets.g1(wo)
 }

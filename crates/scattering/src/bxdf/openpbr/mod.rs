@@ -36,7 +36,6 @@ mod facets;
 mod film;
 mod fuzz;
 mod glass;
-mod grid;
 mod mirror;
 mod oren_nayar;
 mod parameters;
