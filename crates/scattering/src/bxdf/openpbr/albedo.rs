@@ -10,10 +10,11 @@
 //! ```
 //!
 //! Facets that refract all light are expanded likewise, over the cosine in the thinner medium.
-//! Roughness is √α.
+//! Where the direction there is nearer to the horizon than that to the facet, a layer takes more;
+//! this loss has the weight 1 − F of the bare boundary. Roughness is √α.
 
 use crate::grid::{Grid, Place, from, round};
-use crate::{TrowbridgeReitz, reflect, refract};
+use crate::{TrowbridgeReitz, fr_dielectric, reflect, refract};
 use math::{Vector3, safe_sqrt, sqr};
 use std::sync::LazyLock;
 
@@ -106,6 +107,9 @@ pub(super) struct Glass {
     pub reflected: Hats,
     /// What is kept of light that is refracted.
     pub refracted: Hats,
+    /// What of it is lost under a layer, by the layer's transmittance, for light from the denser
+    /// medium.
+    pub losses: Hats,
     /// What is kept of light that can only be reflected.
     pub total: f32,
 }
@@ -125,12 +129,14 @@ impl Glass {
             return Self::compute(eta, facets, wo);
         }
         let place: Place = Place::new((eta - 1.0) / (eta + 1.0) + 0.5, INDICES);
-        let mut sum = Self { reflected: [0.0; HATS], refracted: [0.0; HATS], total: 0.0 };
+        let none = [0.0; HATS];
+        let mut sum = Self { reflected: none, refracted: none, losses: none, total: 0.0 };
         for (i, share) in place.weights().into_iter().enumerate() {
             for (weight, node) in TABLE[place.index as usize + i].around(facets.mean_alpha().sqrt(), wo.z) {
                 for k in 0..HATS {
                     sum.reflected[k] += share * weight * node.reflected[k];
                     sum.refracted[k] += share * weight * node.refracted[k];
+                    sum.losses[k] += share * weight * node.losses[k];
                 }
                 sum.total += share * weight * node.total;
             }
@@ -139,7 +145,7 @@ impl Glass {
     }
 
     fn compute(eta: f32, facets: &TrowbridgeReitz, wo: Vector3) -> Self {
-        let mut sums = [[0f64; HATS]; 2];
+        let mut sums = [[0f64; HATS]; 3];
         let mut total = 0.0;
         for wm in facets.visible_normals(wo, STEPS) {
             let reflected = reflect(wo, wm);
@@ -153,9 +159,14 @@ impl Glass {
                 } else if i == 0 {
                     total += share;
                 }
+                if is_refracted && i == 1 && eta < 1.0 {
+                    let passed = share * f64::from(1.0 - fr_dielectric(outer, 1.0 / eta));
+                    let lower = hats(outer.min(wi.z.max(0.0)));
+                    (0..HATS).for_each(|k| sums[2][k] += passed * f64::from(met[k] - lower[k]));
+                }
             }
         }
-        let [reflected, refracted] = sums.map(|sum| sum.map(|value| (value / NORMALS) as f32));
-        Self { reflected, refracted, total: (total / NORMALS) as f32 }
+        let [reflected, refracted, losses] = sums.map(|sum| sum.map(|value| (value / NORMALS) as f32));
+        Self { reflected, refracted, losses, total: (total / NORMALS) as f32 }
     }
 }
