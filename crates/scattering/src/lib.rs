@@ -14,6 +14,7 @@ mod bssrdf;
 mod bxdf;
 mod flags;
 mod fresnel;
+mod grid;
 mod interior;
 mod microfacet;
 mod phase;

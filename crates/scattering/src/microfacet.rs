@@ -140,3 +140,16 @@ impl<R: Real> TrowbridgeReitz<R> {
         }
     }
 }
+
+impl TrowbridgeReitz {
+    /// `steps`² normals of facets that a direction sees, each of the same share of what it sees.
+    pub(crate) fn visible_normals(&self, wo: Vector3, steps: usize) -> impl Iterator<Item = Vector3> {
+        let middle = move |i: usize| (i as f32 + 0.5) / steps as f32;
+        (0..steps * steps).map(move |i| self.sample_wm(wo, Vec2::new(middle(i % steps), middle(i / steps))))
+    }
+
+    /// The share of the light from facets seen by `wo` that leaves to `wi`.
+    pub(crate) fn kept(&self, wo: Vector3, wi: Vector3) -> f32 {
+        self.g(wo, wi) / self.g1(wo)
+    }
+}

@@ -46,10 +46,18 @@ fn Chances_new(surface: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, mode: 
         let left = select(0.0f, Shares_metal_rest(shares) * weights_1.metal, has_rest);
         rest += surface.metal_again * left;
     }
+    var seen = shares.seen;
+    var coat = weights_1.layers * shares.coat;
+    let is_tilted = OpenPbr_is_tilted(surface);
+    if ((mode == TransportMode_Importance) && is_tilted) {
+        let least = ((0.1f * weights_1.layers) * Shares_below_fuzz(shares)) * surface.stack.coat_weight;
+        coat = select(coat, real_max(coat, least), is_tilted);
+        seen = 1.0f;
+    }
     let is_coated = surface.stack.coat_weight > 0.0f;
     if (is_coated) {
         let length_1 = 2.0f * OpenPbr_coat_length(surface, cosine);
-        let opaque = surface.darkening * OpenPbr_absorbed(surface, length_1);
+        let opaque = (surface.darkening * OpenPbr_absorbed(surface, length_1)) * seen;
         reflected = SampledSpectrum_select(is_coated, reflected * opaque, reflected);
         rest = SampledSpectrum_select(is_coated, rest * opaque, rest);
     }
@@ -67,21 +75,21 @@ fn Chances_new(surface: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, mode: 
         let mean_1 = select(rests.glass_above, rests.glass_below, is_inside);
         let passes = select(rests.through_above, rests.through_below, is_inside);
         let left_2 = select(0.0f, left_1, mean_1 > 0.0f);
-        rest_1 += (glass * left_2) * (1.0f - passes);
-        let tint = glass * SampledSpectrum_average(surface.transmission_color);
+        let glass_1 = select(glass * seen, glass, is_inside);
+        rest_1 += (glass_1 * left_2) * (1.0f - passes);
+        let tint = glass_1 * SampledSpectrum_average(surface.transmission_color);
         through = (tint * left_2) * passes;
         if (surface.stack.is_thin) {
-            reflected_1 += glass * reflects;
+            reflected_1 += glass_1 * reflects;
             facets = tint * refracts;
         } else {
-            facets = (glass * reflects) + (tint * refracts);
+            facets = (glass_1 * reflects) + (tint * refracts);
         }
     }
     if (surface.stack.is_thin) {
         let transmitted = (shares.diffuse_rest * surface.scattered) * surface.darkening;
-        through += SampledSpectrum_average(transmitted) * (surface.forward * weights_1.diffuse);
+        through += SampledSpectrum_average(transmitted) * ((surface.forward * weights_1.diffuse) * seen);
     }
-    let coat = weights_1.layers * taken.coat;
     var under = 0.0f;
     if ((mode == TransportMode_Radiance) && (weights_1.under > 0.0f)) {
         let color_1 = surface.subsurface_color;
@@ -193,8 +201,10 @@ fn Chances_choose(this_: Chances, u: f32) -> ChosenLobe {
 }
 
 // The density of `wi`, off the horizon.
-fn Chances_pdf(this_: Chances, surface: OpenPbr, wo: vec3f, wi: vec3f, directions: u32) -> f32 {
-    return DensityOf_run(DensityOf(this_, surface, wo, wi, directions));
+fn Chances_pdf(this_: Chances, surface: OpenPbr, argument_2: array<vec3f, 2>, mode: u32, directions: u32) -> f32 {
+    let wo = argument_2[0];
+    let wi = argument_2[1];
+    return DensityOf_run(DensityOf(this_, surface, wo, wi, mode, directions));
 }
 
 // The density of a direction.
@@ -203,6 +213,7 @@ struct DensityOf {
     surface: OpenPbr,
     wo: vec3f,
     wi: vec3f,
+    mode: u32,
     directions: u32,
 }
 
@@ -211,6 +222,7 @@ fn DensityOf_run(this_: DensityOf) -> f32 {
     let surface = this_.surface;
     let wo = this_.wo;
     let wi = this_.wi;
+    let mode = this_.mode;
     let directions = this_.directions;
     let parts = chances.of_;
     let fuzz = parts[0];
@@ -237,7 +249,7 @@ fn DensityOf_run(this_: DensityOf) -> f32 {
         return across;
     }
     if (coat > 0.0f) {
-        pdf += select(0.0f, coat * OpenPbr_pdf_coat(surface, up, out), coat > 0.0f);
+        pdf += select(0.0f, coat * OpenPbr_pdf_coat(surface, up, out, mode), coat > 0.0f);
     }
     if (facets > 0.0f) {
         pdf += facets * Mirror_new(surface.stack.base, up, out).pdf;

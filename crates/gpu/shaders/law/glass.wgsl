@@ -124,7 +124,9 @@ fn OpenPbr_transmitted(this_: OpenPbr, shares: array<Shares, 2>, rests: Rests, a
         let scale_2 = chosen;
         f += SampledSpectrum_splat(select(0.0f, down * scale_2, has_rest));
     }
-    return ((f * this_.transmission_color) * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, outside.z))) * OpenPbr_glass(this_);
+    let is_outside = of_viewer(vec2f(wo.z, wi.z), mode) > 0.0f;
+    let seen = select(1.0f, of_viewer(vec2f(o.seen, i.seen), mode), is_outside);
+    return ((f * this_.transmission_color) * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, outside.z))) * (OpenPbr_glass(this_) * seen);
 }
 
 // The reflectance of glass from inside.

@@ -159,6 +159,22 @@ fn upright(below: bool, w: vec3f) -> vec3f {
     return select(w, -w, below);
 }
 
+// Of what belongs to `wo` and to `wi` that of the direction from which light is seen.
+fn of_viewer(argument_0: vec2f, mode: u32) -> f32 {
+    let o = argument_0.x;
+    let i = argument_0.y;
+    if (mode == TransportMode_Radiance) {
+        return o;
+    } else {
+        return i;
+    }
+}
+
+// A direction mirrored by the plane of the surface.
+fn turned(w: vec3f) -> vec3f {
+    return vec3f(w.x, w.y, -w.z);
+}
+
 // A sample of the mirror images of a direction above in facets, without its value, and of the
 // density only that of a smooth surface.
 fn mirrored(facets: TrowbridgeReitz, wo: vec3f, u: vec2f) -> BsdfSample {
@@ -285,7 +301,7 @@ fn OpenPbrDensity_run(this_: OpenPbrDensity) -> f32 {
     let shares = OpenPbr_shares(surface, wo);
     let rests = OpenPbr_rests(surface);
     let chances = Chances_new(surface, shares, rests, wo, mode, directions);
-    return select(0.0f, Chances_pdf(chances, surface, wo, wi, directions), valid);
+    return select(0.0f, Chances_pdf(chances, surface, array<vec3f, 2>(wo, wi), mode, directions), valid);
 }
 
 // A sample of directions.
@@ -323,7 +339,7 @@ fn OpenPbrSample_run(this_: OpenPbrSample) -> BsdfSample {
     let rests = OpenPbr_rests(surface);
     let chances = Chances_new(surface, shares, rests, wo, mode, directions);
     let choice = Chances_choose(chances, uc);
-    let sample_1 = OpenPbr_direction(surface, wo, choice, u, directions);
+    let sample_1 = OpenPbr_direction(surface, wo, choice, u, mode, directions);
     valid = (valid & (choice.chance > 0.0f)) & sample_1.valid;
     let is_under = choice.lobe == u32(chances_UNDER);
     let is_specular = BxdfFlags_is_specular(sample_1.flags);
@@ -344,7 +360,7 @@ fn OpenPbrSample_run(this_: OpenPbrSample) -> BsdfSample {
         let there = OpenPbr_shares(surface, sample_1.wi);
         let value_1 = OpenPbr_value(surface, array<Shares, 2>(shares, there), rests, array<vec3f, 2>(wo, sample_1.wi), mode);
         f = SampledSpectrum_select(is_wide, value_1, f);
-        pdf = select(pdf, Chances_pdf(chances, surface, wo, sample_1.wi, directions), is_wide);
+        pdf = select(pdf, Chances_pdf(chances, surface, array<vec3f, 2>(wo, sample_1.wi), mode, directions), is_wide);
         valid = valid & (!is_wide | ((pdf > 0.0f) & is_off_horizon(sample_1.wi)));
     }
     return BsdfSample(f, sample_1.wi, pdf, sample_1.flags, sample_1.eta, sample_1.pdf_is_proportional, valid);
@@ -352,7 +368,7 @@ fn OpenPbrSample_run(this_: OpenPbrSample) -> BsdfSample {
 
 // A direction of the lobe that is chosen, without its value, and of the density only that of
 // a smooth surface.
-fn OpenPbr_direction(this_: OpenPbr, wo: vec3f, choice: ChosenLobe, u: vec2f, directions: u32) -> BsdfSample {
+fn OpenPbr_direction(this_: OpenPbr, wo: vec3f, choice: ChosenLobe, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
     let is_below = wo.z < 0.0f;
     let up = upright(is_below, wo);
     let is_fuzz = choice.lobe == u32(chances_FUZZ);
@@ -380,7 +396,7 @@ fn OpenPbr_direction(this_: OpenPbr, wo: vec3f, choice: ChosenLobe, u: vec2f, di
         sample.eta = select(sample.eta, met, is_through);
     }
     if (is_coat) {
-        sample = BsdfSample_select(is_coat, OpenPbr_sample_coat(this_, up, u), sample);
+        sample = BsdfSample_select(is_coat, OpenPbr_sample_coat(this_, up, choice.u, u, mode), sample);
     }
     if (is_facets) {
         sample = BsdfSample_select(is_facets, mirrored(this_.stack.base, up, u), sample);

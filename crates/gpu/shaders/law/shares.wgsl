@@ -4,6 +4,8 @@
 // Shares of the light from one direction above, as they were if nothing absorbed.
 struct Shares {
     taken: Taken,
+    coat: f32,
+    seen: f32,
     dielectric: vec4f,
     diffuse_rest: vec4f,
     reflected: f32,
@@ -68,7 +70,7 @@ fn OpenPbr_shares(this_: OpenPbr, w: vec3f) -> Shares {
 // The same where glass is no sheet, without what is inside.
 fn OpenPbr_bulk_shares(this_: OpenPbr, w: vec3f) -> Shares {
     let taken = OpenPbrTable_taken(this_.table, this_.location, this_.waves.x, w);
-    var shares = Shares(taken, SampledSpectrum_splat(taken.dielectric), SampledSpectrum_splat(real_max(taken.left - taken.dielectric, 0.0f)), taken.dielectric, taken.refracted, real_max((taken.left - taken.dielectric) - taken.refracted, 0.0f), Inside(0.0f, 0.0f, 0.0f));
+    var shares = Shares(taken, taken.coat, 1.0f, SampledSpectrum_splat(taken.dielectric), SampledSpectrum_splat(real_max(taken.left - taken.dielectric, 0.0f)), taken.dielectric, taken.refracted, real_max((taken.left - taken.dielectric) - taken.refracted, 0.0f), Inside(0.0f, 0.0f, 0.0f));
     if (OpenPbrTable_has_film(this_.table)) {
         var refracted = shares.diffuse_rest;
         var rest = shares.diffuse_rest;

@@ -1,11 +1,6 @@
 // Translated from crates/scattering/src/bxdf/openpbr/thin.rs
 // by `cargo xtask wgsl`, which translates it again.
 
-// A direction mirrored by the sheet.
-fn turned(w: vec3f) -> vec3f {
-    return vec3f(w.x, w.y, -w.z);
-}
-
 // What a smooth sheet reflects and transmits of light at a cosine.
 fn OpenPbr_sheet_shares(this_: OpenPbr, cosine: f32) -> array<vec4f, 2> {
     let one = SampledSpectrum_splat(1.0f);
@@ -23,9 +18,11 @@ fn OpenPbr_scattered(this_: OpenPbr, share_1: f32, wo: vec3f, wi: vec3f) -> vec4
 }
 
 // The value of a thin wall for a direction above and one below.
-fn OpenPbr_passed_through(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests, wo: vec3f, wi: vec3f) -> vec4f {
+fn OpenPbr_passed_through(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests, argument_3: array<vec3f, 2>, mode: u32) -> vec4f {
     let o = argument_1[0];
     let i = argument_1[1];
+    let wo = argument_3[0];
+    let wi = argument_3[1];
     let wi_1 = turned(wi);
     let weights_1 = OpenPbr_weights(this_, 1.0f);
     var f = SampledSpectrum_zero();
@@ -45,7 +42,8 @@ fn OpenPbr_passed_through(this_: OpenPbr, argument_1: array<Shares, 2>, rests: R
         let left_1 = SampledSpectrum_safe_div(o.diffuse_rest * i.diffuse_rest, rests.diffuse);
         f += ((OpenPbr_scattered(this_, this_.forward, wo, wi_1) * left_1) * this_.darkening) * weights_1.diffuse;
     }
-    return f * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z) + OpenPbr_coat_length(this_, wi_1.z));
+    let seen = of_viewer(vec2f(o.seen, i.seen), mode);
+    return (f * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z) + OpenPbr_coat_length(this_, wi_1.z))) * seen;
 }
 
 // A direction in which a sheet of glass transmits light from one above, without its value, and

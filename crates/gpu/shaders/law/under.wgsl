@@ -68,7 +68,7 @@ fn OpenPbr_share_under(this_: OpenPbr, z: f32) -> f32 {
 
 // What of the light to `wo`, above, comes from under the surface, over what does of all.
 fn OpenPbr_goes_under(this_: OpenPbr, shares: Shares, wo: vec3f) -> vec4f {
-    let weight_1 = OpenPbr_weights(this_, 1.0f).diffuse * this_.subsurface_weight;
+    let weight_1 = (OpenPbr_weights(this_, 1.0f).diffuse * this_.subsurface_weight) * shares.seen;
     return ((shares.diffuse_rest * this_.darkening) * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z))) * weight_1;
 }
 

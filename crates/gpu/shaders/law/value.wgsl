@@ -56,7 +56,13 @@ fn OpenPbr_reflected(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests,
     }
     let is_coated = this_.stack.coat_weight > 0.0f;
     if (is_coated) {
-        let coat = OpenPbr_coat(this_, wo, wi, mode) * real_min(Shares_below_fuzz(o), Shares_below_fuzz(i));
+        var below_fuzz = real_min(Shares_below_fuzz(o), Shares_below_fuzz(i));
+        let is_tilted = OpenPbr_is_tilted(this_);
+        if (is_tilted) {
+            let seen = of_viewer(vec2f(Shares_below_fuzz(o), Shares_below_fuzz(i)), mode);
+            below_fuzz = select(below_fuzz, seen, is_tilted);
+        }
+        let coat = OpenPbr_coat(this_, wo, wi, mode) * below_fuzz;
         let coat_1 = (coat * this_.stack.coat_weight) * weights_1.layers;
         f += SampledSpectrum_splat(select(0.0f, coat_1, is_coated));
     }
@@ -81,7 +87,8 @@ fn OpenPbr_reflected(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests,
         let again = (left_2 * (1.0f - rests.through_above)) * weights_1.glass;
         base += SampledSpectrum_splat(select(0.0f, again, has_glass_rest));
     }
-    return f + (base * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z) + OpenPbr_coat_length(this_, wi.z)));
+    let seen_1 = of_viewer(vec2f(o.seen, i.seen), mode);
+    return f + ((base * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z) + OpenPbr_coat_length(this_, wi.z))) * seen_1);
 }
 
 // The value of the fibres.
@@ -156,10 +163,23 @@ fn OpenPbr_specular(this_: OpenPbr, shares: Shares, wo: vec3f, lobe: u32, sample
             }
         }
     }
+    var seen = shares.seen;
+    var below_fuzz = Shares_below_fuzz(shares);
+    let is_tilted = OpenPbr_is_tilted(this_);
+    if ((mode == TransportMode_Importance) && is_tilted) {
+        let there = OpenPbr_shares(this_, wi);
+        seen = there.seen;
+        below_fuzz = select(below_fuzz, Shares_below_fuzz(there), is_tilted);
+    }
+    if (!this_.stack.is_thin) {
+        let is_inside_1 = is_glass & (of_viewer(vec2f(wo.z, wi.z), mode) < 0.0f);
+        seen = select(seen, 1.0f, is_inside_1);
+    }
+    value_1 *= seen;
     if (is_coat) {
         let up = upright(!is_above_1, wo);
         let out = upright(!is_above_1, wi);
-        let coat = OpenPbr_specular_coat(this_, up, out, mode) * Shares_below_fuzz(shares);
+        let coat = OpenPbr_specular_coat(this_, up, out, mode) * below_fuzz;
         let coat_1 = SampledSpectrum_splat((coat * this_.stack.coat_weight) * layers);
         value_1 = SampledSpectrum_select(is_coat, coat_1, value_1);
     }
@@ -181,12 +201,7 @@ fn OpenPbr_refracted(this_: OpenPbr, shares: Shares, wo: vec3f, wi: vec3f) -> ve
     let tint = this_.transmission_color * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, outside));
     var passed = shares.taken.below_coat;
     if (!is_above_1) {
-        var outwards = OpenPbr_passed(this_, outside);
-        let is_tilted = OpenPbr_is_tilted(this_);
-        if (is_tilted) {
-            outwards = select(outwards, OpenPbr_shares(this_, wi).taken.below_coat, is_tilted);
-        }
-        passed = select(outwards, passed, is_above_1);
+        passed = select(OpenPbr_passed(this_, outside), passed, is_above_1);
     }
     return ((SampledSpectrum_splat(1.0f) - reflected) * tint) * (passed * OpenPbr_glass(this_));
 }
@@ -244,7 +259,7 @@ fn ValueOf_run(this_: ValueOf) -> vec4f {
             f = OpenPbr_reflected(surface, shares, rests, array<vec3f, 2>(up_0, up_1), mode, OpenPbr_weights(surface, 1.0f));
         }
         if (!is_same) {
-            let through = OpenPbr_passed_through(surface, shares, rests, up_0, up_1);
+            let through = OpenPbr_passed_through(surface, shares, rests, array<vec3f, 2>(up_0, up_1), mode);
             f = SampledSpectrum_select(is_same, f, through);
         }
         return f;

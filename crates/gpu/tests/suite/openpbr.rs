@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use alhazen_gpu::openpbr_table;
+use math::Vec3;
 use scattering::{OpenPbr, OpenPbrParameters, OpenPbrTable};
 use spectrum::SampledWavelengths;
 
@@ -34,6 +35,9 @@ fn words() -> Vec<u32> {
     words
 }
 
+/// The normal of the coat of half of the surfaces.
+const TILTED: Vec3 = Vec3::new(0.36, -0.48, 0.8);
+
 fn surface(x: &Row) -> OpenPbr<'static> {
     let parameters = OpenPbrParameters {
         base_color: spectrum(x, 0.9),
@@ -44,6 +48,7 @@ fn surface(x: &Row) -> OpenPbr<'static> {
         coat_weight: x[6],
         coat_color: spectrum(x, 1.0),
         coat_roughness: 0.3,
+        geometry_coat_normal: if x[7] < 0.5 { TILTED } else { Vec3::Z },
         fuzz_weight: x[7],
         thin_film_weight: 0.5,
         ..OpenPbrParameters::default()
@@ -58,7 +63,8 @@ macro_rules! surface {
             "let s = vec4f(x[6], x[7], x[8], x[9]);
             let white = vec4f(1);
             let p = OpenPbrParameters(1.0, s * 0.9, 0.4, 0.5 * x[9], 1.0, white, 0.2 + 0.8 * x[10], 0.0, 1.5,
-                x[11], white, 0.0, vec4f(0.8), vec4f(), 0.0, x[6], s, 0.3, 0.0, 1.6, 1.0, vec3f(0, 0, 1),
+                x[11], white, 0.0, vec4f(0.8), vec4f(), 0.0, x[6], s, 0.3, 0.0, 1.6, 1.0,
+                select(vec3f(0, 0, 1), vec3f(0.36, -0.48, 0.8), x[7] < 0.5),
                 x[7], white, 0.5, 0.5, 0.5, 1.4, false);
             let b = OpenPbr_new(0, p, SampledWavelengths_sample_visible(0.3));",
             $rest

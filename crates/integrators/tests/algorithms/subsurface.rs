@@ -6,9 +6,11 @@ use description::{
     MediumKind, PathDesc, RadiosityDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc,
     SubsurfaceScattering,
 };
-use math::Point3;
+use math::{Point3, Vec2};
 use scattering::SubsurfaceMethod::{Diffusion, RandomWalk};
-use scattering::{BssrdfTable, fr_dielectric};
+use scattering::{
+    BssrdfTable, Dielectric, Directions, Scatter, TransportMode, TrowbridgeReitz, fr_dielectric,
+};
 use scene::{Interfaces, Scene};
 use testkit::{Moments, welch_test};
 
@@ -141,15 +143,30 @@ fn diffusion_is_near_to_a_walk_in_a_half_space() {
     }
 }
 
-/// Of the light of a uniform sky that enters through a smooth boundary, a walk returns the
-/// reflectance that was asked for: the mean over directions by their cosine, whose squares are
-/// uniform.
+/// What a boundary reflects of the light from a direction of this cosine, once by its facets.
+fn reflected(cosine: f32, roughness: f32) -> f64 {
+    const SIDE: usize = 64;
+    let alpha = TrowbridgeReitz::roughness_to_alpha(roughness);
+    let boundary = Dielectric { eta: ETA, distribution: TrowbridgeReitz::new(alpha, alpha) };
+    let wo = v((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let middle = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+    let samples = (0..SIDE * SIDE).map(|i| {
+        let u = Vec2::new(middle(i % SIDE), middle(i / SIDE));
+        let sample = boundary.sample_f(wo, 0.0, u, TransportMode::Radiance, Directions::Reflection);
+        if sample.valid { f64::from(sample.f[0] * sample.wi.z / sample.pdf) } else { 0.0 }
+    });
+    samples.sum::<f64>() / (SIDE * SIDE) as f64
+}
+
+/// Of the light of a uniform sky that a boundary does not reflect, a walk returns the reflectance
+/// that was asked for: the mean over directions by their cosine, whose squares are uniform.
 #[test]
 fn walks_return_the_reflectance_that_is_asked_for() {
     const DIRECTIONS: usize = 8;
     let plane = || quad(v(-1e4, -1e4, 0.0), v(2e4, 0.0, 0.0), v(0.0, 2e4, 0.0));
-    for (reflectance, g) in [(0.3, 0.0), (0.8, 0.0), (0.6, 0.7)] {
-        let mut material = body(reflectance, 0.1, 0.0);
+    let cases = [(0.3, 0.0, 0.0), (0.8, 0.0, 0.0), (0.6, 0.7, 0.0), (0.6, 0.0, 0.3), (0.6, 0.7, 1.0)];
+    for (reflectance, g, roughness) in cases {
+        let mut material = body(reflectance, 0.1, roughness);
         if let MaterialKind::Subsurface { g: asymmetry, method, .. } = &mut material {
             (*asymmetry, *method) = (g, RandomWalk);
         }
@@ -159,7 +176,7 @@ fn walks_return_the_reflectance_that_is_asked_for() {
             let cosine = ((i as f32 + 0.5) / DIRECTIONS as f32).sqrt();
             let d = v((1.0 - cosine * cosine).sqrt(), 0.0, -cosine);
             let found = radiance(&mut path(1), &scene, v(0.0, 0.0, 1.0), d, 10_000);
-            let reflected = f64::from(fr_dielectric(cosine, ETA));
+            let reflected = reflected(cosine, roughness);
             returned += found.mean - reflected;
             entered += 1.0 - reflected;
             variance += found.variance_of_mean();
@@ -167,7 +184,8 @@ fn walks_return_the_reflectance_that_is_asked_for() {
         let (share, error) = (returned / entered, variance.sqrt() / entered);
         // Half a percent for the errors of the table.
         let bound = 4.0 * error + 0.005;
-        assert!((share - f64::from(reflectance)).abs() < bound, "{reflectance} {g}: {share} ± {error}");
+        let message = format!("{reflectance} {g} {roughness}: {share} ± {error}");
+        assert!((share - f64::from(reflectance)).abs() < bound, "{message}");
     }
 }
 

@@ -18,6 +18,7 @@
 //!
 //! Sources: [Jensen 2001], [Habel 2013], [King 2013], [Pharr 2016 §11.4, §15.4, §15.5].
 
+mod boundary;
 mod diffusion;
 mod method;
 mod spline;
@@ -27,7 +28,7 @@ mod walks;
 pub use method::SubsurfaceMethod;
 pub use table::BssrdfTable;
 
-use crate::{HenyeyGreenstein, Interior, NormalizedFresnel};
+use crate::{HenyeyGreenstein, Interior, NormalizedFresnel, TrowbridgeReitz};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};
 use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;
@@ -66,14 +67,16 @@ impl<'a> Bssrdf<'a> {
         Self { table, sigma_t, albedo: sigma_s.safe_div(sigma_t) }
     }
 
-    /// Of a medium of a mean free path that has an effective albedo by a method.
+    /// Of a medium of a mean free path that has an effective albedo by a method, under a boundary
+    /// of facets.
     pub fn from_reflectance(
         table: &'a BssrdfTable,
         method: SubsurfaceMethod,
+        facets: &TrowbridgeReitz,
         effective_albedo: SampledSpectrum,
         mean_free_path: SampledSpectrum,
     ) -> Self {
-        let albedo = effective_albedo.map(|share| table.albedo(method, share));
+        let albedo = effective_albedo.map(|share| table.albedo(method, facets, share));
         // At no distance at all the profile has no value.
         Self { table, sigma_t: mean_free_path.map(|l| 1.0 / l.max(1e-6)), albedo }
     }
@@ -96,6 +99,12 @@ impl<'a> Bssrdf<'a> {
     /// The lobe by which light that leaves the body has entered it.
     pub fn exit(&self) -> NormalizedFresnel {
         NormalizedFresnel::new(self.table)
+    }
+
+    /// By how much more counts what `facets` of a boundary refract between a direction above and
+    /// the inside, so that all light enters which they do not reflect.
+    pub(crate) fn gain(&self, facets: &TrowbridgeReitz, w: Vector3) -> f32 {
+        self.table.gain(facets, w)
     }
 
     /// The share of the light that entered which leaves again, by the profile.

@@ -1,8 +1,12 @@
 //! A table of diffusion profiles over albedo and radius.
 
+use super::boundary::Boundary;
 use super::diffusion::HalfSpace;
 use super::spline::{self, Weights};
 use super::{SubsurfaceMethod, walks};
+use crate::TrowbridgeReitz;
+use crate::grid::Place;
+use math::{Vector3, lerp};
 use std::f32::consts::TAU;
 use std::fmt;
 use std::sync::OnceLock;
@@ -27,8 +31,10 @@ pub struct BssrdfTable {
     cdf: Vec<f32>,
     /// The integrals of the rows.
     effective_albedos: Vec<f32>,
-    /// What random walks return for each albedo, once it is asked for.
-    of_walks: OnceLock<Vec<f32>>,
+    /// Rough boundaries, once they are asked for.
+    boundary: OnceLock<Boundary>,
+    /// What random walks return for each roughness and albedo, once it is asked for.
+    of_walks: OnceLock<Vec<Vec<f32>>>,
 }
 
 impl BssrdfTable {
@@ -46,6 +52,7 @@ impl BssrdfTable {
             profile: Vec::with_capacity(ALBEDOS * RADII),
             cdf: Vec::with_capacity(ALBEDOS * RADII),
             effective_albedos: Vec::with_capacity(ALBEDOS),
+            boundary: OnceLock::new(),
             of_walks: OnceLock::new(),
             albedos,
             radii,
@@ -86,15 +93,30 @@ impl BssrdfTable {
     }
 
     /// The albedo of a medium that returns a share of the light that entered, or the nearest to it
-    /// that there is: by the profile, or by random walks, of light from a uniform sky.
-    pub fn albedo(&self, method: SubsurfaceMethod, effective_albedo: f32) -> f32 {
-        let effective_albedos = match method {
-            SubsurfaceMethod::Diffusion => &self.effective_albedos,
+    /// that there is: by the profile, or by random walks, of light from a uniform sky that the
+    /// `facets` of the boundary let in.
+    pub fn albedo(&self, method: SubsurfaceMethod, facets: &TrowbridgeReitz, effective_albedo: f32) -> f32 {
+        let invert = |values: &[f32]| spline::invert(&self.albedos, values, effective_albedo);
+        match method {
+            SubsurfaceMethod::Diffusion => invert(&self.effective_albedos),
             SubsurfaceMethod::RandomWalk => {
-                self.of_walks.get_or_init(|| walks::effective_albedos(self.g, self.eta, &self.albedos))
+                let of_walks = || walks::effective_albedos(self.g, self.boundary(), &self.albedos);
+                let rows = self.of_walks.get_or_init(of_walks);
+                let place = Place::new(facets.mean_alpha().sqrt(), rows.len());
+                let first = place.index as usize;
+                lerp(place.t, invert(&rows[first]), invert(&rows[first + 1]))
             }
-        };
-        spline::invert(&self.albedos, effective_albedos, effective_albedo)
+        }
+    }
+
+    fn boundary(&self) -> &Boundary {
+        self.boundary.get_or_init(|| Boundary::new(self.eta))
+    }
+
+    /// By how much more counts what `facets` refract between a direction above and the inside, so
+    /// that all light enters which they do not reflect.
+    pub(super) fn gain(&self, facets: &TrowbridgeReitz, w: Vector3) -> f32 {
+        self.boundary().gain(facets, w)
     }
 
     /// The profile at a radius, per area, of a medium with an albedo in [0, 1], and its density,

@@ -113,7 +113,7 @@ impl Bxdf<'_> {
             | Self::Hair(_)
             | Self::Measured(_) => return SampledSpectrum::ZERO,
             Self::OpenPbr(surface) => {
-                let share = surface.diffused(wo, wi).safe_div(self.f(wo, wi, mode));
+                let share = surface.diffused(wo, wi, mode).safe_div(self.f(wo, wi, mode));
                 return share.map(|share| share.clamp(0.0, 1.0));
             }
             Self::CoatedDiffuse(layers) => layers.interface.f(wo, wi, mode),

@@ -9,11 +9,13 @@
 //!
 //! Algorithms that follow paths under the surface take its parts apart. Then light passes the
 //! boundary by refraction from outside to inside only, to be seen from there: what comes out has
-//! been scattered under the surface ([`Bssrdf`]).
+//! been scattered under the surface ([`Bssrdf`]). For random walks a rough boundary lets in all
+//! light that it does not reflect; for diffusion it is pbrt-v4's, which loses what meets a second
+//! facet.
 
 use super::{BsdfSample, Dielectric, NormalizedFresnel, Scatter};
 use crate::{Bssrdf, BxdfFlags, Directions, SubsurfaceMethod, TransportMode, fr_dielectric};
-use math::{Vec2, Vector3};
+use math::{Vec2, Vector3, same_hemisphere};
 use sampling::HashSequence;
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
@@ -75,6 +77,31 @@ impl Subsurface<'_> {
         lobe.f(wo, wi, mode) * albedo * (1.0 - fr_dielectric(wo.z, self.boundary.eta))
     }
 
+    /// By how much more counts what the boundary refracts between two directions, of which one is
+    /// above.
+    fn gain(&self, wo: Vector3, wi: Vector3) -> f32 {
+        if self.method == SubsurfaceMethod::Diffusion || self.boundary.flags().is_specular() {
+            return 1.0;
+        }
+        self.bssrdf.gain(&self.boundary.distribution, if wo.z > 0.0 { wo } else { wi })
+    }
+
+    /// A sample of the boundary.
+    fn sample_boundary(
+        &self,
+        wo: Vector3,
+        uc: f32,
+        u: Vec2,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> BsdfSample {
+        let sample = self.boundary.sample_f(wo, uc, u, mode, directions);
+        if !(sample.valid && sample.flags.is_transmissive()) {
+            return sample;
+        }
+        BsdfSample { f: sample.f * self.gain(wo, sample.wi), ..sample }
+    }
+
     /// The value of the base where light leaves to `wi`: the transmission from there.
     fn left(&self, wi: Vector3) -> f32 {
         let mut sequence = HashSequence::new([self.seed, wi.x.to_bits(), wi.y.to_bits(), wi.z.to_bits()]);
@@ -104,7 +131,10 @@ impl Scatter for Subsurface<'_> {
         let is_above = wo.z > 0.0 && wi.z > 0.0;
         match self.part {
             SubsurfacePart::Whole if is_above => self.boundary.f(wo, wi, mode) + self.diffused(wo, wi, mode),
-            SubsurfacePart::Boundary if !leaves(wo, wi, mode) => self.boundary.f(wo, wi, mode),
+            SubsurfacePart::Boundary if same_hemisphere(wo, wi) => self.boundary.f(wo, wi, mode),
+            SubsurfacePart::Boundary if !leaves(wo, wi, mode) => {
+                self.boundary.f(wo, wi, mode) * self.gain(wo, wi)
+            }
             SubsurfacePart::Diffused if is_above => SampledSpectrum::splat(self.left(wi)),
             _ => SampledSpectrum::ZERO,
         }
@@ -121,14 +151,14 @@ impl Scatter for Subsurface<'_> {
         let enters = mode == TransportMode::Radiance;
         match self.part {
             SubsurfacePart::Boundary => {
-                let sample = self.boundary.sample_f(wo, uc, u, mode, directions);
+                let sample = self.sample_boundary(wo, uc, u, mode, directions);
                 return BsdfSample {
                     valid: sample.valid && (enters || !leaves(wo, sample.wi, mode)),
                     ..sample
                 };
             }
             SubsurfacePart::Leaving if wo.z < 0.0 && !enters && directions.transmission() => {
-                return self.boundary.sample_f(wo, uc, u, mode, Directions::Transmission);
+                return self.sample_boundary(wo, uc, u, mode, Directions::Transmission);
             }
             SubsurfacePart::Leaving => return BsdfSample::invalid(),
             SubsurfacePart::Whole | SubsurfacePart::Diffused => (),

@@ -131,7 +131,18 @@ fn spectra_close(a: SampledSpectrum, b: SampledSpectrum, relative: f32) -> bool 
 
 #[test]
 fn samples_have_their_density() {
-    let cases: Vec<_> = rough_members()
+    test_density(rough_members(), TransportMode::Radiance);
+}
+
+/// Those whose samples for importance have another density.
+#[test]
+fn samples_for_importance_have_their_density() {
+    test_density(crate::openpbr::tilted_members(), TransportMode::Importance);
+}
+
+fn test_density(members: impl IntoIterator<Item = Bxdf>, mode: TransportMode) {
+    let cases: Vec<_> = members
+        .into_iter()
         .flat_map(|bxdf| views().map(|wo| (bxdf, wo)))
         .flat_map(|(bxdf, wo)| DIRECTIONS.map(|directions| (bxdf, wo, directions)))
         .filter(|(bxdf, _, directions)| {
@@ -147,8 +158,7 @@ fn samples_have_their_density() {
         let strips = Strips::new(&bxdf, wo);
         let sample = |u: [f32; 2]| {
             let uc = random.get_1d();
-            let sample =
-                bxdf.sample_f(wo, uc, u.into(), TransportMode::Radiance, directions).into_option()?;
+            let sample = bxdf.sample_f(wo, uc, u.into(), mode, directions).into_option()?;
             if sample.flags.is_specular() {
                 return None;
             }
@@ -157,7 +167,7 @@ fn samples_have_their_density() {
         let pdf = |[x, phi]: [f32; 2]| {
             let (theta, width) = strips.theta(x);
             let wi = spherical_direction(theta.sin(), theta.cos(), phi);
-            (bxdf.pdf(wo, wi, TransportMode::Radiance, directions) * theta.sin() * width) as f64
+            (bxdf.pdf(wo, wi, mode, directions) * theta.sin() * width) as f64
         };
         if let Err(table) = test.rectangle([[0.0, 3.0], [0.0, TAU]], sample, pdf) {
             panic!("{bxdf:?} seen from {wo} to {directions:?}: {table}");

@@ -25,6 +25,11 @@ fn body(table: &'static BssrdfTable, alpha: f32) -> Bxdf<'static> {
     Subsurface { boundary, bssrdf: bssrdf(table), method, part, seed: 0 }.into()
 }
 
+/// Facets of a smooth boundary.
+fn smooth() -> TrowbridgeReitz {
+    TrowbridgeReitz::new(0.0, 0.0)
+}
+
 /// Bodies with smooth and rough boundaries.
 pub fn members() -> Vec<Bxdf<'static>> {
     vec![body(&WATER, 0.0), body(&WATER, 0.4), body(&DENSE, 0.1)]
@@ -39,10 +44,11 @@ fn effective_albedos_are_inverted() {
             let effective = table.effective_albedo(albedo);
             assert!(effective >= last && effective <= 1.001, "{albedo}: {effective}");
             last = effective;
-            let found = table.albedo(SubsurfaceMethod::Diffusion, effective);
+            let found = table.albedo(SubsurfaceMethod::Diffusion, &smooth(), effective);
             assert!((table.effective_albedo(found) - effective).abs() < 1e-4, "{albedo}: {found}");
         }
-        assert_eq!([-0.5, 2.0].map(|x| table.albedo(SubsurfaceMethod::Diffusion, x)), [0.0, 1.0]);
+        let of = |x| table.albedo(SubsurfaceMethod::Diffusion, &smooth(), x);
+        assert_eq!([-0.5, 2.0].map(of), [0.0, 1.0]);
     }
     assert!((WATER.effective_albedo(1.0) - 1.0).abs() < 1e-4);
 }
@@ -70,7 +76,8 @@ fn effective_albedos_are_the_integrals_of_profiles() {
 fn a_mean_free_path_scales_the_profile() {
     let given = SampledSpectrum::new([0.1, 0.3, 0.6, 0.7]);
     let method = SubsurfaceMethod::Diffusion;
-    let of = |mfp: f32| Bssrdf::from_reflectance(&WATER, method, given, SampledSpectrum::splat(mfp));
+    let of =
+        |mfp: f32| Bssrdf::from_reflectance(&WATER, method, &smooth(), given, SampledSpectrum::splat(mfp));
     let (short, long) = (of(0.5), of(2.0));
     for r in [0.01, 0.2, 1.0, 3.0] {
         let (a, b) = (short.profile(r), long.profile(4.0 * r) * 16.0);
@@ -100,9 +107,10 @@ fn walks_without_a_boundary_return_what_the_h_function_says() {
         }
         let moment = (0..STEPS).map(|i| h[i] * cosine(i) / STEPS as f64).sum::<f64>();
         let returned = 1.0 - 2.0 * (1.0 - albedo).sqrt() * moment;
-        let found = table.albedo(SubsurfaceMethod::RandomWalk, returned as f32);
+        let of = |share| table.albedo(SubsurfaceMethod::RandomWalk, &smooth(), share);
+        let found = of(returned as f32);
         // Three standard errors of the share, by the change of the albedo with it.
-        let more = table.albedo(SubsurfaceMethod::RandomWalk, returned as f32 + 0.006);
+        let more = of(returned as f32 + 0.006);
         assert!(
             (f64::from(found) - albedo).abs() < f64::from(more - found) + 1e-4,
             "{albedo}: {found} {more}"
@@ -261,5 +269,35 @@ fn diffused_light_leaves_by_the_transmission_of_the_boundary() {
         let error = (values.variance_of_mean() + passes.variance_of_mean()).sqrt();
         let difference = values.mean * std::f64::consts::PI - passes.mean;
         assert!(difference.abs() < 5.0 * error + 1e-4, "{theta} {alpha}: {values:?} {passes:?}");
+    }
+}
+
+/// What a rough boundary does not reflect enters, if light walks under it: from facets alike both
+/// ways by a table, from others by a quadrature of fewer normals.
+#[test]
+fn light_that_a_rough_boundary_does_not_reflect_enters() {
+    const SIDE: usize = 128;
+    let middle = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+    let (method, part) = (SubsurfaceMethod::RandomWalk, SubsurfacePart::Boundary);
+    for table in [&*WATER, &*DENSE] {
+        for (x, y, bound) in [(0.1, 0.1, 0.003), (0.4, 0.4, 0.003), (1.0, 1.0, 0.003), (0.1, 0.5, 0.01)] {
+            let boundary = Dielectric { eta: table.eta(), distribution: TrowbridgeReitz::new(x, y) };
+            let body = Subsurface { boundary, bssrdf: bssrdf(table), method, part, seed: 0 };
+            for cosine in [1.0f32, 0.6, 0.3, 0.1] {
+                let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, 0.5);
+                let mut total = 0.0;
+                for i in 0..SIDE * SIDE {
+                    let u = Vec2::new(middle(i % SIDE), middle(i / SIDE));
+                    for directions in [Directions::Reflection, Directions::Transmission] {
+                        let sample = body.sample_f(wo, 0.5, u, TransportMode::Importance, directions);
+                        if sample.valid {
+                            total += f64::from(sample.f[0] * sample.wi.z.abs() / sample.pdf);
+                        }
+                    }
+                }
+                let total = total / (SIDE * SIDE) as f64;
+                assert!((total - 1.0).abs() < bound, "{table:?} {x} {y} from {cosine}: {total}");
+            }
+        }
     }
 }

@@ -61,6 +61,7 @@ impl SubsurfaceMaterial {
         lambda: &SampledWavelengths,
     ) -> Subsurface<'_> {
         let spectrum = |id| textures.spectrum(id, context, lambda);
+        let distribution = self.roughness.distribution(textures, context);
         let bssrdf = match self.inside {
             SubsurfaceInside::Coefficients { sigma_a, sigma_s, scale } => {
                 let [a, s] = [sigma_a, sigma_s].map(|id| (spectrum(id) * scale).clamp_zero());
@@ -68,10 +69,9 @@ impl SubsurfaceMaterial {
             }
             SubsurfaceInside::Reflectance { reflectance, mfp, scale } => {
                 let (share, path) = (spectrum(reflectance).clamp(0.0, 1.0), spectrum(mfp) * scale);
-                Bssrdf::from_reflectance(&self.table, self.method, share, path)
+                Bssrdf::from_reflectance(&self.table, self.method, &distribution, share, path)
             }
         };
-        let distribution = self.roughness.distribution(textures, context);
         Subsurface {
             boundary: Dielectric { eta: self.table.eta(), distribution },
             bssrdf,

@@ -10,11 +10,12 @@
 //! ```
 //!
 //! Facets that refract all light are expanded likewise, over the cosine in the thinner medium.
-//! Roughness is √α.
+//! Where the direction there is nearer to the horizon than that to the facet, a layer takes more;
+//! this loss has the weight 1 − F of the bare boundary. Roughness is √α.
 
-use super::grid::{Grid, Place};
-use crate::{TrowbridgeReitz, reflect, refract};
-use math::{Vec2, Vec3, Vector3, safe_sqrt, sqr};
+use crate::grid::{Grid, Place, from, round};
+use crate::{TrowbridgeReitz, fr_dielectric, reflect, refract};
+use math::{Vector3, safe_sqrt, sqr};
 use std::sync::LazyLock;
 
 /// Hat functions, of maxima at the squares of 0, 1/9, … 1, which are nodes of the tables.
@@ -81,12 +82,12 @@ impl White {
     fn compute(facets: &TrowbridgeReitz, wo: Vector3) -> Self {
         let mut sums = [[0f64; HATS]; 2];
         let own = hats(wo.z);
-        for wm in visible_normals(facets, wo) {
+        for wm in facets.visible_normals(wo, STEPS) {
             let wi = reflect(wo, wm);
             if wi.z <= 0.0 {
                 continue;
             }
-            let kept = kept(facets, wo, wi);
+            let kept = facets.kept(wo, wi);
             let [met, lower] = [hats(wo.dot(wm)), hats(wo.z.min(wi.z))];
             for k in 0..HATS {
                 sums[0][k] += f64::from(kept * met[k]);
@@ -106,6 +107,9 @@ pub(super) struct Glass {
     pub reflected: Hats,
     /// What is kept of light that is refracted.
     pub refracted: Hats,
+    /// What of it is lost under a layer, by the layer's transmittance, for light from the denser
+    /// medium.
+    pub losses: Hats,
     /// What is kept of light that can only be reflected.
     pub total: f32,
 }
@@ -125,12 +129,14 @@ impl Glass {
             return Self::compute(eta, facets, wo);
         }
         let place: Place = Place::new((eta - 1.0) / (eta + 1.0) + 0.5, INDICES);
-        let mut sum = Self { reflected: [0.0; HATS], refracted: [0.0; HATS], total: 0.0 };
+        let none = [0.0; HATS];
+        let mut sum = Self { reflected: none, refracted: none, losses: none, total: 0.0 };
         for (i, share) in place.weights().into_iter().enumerate() {
             for (weight, node) in TABLE[place.index as usize + i].around(facets.mean_alpha().sqrt(), wo.z) {
                 for k in 0..HATS {
                     sum.reflected[k] += share * weight * node.reflected[k];
                     sum.refracted[k] += share * weight * node.refracted[k];
+                    sum.losses[k] += share * weight * node.losses[k];
                 }
                 sum.total += share * weight * node.total;
             }
@@ -139,45 +145,28 @@ impl Glass {
     }
 
     fn compute(eta: f32, facets: &TrowbridgeReitz, wo: Vector3) -> Self {
-        let mut sums = [[0f64; HATS]; 2];
+        let mut sums = [[0f64; HATS]; 3];
         let mut total = 0.0;
-        for wm in visible_normals(facets, wo) {
+        for wm in facets.visible_normals(wo, STEPS) {
             let reflected = reflect(wo, wm);
             let (refracted, _, is_refracted) = refract(wo, wm, eta);
             let outer = if eta < 1.0 { -refracted.dot(wm) } else { wo.dot(wm) };
             let met = hats(outer);
             for (i, wi) in [reflected, -refracted].into_iter().enumerate() {
-                let share = if wi.z > 0.0 { f64::from(kept(facets, wo, wi)) } else { 0.0 };
+                let share = if wi.z > 0.0 { f64::from(facets.kept(wo, wi)) } else { 0.0 };
                 if is_refracted {
                     (0..HATS).for_each(|k| sums[i][k] += share * f64::from(met[k]));
                 } else if i == 0 {
                     total += share;
                 }
+                if is_refracted && i == 1 && eta < 1.0 {
+                    let passed = share * f64::from(1.0 - fr_dielectric(outer, 1.0 / eta));
+                    let lower = hats(outer.min(wi.z.max(0.0)));
+                    (0..HATS).for_each(|k| sums[2][k] += passed * f64::from(met[k] - lower[k]));
+                }
             }
         }
-        let [reflected, refracted] = sums.map(|sum| sum.map(|value| (value / NORMALS) as f32));
-        Self { reflected, refracted, total: (total / NORMALS) as f32 }
+        let [reflected, refracted, losses] = sums.map(|sum| sum.map(|value| (value / NORMALS) as f32));
+        Self { reflected, refracted, losses, total: (total / NORMALS) as f32 }
     }
-}
-
-/// Facets that are alike both ways.
-fn round(roughness: f32) -> TrowbridgeReitz {
-    TrowbridgeReitz::new(sqr(roughness), sqr(roughness))
-}
-
-/// A direction of a cosine.
-fn from(cosine: f32) -> Vector3 {
-    let cosine = cosine.max(1e-4);
-    Vec3::new(safe_sqrt(1.0 - sqr(cosine)), 0.0, cosine)
-}
-
-/// Normals of facets that a direction sees, each of the same share of what it sees.
-fn visible_normals(facets: &TrowbridgeReitz, wo: Vector3) -> impl Iterator<Item = Vector3> {
-    let middle = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    (0..STEPS * STEPS).map(move |i| facets.sample_wm(wo, Vec2::new(middle(i % STEPS), middle(i / STEPS))))
-}
-
-/// The share of the light from facets seen by `wo` that leaves to `wi`.
-fn kept(facets: &TrowbridgeReitz, wo: Vector3, wi: Vector3) -> f32 {
-    facets.g(wo, wi) / facets.g1(wo)
 }

@@ -70,10 +70,19 @@ impl<R: Real> Chances<R> {
             let left = R::select(has_rest, shares.metal_rest() * weights.metal, zero);
             rest += surface.metal_again * left;
         }
+        // What is seen of the base; light from one direction may be seen from others.
+        let mut seen = shares.seen;
+        let mut coat = weights.layers * shares.coat;
+        let is_tilted = surface.is_tilted();
+        if mode == TransportMode::Importance && is_tilted.any() {
+            let least = R::splat(0.1) * weights.layers * shares.below_fuzz() * surface.stack.coat_weight;
+            coat = R::select(is_tilted, coat.max(least), coat);
+            seen = one;
+        }
         let is_coated = surface.stack.coat_weight.gt(zero);
         if is_coated.any() {
             let length = R::splat(2.0) * surface.coat_length(cosine);
-            let opaque = surface.darkening * surface.absorbed(length);
+            let opaque = surface.darkening * surface.absorbed(length) * seen;
             reflected = SampledSpectrum::select(is_coated, reflected * opaque, reflected);
             rest = SampledSpectrum::select(is_coated, rest * opaque, rest);
         }
@@ -90,6 +99,7 @@ impl<R: Real> Chances<R> {
             let mean = R::select(is_inside, rests.glass_below, rests.glass_above);
             let passes = R::select(is_inside, rests.through_below, rests.through_above);
             let left = R::select(mean.gt(zero), left, zero);
+            let glass = R::select(is_inside, glass, glass * seen);
             rest += glass * left * (one - passes);
             let tint = glass * surface.transmission_color.average();
             through = tint * left * passes;
@@ -102,9 +112,8 @@ impl<R: Real> Chances<R> {
         }
         if surface.stack.is_thin {
             let transmitted = shares.diffuse_rest * surface.scattered * surface.darkening;
-            through += transmitted.average() * (surface.forward * weights.diffuse);
+            through += transmitted.average() * (surface.forward * weights.diffuse * seen);
         }
-        let coat = weights.layers * taken.coat;
         let mut under = zero;
         if mode == TransportMode::Radiance && weights.under.gt(zero).any() {
             let color = surface.subsurface_color;
@@ -156,8 +165,14 @@ impl<R: Real> Chances<R> {
 
     /// The density of `wi`, off the horizon.
     #[inline(always)]
-    pub fn pdf(&self, surface: &OpenPbr<R>, wo: Vector3<R>, wi: Vector3<R>, directions: Directions) -> R {
-        R::call(DensityOf { chances: self, surface, wo, wi, directions })
+    pub fn pdf(
+        &self,
+        surface: &OpenPbr<R>,
+        [wo, wi]: [Vector3<R>; 2],
+        mode: TransportMode,
+        directions: Directions,
+    ) -> R {
+        R::call(DensityOf { chances: self, surface, wo, wi, mode, directions })
     }
 }
 
@@ -167,6 +182,7 @@ struct DensityOf<'b, 'a, R: Real> {
     surface: &'b OpenPbr<'a, R>,
     wo: Vector3<R>,
     wi: Vector3<R>,
+    mode: TransportMode,
     directions: Directions,
 }
 
@@ -175,7 +191,7 @@ impl<R: Real> Callee<R> for DensityOf<'_, '_, R> {
 
     #[inline(always)]
     fn run(self) -> R {
-        let Self { chances, surface, wo, wi, directions } = self;
+        let Self { chances, surface, wo, wi, mode, directions } = self;
         let zero = R::zero();
         let [fuzz, coat, facets, glass, rest, through, _] = chances.of;
         let is_same = same_hemisphere(wo, wi);
@@ -195,7 +211,7 @@ impl<R: Real> Callee<R> for DensityOf<'_, '_, R> {
             return across;
         }
         if coat.gt(zero).any() {
-            pdf += R::select(coat.gt(zero), coat * surface.pdf_coat(up, out), zero);
+            pdf += R::select(coat.gt(zero), coat * surface.pdf_coat(up, out, mode), zero);
         }
         if facets.gt(zero).any() {
             pdf += facets * Mirror::new(&surface.stack.base, up, out).pdf;

@@ -13,7 +13,7 @@
 //! and half down to the base, with what meets no fibre. Sources: [Heitz 2015], and the sheen of
 //! [Zeltner 2022], which is fitted to simulations of such layers.
 
-use super::grid::Grid;
+use crate::grid::Grid;
 use lanes::{Each, Real, exp};
 use math::{Vector3, spherical_direction, sqr};
 use spectrum::SampledSpectrum;

@@ -1,7 +1,7 @@
 //! Transparent bases: what is reflected inside, and what passes.
 
-use super::OpenPbr;
 use super::shares::{Rests, Shares};
+use super::{OpenPbr, of_viewer};
 use crate::{BsdfSample, BxdfFlags, Directions, TransportMode, reflect, refract};
 use lanes::{Callee, Mask, Real};
 use math::{Vec2, Vec3, Vector3, same_hemisphere, sqr};
@@ -143,7 +143,10 @@ impl<R: Real> OpenPbr<'_, R> {
             };
             f += SampledSpectrum::splat(R::select(has_rest, down * scale, R::zero()));
         }
-        f * self.transmission_color * self.absorbed(self.coat_length(outside.z)) * self.glass()
+        // Tilts of the coat are not seen from inside.
+        let is_outside = of_viewer([wo.z, wi.z], mode).gt(R::zero());
+        let seen = R::select(is_outside, of_viewer([o.seen, i.seen], mode), R::one());
+        f * self.transmission_color * self.absorbed(self.coat_length(outside.z)) * (self.glass() * seen)
     }
 }
 

@@ -20,8 +20,9 @@
 //! A narrow lobe keeps what the layers above pass on, as both directions have nearly the same T.
 //! What the minimum takes from a wide one, what the facets mask, and what they let pass is the rest
 //! L: it is scattered by the diffuse base or, as in [Kulla 2017], between facets. All factors are
-//! symmetric, so that f is reciprocal, and what absorbs nothing reflects or transmits all light,
-//! exactly but for tables. A material has a table of the shares (table.rs).
+//! symmetric, so that f is reciprocal but under a coat with a normal of its own (coat.rs), and what
+//! absorbs nothing reflects or transmits all light, exactly but for tables. A material has a table
+//! of the shares (table.rs).
 //!
 //! Refraction is by the index of the glass alone, as the coat has parallel sides. Inside the coat
 //! light is reflected back to the base again and again: darkening follows the specification's form
@@ -36,7 +37,6 @@ mod facets;
 mod film;
 mod fuzz;
 mod glass;
-mod grid;
 mod mirror;
 mod oren_nayar;
 mod parameters;
@@ -270,6 +270,21 @@ fn upright<R: Real>(below: R::Mask, w: Vector3<R>) -> Vector3<R> {
     Vec3::select(below, -w, w)
 }
 
+/// Of what belongs to `wo` and to `wi` that of the direction from which light is seen.
+#[inline(always)]
+fn of_viewer<R: Real>([o, i]: [R; 2], mode: TransportMode) -> R {
+    match mode {
+        TransportMode::Radiance => o,
+        TransportMode::Importance => i,
+    }
+}
+
+/// A direction mirrored by the plane of the surface.
+#[inline(always)]
+fn turned<R: Real>(w: Vector3<R>) -> Vector3<R> {
+    Vec3::new(w.x, w.y, -w.z)
+}
+
 /// A sample of the mirror images of a direction above in facets, without its value, and of the
 /// density only that of a smooth surface.
 #[inline(always)]
@@ -409,7 +424,7 @@ impl<R: Real> Callee<R> for OpenPbrDensity<'_, '_, R> {
         }
         let (shares, rests) = (surface.shares(wo), surface.rests());
         let chances = Chances::new(surface, &shares, &rests, wo, mode, directions);
-        R::select(valid, chances.pdf(surface, wo, wi, directions), R::zero())
+        R::select(valid, chances.pdf(surface, [wo, wi], mode, directions), R::zero())
     }
 }
 
@@ -446,7 +461,7 @@ impl<R: Real> Callee<R> for OpenPbrSample<'_, '_, R> {
         let (shares, rests) = (surface.shares(wo), surface.rests());
         let chances = Chances::new(surface, &shares, &rests, wo, mode, directions);
         let choice = chances.choose(uc);
-        let sample = surface.direction(wo, &choice, u, directions);
+        let sample = surface.direction(wo, &choice, u, mode, directions);
         valid = valid & choice.chance.gt(R::zero()) & sample.valid;
         let is_under = choice.lobe.eq(R::Int::splat(UNDER));
         let is_specular = sample.flags.is_specular();
@@ -466,7 +481,7 @@ impl<R: Real> Callee<R> for OpenPbrSample<'_, '_, R> {
             let there = surface.shares(sample.wi);
             let value = surface.value([&shares, &there], &rests, [wo, sample.wi], mode);
             f = SampledSpectrum::select(is_wide, value, f);
-            pdf = R::select(is_wide, chances.pdf(surface, wo, sample.wi, directions), pdf);
+            pdf = R::select(is_wide, chances.pdf(surface, [wo, sample.wi], mode, directions), pdf);
             valid = valid & (!is_wide | pdf.gt(R::zero()) & is_off_horizon(sample.wi));
         }
         BsdfSample { f, pdf, valid, ..sample }
@@ -482,6 +497,7 @@ impl<R: Real> OpenPbr<'_, R> {
         wo: Vector3<R>,
         choice: &ChosenLobe<R>,
         u: Vec2<R>,
+        mode: TransportMode,
         directions: Directions,
     ) -> BsdfSample<R> {
         let is_below = wo.z.lt(R::zero());
@@ -516,7 +532,7 @@ impl<R: Real> OpenPbr<'_, R> {
             sample.eta = R::select(is_through, met, sample.eta);
         }
         if is_coat.any() {
-            sample = BsdfSample::select(is_coat, self.sample_coat(up, u), sample);
+            sample = BsdfSample::select(is_coat, self.sample_coat(up, choice.u, u, mode), sample);
         }
         if is_facets.any() {
             sample = BsdfSample::select(is_facets, mirrored(&self.stack.base, up, u), sample);

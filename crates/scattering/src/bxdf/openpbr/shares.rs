@@ -12,6 +12,11 @@ use spectrum::{N, SampledSpectrum};
 pub(super) struct Shares<R = f32> {
     /// What layers take; of what a film changes, at one wavelength.
     pub taken: Taken<R>,
+    /// What the coat reflects, if it is tilted, too.
+    pub coat: R,
+    /// What the coat leaves to be seen of the base from the direction, over what it leaves if it is
+    /// not tilted.
+    pub seen: R,
     /// What the facets of the dielectric reflect.
     pub dielectric: SampledSpectrum<R>,
     /// What is left for the diffuse base.
@@ -96,6 +101,8 @@ impl<R: Real> OpenPbr<'_, R> {
         let taken = self.table.taken(&self.location, self.waves[0], w);
         let mut shares = Shares {
             taken,
+            coat: taken.coat,
+            seen: R::one(),
             dielectric: SampledSpectrum::splat(taken.dielectric),
             diffuse_rest: SampledSpectrum::splat((taken.left - taken.dielectric).max(zero)),
             reflected: taken.dielectric,

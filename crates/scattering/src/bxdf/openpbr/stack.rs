@@ -317,6 +317,7 @@ impl Stack {
                     inside.reflected += (1.0 - passed) * glass.reflected[k];
                     inside.refracted += passed * glass.refracted[k];
                 }
+                inside.refracted -= dot(&glass.losses, &above.coat);
                 Inside { left: 1.0 - inside.reflected - inside.refracted, ..inside }
             }
             Some(SeenGlass::Sheet(passing)) => {

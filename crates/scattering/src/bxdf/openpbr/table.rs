@@ -6,8 +6,8 @@
 //! so that what is left for the last layer and its means fit together as exactly as at the nodes.
 
 use super::OpenPbrParameters;
-use super::grid::{Place, nodes};
 use super::stack::{Inside, Seen, Stack, Taken};
+use crate::grid::{Place, nodes};
 use lanes::{Int, Real};
 use math::{Vec3, Vector3, safe_sqrt, sqr};
 use spectrum::{LAMBDA_MAX, LAMBDA_MIN, N, SampledSpectrum};

@@ -16,18 +16,12 @@
 use super::mirror::Mirror;
 use super::oren_nayar::oren_nayar;
 use super::shares::{Rests, Shares};
-use super::{OpenPbr, mirrored};
-use crate::{BsdfSample, BxdfFlags};
+use super::{OpenPbr, mirrored, of_viewer, turned};
+use crate::{BsdfSample, BxdfFlags, TransportMode};
 use lanes::{Mask, Real};
-use math::{Vec2, Vec3, Vector3};
+use math::{Vec2, Vector3};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
-
-/// A direction mirrored by the sheet.
-#[inline(always)]
-fn turned<R: Real>(w: Vector3<R>) -> Vector3<R> {
-    Vec3::new(w.x, w.y, -w.z)
-}
 
 impl<R: Real> OpenPbr<'_, R> {
     /// What a smooth sheet reflects and transmits of light at a cosine.
@@ -55,8 +49,8 @@ impl<R: Real> OpenPbr<'_, R> {
         &self,
         [o, i]: [&Shares<R>; 2],
         rests: &Rests<R>,
-        wo: Vector3<R>,
-        wi: Vector3<R>,
+        [wo, wi]: [Vector3<R>; 2],
+        mode: TransportMode,
     ) -> SampledSpectrum<R> {
         let wi = turned(wi);
         let weights = self.weights(R::one());
@@ -76,7 +70,8 @@ impl<R: Real> OpenPbr<'_, R> {
             let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
             f += self.scattered(self.forward, wo, wi) * left * self.darkening * weights.diffuse;
         }
-        f * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
+        let seen = of_viewer([o.seen, i.seen], mode);
+        f * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z)) * seen
     }
 
     /// A direction in which a sheet of glass transmits light from one above, without its value, and

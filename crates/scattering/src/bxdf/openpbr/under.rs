@@ -115,7 +115,7 @@ impl<R: Real> OpenPbr<'_, R> {
     /// What of the light to `wo`, above, comes from under the surface, over what does of all.
     #[inline(always)]
     pub(super) fn goes_under(&self, shares: &Shares<R>, wo: Vector3<R>) -> SampledSpectrum<R> {
-        let weight = self.weights(R::one()).diffuse * self.subsurface_weight;
+        let weight = self.weights(R::one()).diffuse * self.subsurface_weight * shares.seen;
         shares.diffuse_rest * self.darkening * self.absorbed(self.coat_length(wo.z)) * weight
     }
 

@@ -5,7 +5,7 @@ use super::fuzz;
 use super::mirror::Mirror;
 use super::oren_nayar::oren_nayar;
 use super::shares::{Rests, Shares};
-use super::{OpenPbr, Weights, is_off_horizon, upright};
+use super::{OpenPbr, Weights, is_off_horizon, of_viewer, upright};
 use crate::{BsdfSample, Scatter, TransportMode};
 use lanes::{Callee, Int, Mask, Real, pow};
 use math::{Vector3, same_hemisphere, sqr};
@@ -75,7 +75,13 @@ impl<R: Real> OpenPbr<'_, R> {
         }
         let is_coated = self.stack.coat_weight.gt(zero);
         if is_coated.any() {
-            let coat = self.coat(wo, wi, mode) * o.below_fuzz().min(i.below_fuzz());
+            let mut below_fuzz = o.below_fuzz().min(i.below_fuzz());
+            let is_tilted = self.is_tilted();
+            if is_tilted.any() {
+                let seen = of_viewer([o.below_fuzz(), i.below_fuzz()], mode);
+                below_fuzz = R::select(is_tilted, seen, below_fuzz);
+            }
+            let coat = self.coat(wo, wi, mode) * below_fuzz;
             let coat = coat * self.stack.coat_weight * weights.layers;
             f += SampledSpectrum::splat(R::select(is_coated, coat, zero));
         }
@@ -100,7 +106,8 @@ impl<R: Real> OpenPbr<'_, R> {
             let again = left * (R::one() - rests.through_above) * weights.glass;
             base += SampledSpectrum::splat(R::select(has_glass_rest, again, zero));
         }
-        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
+        let seen = of_viewer([o.seen, i.seen], mode);
+        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z)) * seen
     }
 
     /// The value of the fibres.
@@ -197,9 +204,22 @@ impl<R: Real> OpenPbr<'_, R> {
                 }
             }
         }
+        let (mut seen, mut below_fuzz) = (shares.seen, shares.below_fuzz());
+        let is_tilted = self.is_tilted();
+        if mode == TransportMode::Importance && is_tilted.any() {
+            let there = self.shares(wi);
+            seen = there.seen;
+            below_fuzz = R::select(is_tilted, there.below_fuzz(), below_fuzz);
+        }
+        if !self.stack.is_thin {
+            // Tilts of the coat are not seen from inside.
+            let is_inside = is_glass & of_viewer([wo.z, wi.z], mode).lt(zero);
+            seen = R::select(is_inside, R::one(), seen);
+        }
+        value *= seen;
         if is_coat.any() {
             let (up, out) = (upright(!is_above, wo), upright(!is_above, wi));
-            let coat = self.specular_coat(up, out, mode) * shares.below_fuzz();
+            let coat = self.specular_coat(up, out, mode) * below_fuzz;
             let coat = SampledSpectrum::splat(coat * self.stack.coat_weight * layers);
             value = SampledSpectrum::select(is_coat, coat, value);
         }
@@ -219,12 +239,7 @@ impl<R: Real> OpenPbr<'_, R> {
         let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
         let mut passed = shares.taken.below_coat;
         if !is_above.all() {
-            let mut outwards = self.passed(outside);
-            let is_tilted = self.is_tilted();
-            if is_tilted.any() {
-                outwards = R::select(is_tilted, self.shares(wi).taken.below_coat, outwards);
-            }
-            passed = R::select(is_above, passed, outwards);
+            passed = R::select(is_above, passed, self.passed(outside));
         }
         (SampledSpectrum::splat(R::one()) - reflected) * tint * (passed * self.glass())
     }
@@ -277,8 +292,7 @@ impl<R: Real> Callee<R> for ValueOf<'_, '_, R> {
                 f = surface.reflected(shares, rests, up, mode, &surface.weights(R::one()));
             }
             if !is_same.all() {
-                let [wo, wi] = up;
-                let through = surface.passed_through(shares, rests, wo, wi);
+                let through = surface.passed_through(shares, rests, up, mode);
                 f = SampledSpectrum::select(is_same, f, through);
             }
             return f;
@@ -304,12 +318,17 @@ impl<R: Real> Callee<R> for ValueOf<'_, '_, R> {
 
 impl OpenPbr<'_> {
     /// The value of fibres and the diffuse base alone, for two directions on the same side.
-    pub(in super::super) fn diffused(&self, wo: Vector3, wi: Vector3) -> SampledSpectrum {
+    pub(in super::super) fn diffused(
+        &self,
+        wo: Vector3,
+        wi: Vector3,
+        mode: TransportMode,
+    ) -> SampledSpectrum {
         if !(is_off_horizon(wo) && is_off_horizon(wi)) {
             return SampledSpectrum::ZERO;
         }
         if self.is_lobe() {
-            return self.f(wo, wi, TransportMode::Radiance);
+            return self.f(wo, wi, mode);
         }
         let (below, weights) = (wo.z < 0.0, self.weights(wo.z));
         let directions @ [wo, wi] = [upright(below, wo), upright(below, wi)];
@@ -320,7 +339,8 @@ impl OpenPbr<'_> {
             f += self.fuzz([&o, &i], &rests, directions, &weights);
         }
         if weights.diffuse > 0.0 {
-            f += self.diffuse([&o, &i], &rests, directions, &weights) * absorbed;
+            let seen = of_viewer([o.seen, i.seen], mode);
+            f += self.diffuse([&o, &i], &rests, directions, &weights) * absorbed * seen;
         }
         f
     }

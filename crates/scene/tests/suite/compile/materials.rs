@@ -197,6 +197,7 @@ fn subsurface_materials_scatter_by_their_parameters() {
     assert!((grey.effective_albedo()[0] - 0.4).abs() < 1e-3);
     let ones = spectrum::SampledSpectrum::ONE;
     let (table, method) = (&bodies[0].table, SubsurfaceMethod::Diffusion);
-    let expected = scattering::Bssrdf::from_reflectance(table, method, ones * 0.4, ones * 0.5);
+    let facets = scattering::TrowbridgeReitz::new(0.0, 0.0);
+    let expected = scattering::Bssrdf::from_reflectance(table, method, &facets, ones * 0.4, ones * 0.5);
     assert!((grey.profile(0.2) - expected.profile(0.2)).max_component() < 1e-3);
 }

@@ -1,8 +1,9 @@
-//! The nodes of the tables: roughnesses evenly from 0 to 1, and cosines that are squares, as
-//! everything is steep at grazing angles.
+//! The nodes of tables of microfacets: roughnesses √α evenly from 0 to 1, and cosines that are
+//! squares, as everything is steep at grazing angles.
 
+use crate::TrowbridgeReitz;
 use lanes::{Int, Real};
-use math::{safe_sqrt, sqr};
+use math::{Vec3, Vector3, safe_sqrt, sqr};
 
 /// Cosines, the squares of 0, 1/18, … 1.
 const COSINES: usize = 19;
@@ -10,8 +11,8 @@ const COSINES: usize = 19;
 const ROUGHNESSES: usize = 21;
 
 /// A value for each roughness and cosine.
-#[derive(Debug)]
-pub(super) struct Grid<T>(Vec<T>);
+#[derive(Clone, Debug)]
+pub(crate) struct Grid<T>(Vec<T>);
 
 impl<T> Grid<T> {
     /// The values of a function of roughness and cosine.
@@ -34,7 +35,7 @@ impl<T> Grid<T> {
 
 /// An interval between nodes, and where in it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place<R: Real = f32> {
+pub(crate) struct Place<R: Real = f32> {
     /// Its first node.
     pub index: R::Int,
     /// The weight of the second node.
@@ -73,7 +74,7 @@ impl<R: Real> Place<R> {
 
 /// The nodes x and weights w of ∫ 2μ f(μ) dμ from 0 to 1 by six nodes of Gauss in √μ, the mean of f
 /// over the directions of a hemisphere by their cosine.
-pub(super) fn nodes() -> [(f32, f32); 6] {
+pub(crate) fn nodes() -> [(f32, f32); 6] {
     const GAUSS: [(f32, f32); 3] =
         [(0.238_619_2, 0.467_913_93), (0.661_209_4, 0.360_761_57), (0.932_469_5, 0.171_324_49)];
     std::array::from_fn(|i| {
@@ -81,4 +82,15 @@ pub(super) fn nodes() -> [(f32, f32); 6] {
         let root = 0.5 * (1.0 + if i % 2 == 0 { x } else { -x });
         (sqr(root), 2.0 * root * sqr(root) * weight)
     })
+}
+
+/// Facets of a roughness that are alike both ways.
+pub(crate) fn round(roughness: f32) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(sqr(roughness), sqr(roughness))
+}
+
+/// A direction of a cosine.
+pub(crate) fn from(cosine: f32) -> Vector3 {
+    let cosine = cosine.max(1e-4);
+    Vec3::new(safe_sqrt(1.0 - sqr(cosine)), 0.0, cosine)
 }
