@@ -151,9 +151,12 @@ fn scattered_along(v: Vertex, w: vec3f) -> Scattered {
 
 fn light_subpath(lambda: SampledWavelengths) -> Subpath {
     var walk: Subpath;
-    let u = get_1d();
-    let u_position = get_2d();
-    let emission = emit(u, u_position, get_2d(), lambda);
+    // What chooses the light, its point and the direction.
+    var u: array<vec2f, 3>;
+    for (var i = 0u; i < 3; i++) {
+        u[i] = next_numbers(i > 0);
+    }
+    let emission = emit(u[0].x, u[1], u[2], lambda);
     walk.ray = emission.ray;
     walk.lambda = lambda;
     walk.beta = emission.beta;
@@ -226,9 +229,9 @@ fn arrived(walk: Subpath, t: f32, v: Vertex, context: ShapeSampleContext) -> Par
     return Partial(walk.partial.vcm * squared / cosine, walk.partial.vc / cosine);
 }
 
-fn connection_to_camera(v: Vertex) -> Connection {
+fn connection_to_camera(v: Vertex, u: vec2f) -> Connection {
     var c: Connection;
-    let lens = sample_lens(v.p.p, get_2d());
+    let lens = sample_lens(v.p.p, u);
     if (!lens.seen.valid || !is_reached(lens.seen.film)) {
         return c;
     }
@@ -244,10 +247,14 @@ fn connection_to_camera(v: Vertex) -> Connection {
     return c;
 }
 
-fn connection_to_light(v: Vertex, context: ShapeSampleContext, lambda: SampledWavelengths) -> Connection {
+fn connection_to_light(
+    v: Vertex,
+    context: ShapeSampleContext,
+    lambda: SampledWavelengths,
+    u: f32,
+    u_light: vec2f,
+) -> Connection {
     var c: Connection;
-    let u = get_1d();
-    let u_light = get_2d();
     let choice = choose_light(context, u);
     if (!choice.valid) {
         return c;
@@ -291,16 +298,25 @@ fn connection_to_vertex(v: Vertex, other: Vertex) -> Connection {
     return c;
 }
 
-// The weighted light of all connections of a vertex; that of one to the camera is splatted.
-fn connected(v: Vertex, context: ShapeSampleContext, lambda: SampledWavelengths, count: u32, path: u32) -> vec4f {
+// The weighted light of all connections of a vertex, the first of which `u` chooses and the point at
+// its other end `u_point`; that of one to the camera is splatted.
+fn connected(
+    v: Vertex,
+    context: ShapeSampleContext,
+    lambda: SampledWavelengths,
+    u: f32,
+    u_point: vec2f,
+    count: u32,
+    path: u32,
+) -> vec4f {
     var sum = vec4f();
     for (var i = 0u; i <= count; i++) {
         var c: Connection;
         let is_vertex = i > 0;
         if (is_light_path) {
-            c = connection_to_camera(v);
+            c = connection_to_camera(v, u_point);
         } else if (!is_vertex) {
-            c = connection_to_light(v, context, lambda);
+            c = connection_to_light(v, context, lambda, u, u_point);
         } else {
             c = connection_to_vertex(v, light_vertices[i - 1]);
         }
@@ -423,15 +439,22 @@ fn light_of(camera: CameraSample, path: u32) -> vec4f {
         if (HAS_CAMERA_PATHS) {
             v.partial = arrived(walk, hit.t, v, context);
         }
-        if (is_non_specular(flags)) {
-            l += connected(v, context, camera.lambda, select(count, 0, is_light_path), path);
+        // What chooses the light and its point, or the point of the lens, and the lobe and its
+        // direction.
+        var u: array<vec2f, 4>;
+        let connects = is_non_specular(flags);
+        for (var i = select(2u, u32(is_light_path), connects); i < 4; i++) {
+            u[i] = next_numbers((i & 1) == 1);
+        }
+        if (connects) {
+            let others = select(count, 0, is_light_path);
+            l += connected(v, context, camera.lambda, u[0].x, u[1], others, path);
             if (HAS_CAMERA_PATHS && is_light_path && walk.depth < world.max_depth) {
                 light_vertices[count] = v;
                 count++;
             }
         }
-        let uc = get_1d();
-        let sample = bsdf_sample(bsdf, s.wo, uc, get_2d());
+        let sample = bsdf_sample(bsdf, s.wo, u[2].x, u[3]);
         walk.goes_on = sample.valid;
         if (sample.valid) {
             walk.near = scattered_differentials(s, textures, walk.near, sample);

@@ -55,29 +55,35 @@ fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
     return Ray(times(camera.rotation, ray.v0) + camera.translation, times(camera.rotation, ray.v1), 0);
 }
 
-// A camera ray of unit direction.
-fn camera_ray(film: vec2f, lens: vec2f) -> Ray {
-    let ray = unscaled_ray(placed_camera(), film, lens);
-    return Ray(ray.o, Vec3_normalize(ray.d), 0);
+// A camera ray of unit direction, and its neighbours.
+struct CameraRay {
+    ray: Ray,
+    near: Differentials,
 }
 
-// The rays of the pixels to the right and below, through the same point of the lens, brought as
-// near to the camera ray as other samples of the pixel are.
-fn camera_differentials(film: vec2f, lens: vec2f) -> Differentials {
-    if (world.has_footprints == 0) {
-        return no_differentials();
-    }
+// The ray of a film position; if anything depends on them, also those of the pixels to the right
+// and below, through the same point of the lens, brought as near as other samples of the pixel are.
+fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let camera = placed_camera();
-    let ray = unscaled_ray(camera, film, lens);
-    let rx = unscaled_ray(camera, film + vec2f(1, 0), lens);
-    let ry = unscaled_ray(camera, film + vec2f(0, 1), lens);
+    let has_neighbours = world.has_footprints == 1;
+    var rays_of_film: array<Ray, 3>;
+    for (var i = 0u; i < select(1u, 3u, has_neighbours); i++) {
+        rays_of_film[i] = unscaled_ray(camera, film + vec2f(f32(i == 1), f32(i == 2)), lens);
+    }
+    let ray = rays_of_film[0];
+    if (!has_neighbours) {
+        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), 0), no_differentials());
+    }
+    let rx = rays_of_film[1];
+    let ry = rays_of_film[2];
     let factor = 1 / length(ray.d);
     let d = ray.d * factor;
     let scale = number(world.camera + 19);
-    return Differentials(
+    let near = Differentials(
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
     );
+    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), 0), near);
 }
 
 // A sample of a pixel: the camera ray, its wavelengths, and its weight in the pixel.
@@ -93,18 +99,19 @@ struct CameraSample {
 // filter, time, position on the lens, and then those of the algorithm.
 fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
     place = Address(array(pixel.x, pixel.y), index, 0);
-    let wavelength = get_1d();
-    let film = get_2d();
-    let time = get_1d();
-    let lens = get_2d();
+    var u: array<vec2f, 4>;
+    for (var i = 0u; i < 4; i++) {
+        u[i] = next_numbers((i & 1) == 1);
+    }
     let is_centered = world.is_centered == 1;
-    let drawn = select(filter_sample(film), vec3f(0, 0, 1), is_centered);
+    let drawn = select(filter_sample(u[1]), vec3f(0, 0, 1), is_centered);
     let position = vec2f(pixel) + 0.5 + drawn.xy;
-    let on_lens = select(lens, vec2f(0.5), is_centered);
+    let camera = camera_ray(position, select(u[3], vec2f(0.5), is_centered));
+    let wavelength = select(u[0].x, 0.5, world.has_one_wavelength == 1);
     return CameraSample(
-        camera_ray(position, on_lens),
-        camera_differentials(position, on_lens),
-        SampledWavelengths_sample_visible(select(wavelength, 0.5, world.has_one_wavelength == 1)),
+        camera.ray,
+        camera.near,
+        SampledWavelengths_sample_visible(wavelength),
         position,
         drawn.z,
     );

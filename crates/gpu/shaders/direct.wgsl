@@ -5,32 +5,43 @@ fn scattered(s: Surface, bsdf: Bsdf, light: LightSample) -> vec4f {
     return bsdf_f(bsdf, s.wo, light.wi) * light.l * abs(dot(light.wi, s.ns));
 }
 
-// The light of one light that a surface scatters, weighted against sampling of the BSDF.
-fn direct_light(s: Surface, context: ShapeSampleContext, bsdf: Bsdf, lambda: SampledWavelengths) -> vec4f {
-    let u = get_1d();
-    let u_light = get_2d();
+// A shadow ray, and the light that it brings if nothing is in its way.
+struct DirectLight {
+    shadow: ShadowRay,
+    l: vec4f,
+}
+
+// The light of the light that `u` chooses and of its point that `u_light` chooses, which a surface
+// scatters, weighted against sampling of the BSDF.
+fn direct_light(
+    s: Surface,
+    context: ShapeSampleContext,
+    bsdf: Bsdf,
+    lambda: SampledWavelengths,
+    u: f32,
+    u_light: vec2f,
+) -> DirectLight {
+    var found: DirectLight;
     let choice = choose_light(context, u);
     if (!choice.valid) {
-        return vec4f();
+        return found;
     }
     let light = sample_light(choice.light, context, u_light, lambda, true);
     if (!light.valid) {
-        return vec4f();
+        return found;
     }
-    var l = scattered(s, bsdf, light);
+    let l = scattered(s, bsdf, light);
     if (is_black(l)) {
-        return l;
+        return found;
     }
     let pdf = choice.pmf * light.pdf;
     var weight = 1.0;
     if (!is_delta(light_record(choice.light))) {
         weight = power_heuristic(pdf, bsdf_pdf(bsdf, s.wo, light.wi));
     }
-    let shadow = shadow_ray(s, light);
-    if (occluded(shadow.ray, shadow.t_max)) {
-        return vec4f();
-    }
-    return l * (weight / pdf);
+    found.shadow = shadow_ray(s, light);
+    found.l = l * (weight / pdf);
+    return found;
 }
 
 // The light of all lights that a surface scatters; as if nothing were in between, unless that is

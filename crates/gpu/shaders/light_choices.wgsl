@@ -70,13 +70,18 @@ fn choose_by_power(bins: u32, u: f32) -> Choice {
     return Choice(light, pmf, pmf > 0);
 }
 
-fn importance(nodes: u32, node: u32, context: ShapeSampleContext) -> f32 {
-    let at = nodes + 13 * node;
-    let cluster = Cluster(
-        vector(at), number(at + 3), vector(at + 4), number(at + 7), number(at + 8), number(at + 9),
-        number(at + 10), number(at + 11) > 0,
-    );
-    return Cluster_importance(cluster, context.p.p, context.ns);
+// The importance of the two nodes below another one, of which the second is given.
+fn importances(nodes: u32, node: u32, second: u32, context: ShapeSampleContext) -> vec2f {
+    var both: vec2f;
+    for (var i = 0u; i < 2; i++) {
+        let at = nodes + 13 * select(node + 1, second, i == 1);
+        let cluster = Cluster(
+            vector(at), number(at + 3), vector(at + 4), number(at + 7), number(at + 8), number(at + 9),
+            number(at + 10), number(at + 11) > 0,
+        );
+        both[i] = Cluster_importance(cluster, context.p.p, context.ns);
+    }
+    return both;
 }
 
 // A light of the tree.
@@ -86,14 +91,13 @@ fn descend(nodes: u32, context: ShapeSampleContext, start: f32, probability: f32
     var node = 0u;
     var kind = tables[nodes + 12];
     while (kind < TREE_LEAF) {
-        let a = importance(nodes, node + 1, context);
-        let b = importance(nodes, kind, context);
-        if (a == 0 && b == 0) {
+        let both = importances(nodes, node, kind, context);
+        if (all(both == vec2f())) {
             return Choice(0, 0, false);
         }
-        let p = a / (a + b);
+        let p = both.x / (both.x + both.y);
         let goes_left = u < p;
-        let chosen = select(b / (a + b), p, goes_left);
+        let chosen = select(both.y / (both.x + both.y), p, goes_left);
         u = clamp(select(u - p, u, goes_left) / chosen, 0, float_ONE_MINUS_EPSILON);
         pmf *= chosen;
         node = select(kind, node + 1, goes_left);
@@ -111,12 +115,11 @@ fn follow(nodes: u32, context: ShapeSampleContext, trail: vec2u, probability: f3
         if (kind >= TREE_LEAF || pmf == 0) {
             break;
         }
-        let a = importance(nodes, node + 1, context);
-        let b = importance(nodes, kind, context);
+        let both = importances(nodes, node, kind, context);
         let word = select(trail.y, trail.x, depth < 32);
         let goes_left = (word >> (depth & 31) & 1) == 0;
-        let chosen = select(b, a, goes_left);
-        pmf = select(pmf * (chosen / (a + b)), 0, chosen == 0);
+        let chosen = select(both.y, both.x, goes_left);
+        pmf = select(pmf * (chosen / (both.x + both.y)), 0, chosen == 0);
         node = select(kind, node + 1, goes_left);
     }
     return pmf;

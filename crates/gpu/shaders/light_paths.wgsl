@@ -121,7 +121,7 @@ fn surface_direction_density(at: u32, n: vec3f, w: vec3f) -> f32 {
     if (tables[at + 3] == 1) {
         return 0.5 * cosine_hemisphere_pdf(abs(cosine));
     }
-    return cosine_hemisphere_pdf(cosine);
+    return cosine_hemisphere_pdf(max(cosine, 0));
 }
 
 // A ray that a light emits, chosen by `u` for the light, and by `u_position` and `u_direction`.
@@ -134,18 +134,18 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     let at = light_record(choice.light);
     e.origin.light = choice.light;
     e.valid = choice.valid;
-    var l: vec4f;
+    // What the emission is multiplied by.
+    var share = vec4f(1);
     var pdf = 1.0;
     var w: vec3f;
     switch (tables[at]) {
         case POINT_LIGHT, SPOT_LIGHT: {
-            l = emission(at, lambda);
             e.origin.p = vector(at + 4);
             if (tables[at] == SPOT_LIGHT) {
                 let axis = vector(at + 7);
                 w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
                 let cosine = dot(w, axis);
-                l *= smooth_step(cosine, number(at + 11), number(at + 10));
+                share *= smooth_step(cosine, number(at + 11), number(at + 10));
                 pdf = spot_density(at, cosine);
             } else {
                 w = sample_uniform_sphere(u_direction);
@@ -154,8 +154,8 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             e.ray = Ray(e.origin.p, w, 0);
         }
         case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
-            let seen = sample_light(choice.light, ShapeSampleContext(), u_direction, lambda, false);
-            l = seen.l;
+            let seen = sample_far_light(at, u_direction, lambda, false);
+            share = seen.l;
             let sphere = sphere_of_scene();
             let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);
             let o = sphere.xyz + Frame_from_local(Frame_from_z(seen.wi), disk) * sphere.w;
@@ -180,10 +180,11 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             e.origin.n = point.n;
             e.origin.uv = point.uv;
             e.ray = Ray_spawn(point.p, point.n, w, 0);
-            l = light_radiance(at, point.n, w, lambda) * abs(dot(point.n, w));
+            share *= abs(dot(point.n, w));
             pdf = point.pdf * surface_direction_density(at, point.n, w);
         }
     }
+    let l = emission(at, lambda) * share;
     e.valid = e.valid && pdf > 0 && !is_black(l);
     e.beta = l / (pdf * choice.pmf);
     return e;

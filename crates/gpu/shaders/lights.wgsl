@@ -45,9 +45,14 @@ fn flat_light(at: u32) -> FlatShape {
     return FlatShape(vector(at + 4), sides, vector(at + 13), tables[at] == TRIANGLE_LIGHT);
 }
 
+// Whether a surface with the normal `n` emits along `w`.
+fn emits(at: u32, n: vec3f, w: vec3f) -> bool {
+    return !(tables[at + 3] == 0 && dot(n, w) < 0);
+}
+
 // The radiance that a surface with the normal `n` sends along `w`.
 fn light_radiance(at: u32, n: vec3f, w: vec3f, lambda: SampledWavelengths) -> vec4f {
-    if (tables[at + 3] == 0 && dot(n, w) < 0) {
+    if (!emits(at, n, w)) {
         return vec4f();
     }
     return emission(at, lambda);
@@ -75,45 +80,22 @@ fn sample_light(
     allow_incomplete: bool,
 ) -> LightSample {
     let at = light_record(light);
+    var sample: LightSample;
     switch (tables[at]) {
-        case POINT_LIGHT, SPOT_LIGHT: { return sample_point_light(at, context, lambda); }
-        case DISTANT_LIGHT: {
-            var sample = no_light();
-            sample.l = emission(at, lambda);
-            sample.wi = vector(at + 4);
-            sample.pdf = 1;
-            sample.is_distant = true;
-            sample.valid = true;
-            return sample;
+        case POINT_LIGHT, SPOT_LIGHT: { sample = sample_point_light(at, context); }
+        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
+            sample = sample_far_light(at, u, lambda, allow_incomplete);
         }
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let sample = FlatShape_sample_from(flat_light(at), context, u);
-            return sample_surface(at, context, sample.v0, sample.v1, lambda);
-        }
-        case SPHERE_LIGHT: {
-            let sample = sample_sphere(at, context, u);
-            return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
-        }
-        case DISK_LIGHT, CYLINDER_LIGHT: {
-            let sample = sample_revolved(at, context, u);
-            return sample_surface(at, context, sample, sample.pdf > 0 && sample.pdf < infinity(), lambda);
-        }
-        case IMAGE_LIGHT: { return sample_sky(at, u, lambda, allow_incomplete); }
-        default: {
-            var sample = no_light();
-            if (!allow_incomplete) {
-                sample.l = emission(at, lambda);
-                sample.wi = sample_uniform_sphere(u);
-                sample.pdf = 1 / (4 * 3.1415927);
-                sample.is_distant = true;
-                sample.valid = true;
-            }
-            return sample;
-        }
+        default: { sample = sample_surface(at, context, u); }
     }
+    sample.l *= emission(at, lambda);
+    sample.valid = sample.valid && !is_black(sample.l);
+    return sample;
 }
 
-fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
+// The samples of each kind of light have in `l` what its emission is multiplied by.
+
+fn sample_point_light(at: u32, context: ShapeSampleContext) -> LightSample {
     var sample = no_light();
     sample.p = Point3Error(vector(at + 4), vec3f());
     let to_light = sample.p.p - context.p.p;
@@ -126,31 +108,58 @@ fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavel
     if (tables[at] == SPOT_LIGHT) {
         share = smooth_step(dot(-sample.wi, vector(at + 7)), number(at + 11), number(at + 10));
     }
-    sample.l = emission(at, lambda) * (share / distance2);
+    sample.l = vec4f(share / distance2);
     sample.pdf = 1;
-    sample.valid = !is_black(sample.l);
+    sample.valid = true;
     return sample;
 }
 
-// The light of a point that is sampled on a surface.
-fn sample_surface(
-    at: u32,
-    context: ShapeSampleContext,
-    point: ShapeSample,
-    is_valid: bool,
-    lambda: SampledWavelengths,
-) -> LightSample {
+fn sample_far_light(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: bool) -> LightSample {
+    var sample = no_light();
+    sample.l = vec4f(1);
+    sample.is_distant = true;
+    switch (tables[at]) {
+        case DISTANT_LIGHT: {
+            sample.wi = vector(at + 4);
+            sample.pdf = 1;
+            sample.valid = true;
+        }
+        case IMAGE_LIGHT: { sample_sky(at, u, lambda, allow_incomplete, &sample); }
+        default: {
+            sample.wi = sample_uniform_sphere(u);
+            sample.pdf = 1 / (4 * 3.1415927);
+            sample.valid = !allow_incomplete;
+        }
+    }
+    return sample;
+}
+
+fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f) -> LightSample {
+    var point: ShapeSample;
+    var is_valid = true;
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let found = FlatShape_sample_from(flat_light(at), context, u);
+            point = found.v0;
+            is_valid = found.v1;
+        }
+        case SPHERE_LIGHT: { point = sample_sphere(at, context, u); }
+        default: { point = sample_revolved(at, context, u); }
+    }
+    if (tables[at] >= SPHERE_LIGHT) {
+        is_valid = point.pdf > 0 && point.pdf < infinity();
+    }
     var sample = no_light();
     let to_light = point.p.p - context.p.p;
     if (!is_valid || Vec3_length_squared(to_light) == 0) {
         return sample;
     }
     sample.wi = Vec3_normalize(to_light);
-    sample.l = light_radiance(at, point.n, -sample.wi, lambda);
+    sample.l = vec4f(1);
     sample.pdf = point.pdf;
     sample.p = point.p;
     sample.n = point.n;
-    sample.valid = !is_black(sample.l);
+    sample.valid = emits(at, point.n, -sample.wi);
     return sample;
 }
 
@@ -264,11 +273,12 @@ struct Sky {
 
 fn sky(light: u32, d: vec3f, lambda: SampledWavelengths) -> Sky {
     let at = light_record(light);
-    if (tables[at] == UNIFORM_LIGHT) {
-        return Sky(emission(at, lambda), 0);
+    var seen = Sky(emission(at, lambda), 0);
+    if (tables[at] == IMAGE_LIGHT) {
+        let st = sky_position(at, d);
+        seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, true));
     }
-    let st = sky_position(at, d);
-    return Sky(sky_image(at, st, lambda), sky_density(at, st, true));
+    return seen;
 }
 
 // The position in an image of the sphere that is seen along a direction.
@@ -292,7 +302,7 @@ fn solid_angle_density(at: u32, st: vec2f) -> f32 {
     return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, tables[at + 6] == 0);
 }
 
-// The radiance of the pixel at a position.
+// What the pixel at a position multiplies the emission by.
 fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
     let size = vec2u(tables[at + 4], tables[at + 5]);
     let pixel = min(vec2u(clamp(st * vec2f(size), vec2f(), vec2f(size))), size - 1);
@@ -302,10 +312,16 @@ fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
     for (var i = 0; i < 4; i++) {
         l[i] = number(rgb) * RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]);
     }
-    return l * emission(at, lambda);
+    return l;
 }
 
-fn sample_sky(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: bool) -> LightSample {
+fn sample_sky(
+    at: u32,
+    u: vec2f,
+    lambda: SampledWavelengths,
+    allow_incomplete: bool,
+    sample: ptr<function, LightSample>,
+) {
     let drawn = draw_2d(tables[at + select(7u, 27u, allow_incomplete)], u);
     let st = drawn.xy;
     var local: vec3f;
@@ -316,11 +332,8 @@ fn sample_sky(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: b
         local = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
     }
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
-    var sample = no_light();
-    sample.wi = Vec3_normalize(times(Rows(vector(at + 17), vector(at + 20), vector(at + 23)), local));
-    sample.l = sky_image(at, st, lambda);
-    sample.pdf = drawn.z / solid_angle;
-    sample.is_distant = true;
-    sample.valid = drawn.z != 0 && solid_angle != 0;
-    return sample;
+    (*sample).wi = Vec3_normalize(times(Rows(vector(at + 17), vector(at + 20), vector(at + 23)), local));
+    (*sample).l = sky_image(at, st, lambda);
+    (*sample).pdf = drawn.z / solid_angle;
+    (*sample).valid = drawn.z != 0 && solid_angle != 0;
 }

@@ -128,16 +128,20 @@ fn halton_at(at: u32, is_pair: bool) -> vec2f {
     return u;
 }
 
-fn get_1d() -> f32 {
-    let u = coordinates(false).x;
-    place.dimension += 1;
+// The next random number, or pair of them. Samplers are long: what draws several does so in a loop,
+// because drivers inline all calls.
+fn next_numbers(is_pair: bool) -> vec2f {
+    let u = coordinates(is_pair);
+    place.dimension += select(1u, 2u, is_pair);
     return u;
 }
 
+fn get_1d() -> f32 {
+    return next_numbers(false).x;
+}
+
 fn get_2d() -> vec2f {
-    let u = coordinates(true);
-    place.dimension += 2;
-    return u;
+    return next_numbers(true);
 }
 
 // A random number that depends on two vectors and a word alone.

@@ -43,8 +43,11 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         let sides = array(Directions_Reflection, Directions_Transmission);
         var samples: array<BsdfSample, 2>;
         for (var i = 0u; i < 2; i++) {
-            let uc = get_1d();
-            samples[i] = bsdf_sample_of(bsdf, s.wo, uc, get_2d(), sides[i]);
+            var u: array<vec2f, 2>;
+            for (var j = 0u; j < 2; j++) {
+                u[j] = next_numbers(j == 1);
+            }
+            samples[i] = bsdf_sample_of(bsdf, s.wo, u[0].x, u[1], sides[i]);
         }
         for (var i = 2u; i > 0; i--) {
             let sample = samples[i - 1];

@@ -6,8 +6,9 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use rayon::prelude::*;
 use wgpu::util::DeviceExt;
-use wgpu::{BufferUsages, DeviceType, Limits};
+use wgpu::{BufferUsages, DeviceType, InstanceFlags, Limits};
 
 /// What buffers are used for.
 const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
@@ -74,7 +75,11 @@ impl Device {
     /// Opens the GPU whose name contains `name`, without regard to case; the fastest kind there is
     /// if that is empty. A software renderer is the last choice.
     pub fn open(name: &str) -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        // Without the names and the places of the source in what drivers get, which take longer to
+        // find than all else of a shader's translation.
+        let flags = InstanceFlags::default().difference(InstanceFlags::DEBUG);
+        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { flags, ..descriptor });
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
         adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
             DeviceType::DiscreteGpu => 0,
@@ -196,18 +201,37 @@ impl Device {
 
     /// Compiles the function `main` of a shader.
     pub fn kernel(&self, name: &str, source: &str) -> Result<Kernel, GpuError> {
+        let module = self.module(name, source);
+        self.checked(self.function(&module, "main"))
+    }
+
+    /// Compiles functions of a shader, as many at once as there are threads.
+    pub fn kernels<S: AsRef<str> + Sync>(
+        &self,
+        name: &str,
+        source: &str,
+        functions: &[S],
+    ) -> Result<Vec<Kernel>, GpuError> {
+        let module = self.module(name, source);
+        let kernels = functions.par_iter().map(|function| self.function(&module, function.as_ref()));
+        self.checked(kernels.collect())
+    }
+
+    fn module(&self, name: &str, source: &str) -> wgpu::ShaderModule {
         let source = wgpu::ShaderSource::Wgsl(source.into());
-        let module =
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source })
+    }
+
+    fn function(&self, module: &wgpu::ShaderModule, name: &str) -> Kernel {
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
             layout: None,
-            module: &module,
-            entry_point: Some("main"),
+            module,
+            entry_point: Some(name),
             compilation_options: Default::default(),
             cache: None,
         });
-        self.checked(Kernel { pipeline })
+        Kernel { pipeline }
     }
 
     /// Starts a kernel in this many workgroups, after all that was started before.

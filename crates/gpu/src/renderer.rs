@@ -34,8 +34,12 @@ const WORKGROUP: u32 = 8;
 /// The kernels of a device, each compiled when it is first used.
 pub struct Kernels {
     device: Device,
-    made: Mutex<BTreeMap<String, Arc<Kernel>>>,
+    /// By their sources. What compiles one holds up those alone that want the same.
+    made: Mutex<BTreeMap<String, Slot>>,
 }
+
+/// A kernel, once it is compiled.
+type Slot = Arc<Mutex<Option<Arc<Kernel>>>>;
 
 impl Kernels {
     /// No kernels yet.
@@ -50,12 +54,13 @@ impl Kernels {
 
     pub(crate) fn get(&self, name: &str, source: String) -> Result<Arc<Kernel>, GpuError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kernel) = made.get(&source) {
+        let slot = made.entry(source.clone()).or_default().clone();
+        drop(made);
+        let mut kernel = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kernel) = &*kernel {
             return Ok(kernel.clone());
         }
-        let kernel = Arc::new(self.device.kernel(name, &source)?);
-        made.insert(source, kernel.clone());
-        Ok(kernel)
+        Ok(kernel.insert(Arc::new(self.device.kernel(name, &source)?)).clone())
     }
 }
 

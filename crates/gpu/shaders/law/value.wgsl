@@ -214,17 +214,8 @@ struct Absorption {
 
 fn Absorption_run(this_: Absorption) -> vec4f {
     var passed = this_.color;
-    {
-        passed[0] = power_pow(passed[0], 0.5f * this_.lengths);
-    }
-    {
-        passed[1] = power_pow(passed[1], 0.5f * this_.lengths);
-    }
-    {
-        passed[2] = power_pow(passed[2], 0.5f * this_.lengths);
-    }
-    {
-        passed[3] = power_pow(passed[3], 0.5f * this_.lengths);
+    for (var i = 0u; i < sampled_N; i++) {
+        passed[i] = power_pow(passed[i], 0.5f * this_.lengths);
     }
     return passed;
 }

@@ -32,22 +32,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var aim = 0.0;
     var light = no_light();
     for (var i = 0u; i < CANDIDATES && receiver.receives; i++) {
-        let choice = choose_light(receiver.context, get_1d());
-        let u = get_2d();
-        let chance = get_1d();
+        // What chooses the light and its point, and whether it is taken.
+        var u: array<vec2f, 3>;
+        for (var j = 0u; j < 3; j++) {
+            u[j] = next_numbers(j == 1);
+        }
+        let choice = choose_light(receiver.context, u[0].x);
         if (!choice.valid) {
             continue;
         }
         let dimension = place.dimension;
         place.dimension = 0;
-        let found = find(receiver, choice.light, u, lambda);
+        let found = find(receiver, choice.light, u[1], lambda);
         let here = aim_of(found);
         place.dimension = dimension;
         let weight = here / choice.pmf;
         sum += weight;
-        if (weight > 0 && chance * sum < weight) {
+        if (weight > 0 && u[2].x * sum < weight) {
             r.light = choice.light;
-            r.u = u;
+            r.u = u[1];
             aim = here;
             light = found.light;
         }

@@ -103,23 +103,24 @@ macro_rules! law {
     };
 }
 
-/// WGSL that compares value and density of a BxDF.
+/// WGSL that compares value and density of a BxDF. The value is at one place of the program, because
+/// it may be long.
 macro_rules! value {
     ($name:literal, $bxdf:literal) => {
         concat!(
             "let b = ",
             $bxdf,
             ";
-            let f = ",
+            var f: array<vec4f, 2>;
+            for (var mode = TransportMode_Radiance; mode <= TransportMode_Importance; mode++) {
+                f[mode] = ",
             $name,
-            "_f(b, wo, wi, TransportMode_Radiance);
-            let g = ",
-            $name,
-            "_f(b, wo, wi, TransportMode_Importance);
+            "_f(b, wo, wi, mode);
+            }
             let p = ",
             $name,
             "_pdf(b, wo, wi, TransportMode_Radiance, Directions_All);
-            y = array(f.x, f.y, f.z, f.w, g.x, p, 0, 0);"
+            y = array(f[0].x, f[0].y, f[0].z, f[0].w, f[1].x, p, 0, 0);"
         )
     };
 }

@@ -79,10 +79,12 @@ const LAWS: [Law; 2] = [
         flips: 1e-3,
         rust: |x| value(&surface(x), x),
         wgsl: surface!(
-            "let f = OpenPbr_f(b, wo, wi, TransportMode_Radiance);
-            let g = OpenPbr_f(b, wo, wi, TransportMode_Importance);
+            "var f: array<vec4f, 2>;
+            for (var mode = TransportMode_Radiance; mode <= TransportMode_Importance; mode++) {
+                f[mode] = OpenPbr_f(b, wo, wi, mode);
+            }
             let d = OpenPbr_pdf(b, wo, wi, TransportMode_Radiance, Directions_All);
-            y = array(f.x, f.y, f.z, f.w, g.x, d, 0, 0);"
+            y = array(f[0].x, f[0].y, f[0].z, f[0].w, f[1].x, d, 0, 0);"
         ),
     },
     Law {

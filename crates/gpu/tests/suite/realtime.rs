@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use alhazen_gpu::{Algorithm, Kernels, Realtime, Weights};
 use description::TransformDesc;
+use image::Image;
 use math::{DMat4, DVec3};
+use sampling::Sampler;
+use sampling::sampler::Independent;
 use scene::View;
 
 use crate::pictures::{Case, SAMPLES, Shared, kernels_of};
@@ -49,7 +52,7 @@ fn a_camera_at_rest_gets_the_picture_of_the_cpu() {
         let shown = shown.expect("a picture");
         assert_eq!(realtime.rested(), SAMPLES);
         assert!(shown.rays >= shown.pixels.len() as u64 / 4, "{} rays", shown.rays);
-        let cpu: Vec<f32> = case.on_cpu(&algorithm).values().collect();
+        let cpu: Vec<f32> = case.on_cpu(&algorithm, SAMPLES).values().collect();
         let mean = cpu.iter().sum::<f32>() / cpu.len() as f32;
         let pairs = shown.pixels.as_flattened().iter().zip(&cpu);
         let apart = |(a, b): &(&f32, &f32)| (*a - *b).abs() > 1e-3 * b.abs().max(mean / 10.0);
@@ -67,6 +70,12 @@ pub fn moved(case: &Case, part: f64) -> View {
     let home = case.desc.camera.value.camera_from_world.start;
     desc.camera.value.camera_from_world = TransformDesc::fixed(DMat4::from_translation(by) * home);
     View::compile(&desc, case.scene.world_from_render()).expect("a view").view
+}
+
+/// The pixels of a picture.
+pub fn colors(picture: &Image) -> Vec<[f32; 3]> {
+    let values: Vec<f32> = picture.values().collect();
+    values.as_chunks().0.to_vec()
 }
 
 /// The mean of squared errors relative to the reference, but for the pixels with the largest ones.
@@ -87,7 +96,7 @@ fn save(name: &str, pictures: &[&[[f32; 3]]], [width, height]: [u32; 2]) {
         let (x, y) = (x / ZOOM, y / ZOOM);
         pictures[(x / width) as usize][(y * width + x % width) as usize]
     };
-    let picture = image::Image::from_fn(ZOOM * all, ZOOM * height, ["R", "G", "B"], at);
+    let picture = Image::from_fn(ZOOM * all, ZOOM * height, ["R", "G", "B"], at);
     image::write(&picture, Path::new(&folder).join(name), &Default::default()).expect("a file");
 }
 
@@ -115,14 +124,15 @@ fn pictures_in_motion_are_better_than_their_samples() {
     }
     let first_at_rest = at_rest(&mut realtime, 1);
     // Another camera first, so that no filtered picture takes part.
-    let last = moved(&case, 0.01 * f64::from(FRAMES - 1));
     let mut plain = self::realtime(&case, &kernels, &algorithm);
-    plain.aim(&last, pixels).expect("a camera");
+    plain.aim(&moved(&case, 0.01 * f64::from(FRAMES - 1)), pixels).expect("a camera");
     let one = at_rest(&mut plain, 1);
     // The references have less than a hundredth of the error of a sample.
-    let reference = at_rest(&mut plain, 255);
-    plain.aim(&moved(&case, 0.0), pixels).expect("a camera");
-    let reference_of_first = at_rest(&mut plain, 255);
+    case.sampler = Sampler::Independent(Independent::new(256, 9));
+    let [reference_of_first, reference] = [0, FRAMES - 1].map(|frame| {
+        case.view = moved(&case, 0.01 * f64::from(frame));
+        colors(&case.on_cpu(&algorithm, 256))
+    });
     let filtered = &frames[FRAMES as usize - 1];
     save("motion.png", &[&one, &frames[0].pixels, &filtered.pixels, &reference], [64, 48]);
     let errors = [&one, &filtered.pixels, &first_at_rest];

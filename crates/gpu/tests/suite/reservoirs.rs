@@ -13,7 +13,7 @@ use scene::View;
 use testkit::{Moments, welch_test};
 
 use crate::pictures::Case;
-use crate::realtime::{kernels, moved, rel_mse, sharing};
+use crate::realtime::{colors, kernels, moved, rel_mse, sharing};
 
 /// A floor with walls between lights of many strengths, in a row of rows.
 fn lights(rows: u32) -> String {
@@ -85,15 +85,13 @@ fn moments(pictures: impl Iterator<Item = Vec<f64>>) -> Vec<Moments> {
     moments
 }
 
-/// Some pictures by paths, of so many samples of each pixel.
-fn by_paths(case: &mut Case, kernels: &Arc<Kernels>, count: u32, samples: u32) -> Vec<Moments> {
+/// Some pictures by paths of the CPU, of so many samples of each pixel.
+fn by_paths(case: &mut Case, count: u32, samples: u32) -> Vec<Moments> {
     let algorithm = direct(case);
     let width = case.desc.film.resolution[0] as usize;
     moments((0..count).map(|seed| {
         case.sampler = Sampler::Independent(Independent::new(samples, 100 + seed));
-        let mut realtime = sharing(case, kernels, &algorithm, None);
-        let picture = realtime.resting(samples, true).expect("a frame").expect("a picture");
-        means(&picture.pixels, width)
+        means(&colors(&case.on_cpu(&algorithm, samples)), width)
     }))
 }
 
@@ -129,7 +127,7 @@ fn shared_samples_have_the_mean_of_paths() {
     // The mean of 64 frames has an error of 2.5 % in the unbiased form, whose frames have a
     // standard deviation of 20 %, as pixels near each other share samples; that of paths, 0.5 %. A
     // bias of an eighth is so found nine times of ten, by one of as many tests as there are means.
-    let paths = by_paths(&mut case, &kernels, 32, 16);
+    let paths = by_paths(&mut case, 32, 16);
     let [unbiased, biased] =
         [Weights::Unbiased, Weights::Biased].map(|weights| by_sharing(&case, &kernels, weights, 64));
     let [of_paths, of_unbiased, of_biased] = [&paths, &unbiased, &biased].map(|list| list[list.len() - 1]);

@@ -7,7 +7,7 @@ use alhazen_gpu::Algorithm;
 use image::{ColorEncoding, Format, Image, WriteOptions};
 use import::MemoryAssets;
 
-use crate::pictures::{Case, kernels};
+use crate::pictures::Case;
 
 /// Tiles in a row.
 const ROW: usize = 6;
@@ -54,8 +54,7 @@ fn wall(textures: &[String]) -> Case {
 
 /// Compares a wall of textures by both engines.
 fn compare(name: &str, textures: &[String]) {
-    let Some(kernels) = kernels() else { return };
-    assert_eq!(wall(textures).compare(name, &kernels, &Algorithm::RayCasting), None);
+    assert_eq!(wall(textures).compare(name, &Algorithm::RayCasting), None);
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Rays through the trees on a GPU, beside the CPU's.
 
 use std::f32::consts::{PI, TAU};
+use std::sync::OnceLock;
 
-use alhazen_gpu::{Bvh, BvhError, Device, GpuError, shaders};
+use alhazen_gpu::{Bvh, BvhError, Device, GpuError, Kernel, shaders};
 use geometry::*;
 use math::*;
 use sampling::warp::sample_uniform_sphere;
@@ -32,9 +33,21 @@ pub const KERNEL: &str = "
 /// A hit, or none, and whether there is any.
 type Traced = (Option<Hit>, bool);
 
-fn on_gpu(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
+/// A device and the kernel, which is compiled once.
+type Tracer = (Device, Kernel);
+
+fn tracer() -> Option<&'static Tracer> {
+    static TRACER: OnceLock<Option<Tracer>> = OnceLock::new();
+    let make = || {
+        let device = crate::device()?;
+        let kernel = device.kernel("trace", &format!("{}{KERNEL}", shaders::TRACE));
+        Some((device, kernel.unwrap_or_else(|error| panic!("{error}"))))
+    };
+    TRACER.get_or_init(make).as_ref()
+}
+
+fn on_gpu((device, kernel): &Tracer, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
     let bvh = Bvh::new(world, &|_| false).expect("a world of triangles");
-    let kernel = device.kernel("trace", &format!("{}{KERNEL}", shaders::TRACE))?;
     let numbers = |(ray, end): &(Ray, f32)| [ray.o.x, ray.o.y, ray.o.z, *end, ray.d.x, ray.d.y, ray.d.z, 0.0];
     let buffers = [
         device.buffer("world", &[bvh.top])?,
@@ -45,7 +58,7 @@ fn on_gpu(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Tra
         device.buffer("hits", &vec![[0u32; 8]; rays.len()])?,
     ];
     let [a, b, c, d, e, f] = &buffers;
-    device.run(&kernel, &[a, b, c, d, e, f], [rays.len().div_ceil(64) as u32, 1, 1])?;
+    device.run(kernel, &[a, b, c, d, e, f], [rays.len().div_ceil(64) as u32, 1, 1])?;
     let hit = |[t, u, v, geometry, primitive, instance, found, any]: [u32; 8]| {
         let path = if instance == u32::MAX {
             InstancePath::TOP
@@ -69,9 +82,9 @@ struct Comparison {
     distance: f32,
 }
 
-fn compare(device: &Device, world: &World, rays: &[(Ray, f32)]) -> Comparison {
+fn compare(tracer: &Tracer, world: &World, rays: &[(Ray, f32)]) -> Comparison {
     let mut comparison = Comparison::default();
-    let results = on_gpu(device, world, rays).unwrap_or_else(|error| panic!("{error}"));
+    let results = on_gpu(tracer, world, rays).unwrap_or_else(|error| panic!("{error}"));
     for ((ray, end), (hit, any)) in rays.iter().zip(results) {
         let expected = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default());
         assert_eq!(any, hit.is_some(), "{ray:?}");
@@ -154,16 +167,16 @@ fn world(meshes: impl IntoIterator<Item = TriangleMesh>) -> World {
 
 #[test]
 fn random_rays_meet_the_triangles_that_they_meet_on_the_cpu() {
-    let Some(device) = crate::device() else { return };
+    let Some(tracer) = tracer() else { return };
     for world in [world([ball(300)]), world([soup(5000), ball(10)]), world([soup(3)]), world([])] {
-        let found = compare(&device, &world, &random_rays(20_000, 4.0));
+        let found = compare(tracer, &world, &random_rays(20_000, 4.0));
         assert!(found.other <= 2 && found.distance < 1e-5, "{found:?}");
     }
 }
 
 #[test]
 fn rays_through_edges_and_vertices_do_not_leak() {
-    let Some(device) = crate::device() else { return };
+    let Some(tracer) = tracer() else { return };
     let mesh = ball(40);
     let mut random = Random::new(7);
     let ray = |i: usize| {
@@ -174,7 +187,7 @@ fn rays_through_edges_and_vertices_do_not_leak() {
         (Ray::new(o, target - o, 0.0), f32::INFINITY)
     };
     let rays: Vec<_> = (0..60_000).map(ray).collect();
-    let results = on_gpu(&device, &world([mesh.clone()]), &rays).unwrap_or_else(|error| panic!("{error}"));
+    let results = on_gpu(tracer, &world([mesh.clone()]), &rays).unwrap_or_else(|error| panic!("{error}"));
     for ((ray, _), (hit, any)) in rays.iter().zip(results) {
         let hit = hit.unwrap_or_else(|| panic!("{ray:?} leaks"));
         assert!(any && (hit.t - 1.0).abs() < 1e-4, "{ray:?}: {hit:?}");
@@ -183,14 +196,14 @@ fn rays_through_edges_and_vertices_do_not_leak() {
 
 #[test]
 fn of_triangles_at_one_place_the_first_is_hit() {
-    let Some(device) = crate::device() else { return };
-    let found = compare(&device, &world([ball(12), ball(12)]), &random_rays(5000, 4.0));
+    let Some(tracer) = tracer() else { return };
+    let found = compare(tracer, &world([ball(12), ball(12)]), &random_rays(5000, 4.0));
     assert!(found.hits > 500 && found.other <= 2, "{found:?}");
 }
 
 #[test]
 fn instances_are_met() {
-    let Some(device) = crate::device() else { return };
+    let Some(tracer) = tracer() else { return };
     let mut builder = World::builder();
     builder.add_geometry(GroupId::TOP, soup(500));
     let groups = [builder.add_group(), builder.add_group()];
@@ -205,7 +218,7 @@ fn instances_are_met() {
         builder.add_instance(GroupId::TOP, instance);
     }
     // The CPU transforms rays in doubles.
-    let found = compare(&device, &builder.build(), &random_rays(20_000, 6.0));
+    let found = compare(tracer, &builder.build(), &random_rays(20_000, 6.0));
     assert!(found.hits > 1000 && found.other <= 4 && found.distance < 1e-4, "{found:?}");
 }
 
@@ -229,7 +242,7 @@ fn shapes() -> Vec<Shape> {
 
 #[test]
 fn shapes_are_met() {
-    let Some(device) = crate::device() else { return };
+    let Some(tracer) = tracer() else { return };
     let mut builder = World::builder();
     builder.add_geometry(GroupId::TOP, soup(30));
     let inner = builder.add_group();
@@ -242,7 +255,7 @@ fn shapes_are_met() {
     let render_from_instance = Transform::translate(Vec3::new(0.0, 0.5, 1.5)).into();
     builder.add_instance(GroupId::TOP, Instance { group: inner, render_from_instance });
     // Rays that graze an edge may miss it on one side.
-    let found = compare(&device, &builder.build(), &random_rays(20_000, 6.0));
+    let found = compare(tracer, &builder.build(), &random_rays(20_000, 6.0));
     assert!(found.hits > 5000 && found.other <= 20 && found.distance < 1e-3, "{found:?}");
 }
 

@@ -1,7 +1,7 @@
 //! The same numbers through a law on the CPU and through its translation on the GPU.
 
 use crate::laws::LAWS;
-use alhazen_gpu::{Device, GpuError, shaders};
+use alhazen_gpu::{Buffer, Device, GpuError, shaders};
 use testkit::Random;
 
 /// Numbers given to a law: directions `wo` and `wi`, `u` and `v`, `uc`, and three more.
@@ -52,41 +52,48 @@ const TABLES: &str = "@group(0) @binding(2) var<storage, read_write> tables: arr
     fn number(at: u32) -> f32 { return bitcast<f32>(tables[at]); }
     fn vector(at: u32) -> vec3f { return vec3f(number(at), number(at + 1), number(at + 2)); }";
 
-/// The results of a law on the GPU; those of principled surfaces have tables.
+/// Starts laws on the GPU, which are functions of one shader; those of principled surfaces have
+/// tables. What they find is in the buffers that are returned.
 fn on_gpu(
     device: &Device,
-    law: &Law,
+    laws: &[Law],
     inputs: &[[f32; INPUTS]],
     tables: Option<&[u32]>,
-) -> Result<Vec<[f32; OUTPUTS]>, GpuError> {
-    let body = law.wgsl;
-    let kernel = format!(
+) -> Result<Vec<Buffer>, GpuError> {
+    let mut source = format!(
         "@group(0) @binding(0) var<storage, read_write> inputs: array<array<f32, {INPUTS}>>;
-        @group(0) @binding(1) var<storage, read_write> outputs: array<array<f32, {OUTPUTS}>>;
-        @compute @workgroup_size(64)
-        fn main(@builtin(global_invocation_id) id: vec3u) {{
-            let x = inputs[id.x];
-            let wo = vec3f(x[0], x[1], x[2]);
-            let wi = vec3f(x[3], x[4], x[5]);
-            let u = vec2f(x[6], x[7]);
-            var y: array<f32, {OUTPUTS}>;
-            {body}
-            outputs[id.x] = y;
-        }}"
+        @group(0) @binding(1) var<storage, read_write> outputs: array<array<f32, {OUTPUTS}>>;"
     );
-    let others = tables.map_or(String::new(), |_| format!("{TABLES}{}", shaders::principled()));
-    let kernel = device.kernel(law.name, &shaders::with_laws(&[&others, &kernel]))?;
-    let given = device.buffer("inputs", inputs)?;
-    let results = device.buffer("results", &vec![[0f32; OUTPUTS]; inputs.len()])?;
-    let groups = [(ROWS / 64) as u32, 1, 1];
-    match tables {
-        None => device.run(&kernel, &[&given, &results], groups)?,
-        Some(words) => {
-            let words = device.buffer("tables", words)?;
-            device.run(&kernel, &[&given, &results, &words], groups)?;
-        }
+    if tables.is_some() {
+        source += TABLES;
+        source += &shaders::principled();
     }
-    device.read(&results)
+    let names: Vec<String> = (0..laws.len()).map(|i| format!("law_{i}")).collect();
+    for (name, law) in names.iter().zip(laws) {
+        let body = law.wgsl;
+        source += &format!(
+            "@compute @workgroup_size(64)
+            fn {name}(@builtin(global_invocation_id) id: vec3u) {{
+                let x = inputs[id.x];
+                let wo = vec3f(x[0], x[1], x[2]);
+                let wi = vec3f(x[3], x[4], x[5]);
+                let u = vec2f(x[6], x[7]);
+                var y: array<f32, {OUTPUTS}>;
+                {body}
+                outputs[id.x] = y;
+            }}"
+        );
+    }
+    let kernels = device.kernels("laws", &shaders::with_laws(&[&source]), &names)?;
+    let given = device.buffer("inputs", inputs)?;
+    let words = tables.map(|words| device.buffer("tables", words)).transpose()?;
+    let started = kernels.iter().map(|kernel| -> Result<Buffer, GpuError> {
+        let results = device.zeros("results", (size_of::<[f32; OUTPUTS]>() * inputs.len()) as u64)?;
+        let buffers: Vec<&Buffer> = [&given, &results].into_iter().chain(&words).collect();
+        device.run(kernel, &buffers, [(inputs.len() / 64) as u32, 1, 1])?;
+        Ok(results)
+    });
+    started.collect()
 }
 
 /// The difference of two results as a law's bound counts it.
@@ -95,15 +102,9 @@ fn difference(a: f32, b: f32) -> f32 {
 }
 
 /// Compares all results of a law; what is wrong, if anything.
-fn compare(
-    device: &Device,
-    law: &Law,
-    inputs: &[[f32; INPUTS]],
-    tables: Option<&[u32]>,
-) -> Result<(), String> {
+fn compare(law: &Law, inputs: &[[f32; INPUTS]], results: Vec<[f32; OUTPUTS]>) -> Result<(), String> {
     let mut largest = 0f32;
     let mut flips = Vec::new();
-    let results = on_gpu(device, law, inputs, tables).map_err(|error| format!("{}: {error}", law.name))?;
     for (x, y) in inputs.iter().zip(results) {
         let mut expected = (law.rust)(x);
         expected.resize(OUTPUTS, 0.0);
@@ -137,8 +138,13 @@ pub fn agree(laws: &[Law], tables: Option<&[u32]>) {
     let Some(device) = crate::device() else { return };
     println!("{}", device.name());
     let inputs = inputs();
-    let wrong: Vec<String> =
-        laws.iter().filter_map(|law| compare(&device, law, &inputs, tables).err()).collect();
+    // While some are compared the driver compiles the next.
+    let results = on_gpu(&device, laws, &inputs, tables).unwrap_or_else(|error| panic!("{error}"));
+    let wrong = laws.iter().zip(&results).filter_map(|(law, results)| {
+        let results = device.read(results).unwrap_or_else(|error| panic!("{}: {error}", law.name));
+        compare(law, &inputs, results).err()
+    });
+    let wrong: Vec<String> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

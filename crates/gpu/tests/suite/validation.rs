@@ -1,7 +1,11 @@
 //! Every shader is valid WGSL. Needs no GPU.
 
+use std::collections::BTreeSet;
+use std::fmt::Debug;
+
 use alhazen_gpu::Algorithm;
 use alhazen_gpu::shaders::{self, Parts};
+use rayon::prelude::*;
 use spectrum::RgbColorSpace;
 use wgpu::naga::front::wgsl;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -33,36 +37,56 @@ fn traversal_is_valid() {
     validate(&source).unwrap_or_else(|error| panic!("{error}"));
 }
 
+/// Parts, of which there are those whose bits are set.
+fn parts(bits: u32) -> Parts {
+    let [holes, images, noise, coats, principled, rare_samplers] =
+        [0, 1, 2, 3, 4, 5].map(|i| bits >> i & 1 == 1);
+    Parts { holes, images, noise, coats, principled, rare_samplers }
+}
+
+/// No parts, all of them, and others so that each two parts are there together, each without the
+/// other, and neither: of the last four each part is in another two.
+const PAIRS: [u32; 6] = [0b000000, 0b111111, 0b000111, 0b011001, 0b101010, 0b110100];
+
+#[test]
+fn each_two_parts_are_there_in_all_ways() {
+    for (a, b) in (0..6).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let ways: BTreeSet<u32> = PAIRS.iter().map(|bits| 2 * (bits >> a & 1) + (bits >> b & 1)).collect();
+        assert_eq!(ways.len(), 4, "{a} {b}");
+    }
+}
+
 #[test]
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
+    let path = Algorithm::Path(Default::default());
     let algorithms = [
         Algorithm::RayCasting,
         Algorithm::Whitted(Default::default()),
         occlusion,
-        Algorithm::Path(Default::default()),
+        path.clone(),
         Algorithm::LightTracing(Default::default()),
         Algorithm::Bdpt(Default::default()),
     ];
-    // All parts but principled surfaces are constants of one text, whose branches are all
-    // validated.
-    for [has, principled] in [[false, false], [false, true], [true, false], [true, true]] {
-        let parts = Parts { holes: has, images: has, noise: has, coats: has, principled, rare_samplers: has };
-        let valid = |name: &str, source: &str| {
-            validate(source).unwrap_or_else(|error| panic!("{name}, {parts:?}: {error}"));
-        };
+    // What depends on parts is shared by all kernels; one has them in all ways.
+    let all = (0..1 << 6).map(parts);
+    let mut sources: Vec<_> =
+        all.map(|parts| (format!("{parts:?}"), shaders::pixels(&path, parts))).collect();
+    for parts in PAIRS.map(parts) {
+        let mut add = |name: &dyn Debug, source| sources.push((format!("{name:?}, {parts:?}"), source));
         for algorithm in &algorithms {
-            let name = format!("{algorithm:?}");
-            valid(&name, &shaders::pixels(algorithm, parts));
+            add(algorithm, shaders::pixels(algorithm, parts));
             if algorithm.splats().is_none() {
-                valid(&name, &shaders::surfaces(algorithm, parts));
-                valid(&name, &shaders::light(algorithm, parts, false));
+                add(algorithm, shaders::surfaces(algorithm, parts));
+                add(algorithm, shaders::light(algorithm, parts, false));
             }
         }
-        let path = Algorithm::Path(Default::default());
-        valid("other light", &shaders::light(&path, parts, true));
-        shaders::reservoirs(parts).iter().for_each(|source| valid("reservoirs", source));
+        add(&"other light", shaders::light(&path, parts, true));
+        shaders::reservoirs(parts).into_iter().for_each(|source| add(&"reservoirs", source));
     }
+    let error =
+        |(name, source): &(String, String)| validate(source).err().map(|error| format!("{name}: {error}"));
+    assert_eq!(sources.par_iter().find_map_any(error), None);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::{OpenPbr, Weights, is_off_horizon, of_viewer, upright};
 use crate::{BsdfSample, Scatter, TransportMode};
 use lanes::{Callee, Int, Mask, Real, pow};
 use math::{Vector3, same_hemisphere, sqr};
-use spectrum::SampledSpectrum;
+use spectrum::{N, SampledSpectrum};
 use std::f32::consts::PI;
 
 impl<R: Real> OpenPbr<'_, R> {
@@ -257,8 +257,9 @@ impl<R: Real> Callee<R> for Absorption<R> {
     #[inline(always)]
     fn run(self) -> SampledSpectrum<R> {
         let mut passed = self.color;
-        for value in &mut passed.0 {
-            *value = pow(*value, R::splat(0.5) * self.lengths);
+        // Not over the values, so that the translation for GPUs has the long function once.
+        for i in 0..N {
+            passed[i] = pow(passed[i], R::splat(0.5) * self.lengths);
         }
         passed
     }
