@@ -76,6 +76,37 @@ fn spot_direction(at: u32, u: vec2f) -> vec3f {
     return spherical_direction(safe_sqrt(1 - cosine * cosine), cosine, 6.2831855 * u.y);
 }
 
+// The direction in which a light with an image at a point sends a ray.
+fn image_direction(at: u32, u: vec2f) -> vec3f {
+    let st = draw_2d(tables[at + 25], u).xy;
+    var local: vec3f;
+    if (tables[at] == GONIOMETRIC_LIGHT) {
+        local = equal_area_square_to_sphere(st).xzy;
+    } else {
+        let low = vec2f(number(at + 28), number(at + 29));
+        let high = vec2f(number(at + 30), number(at + 31));
+        local = vec3f(lerp(st.x, low.x, high.x), lerp(1 - st.y, low.y, high.y), 1);
+    }
+    return Vec3_normalize(times(Rows(vector(at + 16), vector(at + 19), vector(at + 22)), local));
+}
+
+// The density of these directions.
+fn image_direction_density(at: u32, w: vec3f) -> f32 {
+    let local = in_light(at, w);
+    let length2 = Vec3_length_squared(local);
+    let x = vector(at + 7);
+    // Solid angle in the space of the light over that of render space.
+    let factor = abs(dot(x, cross(vector(at + 10), vector(at + 13)))) / (length2 * sqrt(length2));
+    if (tables[at] == GONIOMETRIC_LIGHT) {
+        return UNIFORM_DIRECTION * density_of(tables[at + 25], position_on_square(local)) * factor;
+    }
+    let on_slide = position_on_slide(at, local);
+    let area = (number(at + 30) - number(at + 28)) * (number(at + 31) - number(at + 29));
+    let cosine = local.z / sqrt(length2);
+    let density = density_of(tables[at + 25], on_slide.xy) / (area * cosine * cosine * cosine);
+    return select(0, density * factor, on_slide.z == 1);
+}
+
 // A point of the surface of a light, with its density per area.
 fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
     switch (tables[at]) {
@@ -139,18 +170,24 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     var pdf = 1.0;
     var w: vec3f;
     switch (tables[at]) {
-        case POINT_LIGHT, SPOT_LIGHT: {
+        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
             e.origin.p = vector(at + 4);
-            if (tables[at] == SPOT_LIGHT) {
-                let axis = vector(at + 7);
-                w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
-                let cosine = dot(w, axis);
-                share *= smooth_step(cosine, number(at + 11), number(at + 10));
-                pdf = spot_density(at, cosine);
-            } else {
-                w = sample_uniform_sphere(u_direction);
-                pdf = UNIFORM_DIRECTION;
+            switch (tables[at]) {
+                case POINT_LIGHT: {
+                    w = sample_uniform_sphere(u_direction);
+                    pdf = UNIFORM_DIRECTION;
+                }
+                case SPOT_LIGHT: {
+                    let axis = vector(at + 7);
+                    w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
+                    pdf = spot_density(at, dot(w, axis));
+                }
+                default: {
+                    w = image_direction(at, u_direction);
+                    pdf = image_direction_density(at, w);
+                }
             }
+            share = point_share(at, w, lambda);
             e.ray = Ray(e.origin.p, w, 0);
         }
         case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
@@ -196,7 +233,9 @@ fn direct_pdf(point: LightPoint, context: ShapeSampleContext, wi: vec3f) -> f32 
     let at = light_record(point.light);
     var pdf = 1.0;
     switch (tables[at]) {
-        case POINT_LIGHT, SPOT_LIGHT: { pdf = Vec3_length_squared(point.p - context.p.p); }
+        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
+            pdf = Vec3_length_squared(point.p - context.p.p);
+        }
         case DISTANT_LIGHT: {}
         case UNIFORM_LIGHT: { pdf = UNIFORM_DIRECTION; }
         case IMAGE_LIGHT: { pdf = sky_density(at, sky_position(at, wi), false); }
@@ -213,6 +252,7 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
     switch (tables[at]) {
         case POINT_LIGHT: { pdf = UNIFORM_DIRECTION; }
         case SPOT_LIGHT: { pdf = spot_density(at, dot(-wi, vector(at + 7))); }
+        case GONIOMETRIC_LIGHT, PROJECTION_LIGHT: { pdf = image_direction_density(at, -wi); }
         case DISTANT_LIGHT: { pdf = disk_density(from_, wi); }
         case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
         case IMAGE_LIGHT: { pdf = disk_density(from_, wi) * sky_density(at, sky_position(at, wi), false); }

@@ -10,6 +10,8 @@ const UNIFORM_LIGHT = 6u;
 const IMAGE_LIGHT = 7u;
 const DISK_LIGHT = 8u;
 const CYLINDER_LIGHT = 9u;
+const GONIOMETRIC_LIGHT = 10u;
+const PROJECTION_LIGHT = 11u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -32,7 +34,7 @@ fn light_record(light: u32) -> u32 {
 }
 
 fn is_delta(at: u32) -> bool {
-    return tables[at] <= DISTANT_LIGHT;
+    return tables[at] <= DISTANT_LIGHT || tables[at] >= GONIOMETRIC_LIGHT;
 }
 
 // The spectrum of a light times its scale.
@@ -82,7 +84,9 @@ fn sample_light(
     let at = light_record(light);
     var sample: LightSample;
     switch (tables[at]) {
-        case POINT_LIGHT, SPOT_LIGHT: { sample = sample_point_light(at, context); }
+        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
+            sample = sample_point_light(at, context, lambda);
+        }
         case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
             sample = sample_far_light(at, u, lambda, allow_incomplete);
         }
@@ -95,7 +99,7 @@ fn sample_light(
 
 // The samples of each kind of light have in `l` what its emission is multiplied by.
 
-fn sample_point_light(at: u32, context: ShapeSampleContext) -> LightSample {
+fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
     var sample = no_light();
     sample.p = Point3Error(vector(at + 4), vec3f());
     let to_light = sample.p.p - context.p.p;
@@ -104,14 +108,49 @@ fn sample_point_light(at: u32, context: ShapeSampleContext) -> LightSample {
         return sample;
     }
     sample.wi = to_light / sqrt(distance2);
-    var share = 1.0;
-    if (tables[at] == SPOT_LIGHT) {
-        share = smooth_step(dot(-sample.wi, vector(at + 7)), number(at + 11), number(at + 10));
-    }
-    sample.l = vec4f(share / distance2);
+    sample.l = point_share(at, -sample.wi, lambda) / distance2;
     sample.pdf = 1;
     sample.valid = true;
     return sample;
+}
+
+// What the intensity of a light at a point is multiplied by along `w`.
+fn point_share(at: u32, w: vec3f, lambda: SampledWavelengths) -> vec4f {
+    switch (tables[at]) {
+        case SPOT_LIGHT: { return vec4f(smooth_step(dot(w, vector(at + 7)), number(at + 11), number(at + 10))); }
+        case GONIOMETRIC_LIGHT: {
+            return vec4f(density_of(tables[at + 25], position_on_square(in_light(at, w))));
+        }
+        case PROJECTION_LIGHT: {
+            let on_slide = position_on_slide(at, in_light(at, w));
+            if (on_slide.z == 0) {
+                return vec4f();
+            }
+            return image_pixel(at + 26, tables[at + 32], on_slide.xy, lambda);
+        }
+        default: { return vec4f(1); }
+    }
+}
+
+// A direction in the space of a light with an image.
+fn in_light(at: u32, w: vec3f) -> vec3f {
+    return times(Rows(vector(at + 7), vector(at + 10), vector(at + 13)), w);
+}
+
+// The position on the square of the sphere of a direction in the space of a goniometric light, whose
+// y is the projection's z.
+fn position_on_square(local: vec3f) -> vec2f {
+    return equal_area_sphere_to_square(Vec3_normalize(local.xzy));
+}
+
+// The position in the image of a projector of a direction in its space, and 1 if there is one.
+fn position_on_slide(at: u32, local: vec3f) -> vec3f {
+    let low = vec2f(number(at + 28), number(at + 29));
+    let high = vec2f(number(at + 30), number(at + 31));
+    let p = local.xy / local.z;
+    let st = (p - low) / (high - low);
+    let is_on_slide = local.z > 0 && all(p >= low) && all(p <= high);
+    return vec3f(st.x, 1 - st.y, select(0.0, 1.0, is_on_slide));
 }
 
 fn sample_far_light(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: bool) -> LightSample {
@@ -304,9 +343,14 @@ fn solid_angle_density(at: u32, st: vec2f) -> f32 {
 
 // What the pixel at a position multiplies the emission by.
 fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
-    let size = vec2u(tables[at + 4], tables[at + 5]);
+    return image_pixel(at + 4, tables[at + 26], st, lambda);
+}
+
+// The spectrum of the pixel at a position of an image, over the illuminant.
+fn image_pixel(size_at: u32, pixels: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
+    let size = vec2u(tables[size_at], tables[size_at + 1]);
     let pixel = min(vec2u(clamp(st * vec2f(size), vec2f(), vec2f(size))), size - 1);
-    let rgb = tables[at + 26] + 4 * (pixel.y * size.x + pixel.x);
+    let rgb = pixels + 4 * (pixel.y * size.x + pixel.x);
     let polynomial = RgbSigmoidPolynomial(vector(rgb + 1));
     var l: vec4f;
     for (var i = 0; i < 4; i++) {

@@ -10,6 +10,8 @@
 //! | 6 uniform infinite | none |
 //! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
+//! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
+//! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
 //! spectrum.
@@ -18,10 +20,12 @@ use std::f32::consts::TAU;
 
 use description::Span;
 use geometry::{PlainShape, RevolvedKind};
-use image::Projection;
-use math::{DMat4, DVec3};
-use scene::light::{AreaLight, Emission, ImageInfiniteLight, Light, LightRef};
-use spectrum::RgbUnboundedSpectrum;
+use image::{Image, Projection};
+use math::{AnimatedTransform, DVec3};
+use scene::light::{
+    AreaLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef, ProjectionLight,
+};
+use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 
 use super::Flattener;
 
@@ -35,6 +39,8 @@ const UNIFORM_INFINITE: u32 = 6;
 const IMAGE_INFINITE: u32 = 7;
 const DISK: u32 = 8;
 const CYLINDER: u32 = 9;
+const GONIOMETRIC: u32 = 10;
+const PROJECTION: u32 = 11;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -78,8 +84,19 @@ impl Flattener<'_> {
                 self.image_light(l)
             }
             Light::PortalInfinite(_) => self.no_light("infinite lights with portals", span),
-            Light::Goniometric(_) => self.no_light("light `goniometric`", span),
-            Light::Projection(_) => self.no_light("light `projection`", span),
+            Light::Goniometric(l) => {
+                let (motion, intensity, distribution) = l.parts();
+                self.at_rest(motion.is_moving(), span);
+                let distribution = self.distribution(distribution);
+                let at = self.emitter(GONIOMETRIC, intensity, &placement(motion));
+                self.slab.add([distribution]);
+                at
+            }
+            Light::Projection(l) => {
+                let (motion, ..) = l.parts();
+                self.at_rest(motion.is_moving(), span);
+                self.projection(l)
+            }
         }
     }
 
@@ -102,15 +119,34 @@ impl Flattener<'_> {
         at
     }
 
-    fn image_light(&mut self, light: &ImageInfiniteLight) -> u32 {
-        let (width, height) = (light.image.width(), light.image.height());
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| light.image.rgb(x, y)));
-        let numbers = pixels.flat_map(|rgb| {
-            let spectrum = RgbUnboundedSpectrum::new(light.color_space, rgb);
+    fn projection(&mut self, light: &ProjectionLight) -> u32 {
+        let (motion, slide, scale, distribution) = light.parts();
+        let EmissionImage { image, color_space, .. } = &slide.image;
+        let pixels = self.pixels(image, color_space);
+        let distribution = self.distribution(distribution);
+        let spectrum = color_space.illuminant();
+        let at = self.emitter(PROJECTION, &Emission { spectrum, scale }, &placement(motion));
+        let screen = slide.screen();
+        self.slab.add([distribution, image.width(), image.height()]);
+        self.slab.add_numbers([screen.min, screen.max].map(|corner| corner.to_array()).into_iter().flatten());
+        self.slab.add([pixels]);
+        at
+    }
+
+    /// The pixels of an image of light, as unbounded spectra; their offset.
+    fn pixels(&mut self, image: &Image, color_space: &'static RgbColorSpace) -> u32 {
+        let (width, height) = (image.width(), image.height());
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| image.rgb(x, y)));
+        self.slab.add_numbers(pixels.flat_map(|rgb| {
+            let spectrum = RgbUnboundedSpectrum::new(color_space, rgb.map(|c| c.max(0.0)));
             let [a, b, c] = spectrum.polynomial().coefficients;
             [spectrum.scale(), a, b, c]
-        });
-        let pixels = self.slab.add_numbers(numbers);
+        }))
+    }
+
+    fn image_light(&mut self, light: &ImageInfiniteLight) -> u32 {
+        let (width, height) = (light.image.width(), light.image.height());
+        let pixels = self.pixels(&light.image, light.color_space);
         let [complete, incomplete] =
             [false, true].map(|allows| self.distribution(light.distribution(allows)));
         let illuminant = self.spectrum(&light.color_space.illuminant());
@@ -118,12 +154,9 @@ impl Flattener<'_> {
             Projection::EqualArea => 0,
             Projection::LatitudeLongitude => 1,
         };
-        let render_from_light = light.render_from_light.start().matrix().as_dmat4();
-        let rows = |matrix: DMat4| [0, 1, 2].map(|row| matrix.row(row).truncate().as_vec3().to_array());
         let scale = light.scale.to_bits();
         let at = self.slab.add([IMAGE_INFINITE, illuminant, scale, 0, width, height, kind, complete]);
-        let rotations = [rows(render_from_light.inverse()), rows(render_from_light)];
-        self.slab.add_numbers(rotations.as_flattened().as_flattened().iter().copied());
+        self.slab.add_numbers(placement(&light.render_from_light)[3..].iter().copied());
         self.slab.add([pixels, incomplete]);
         at
     }
@@ -154,6 +187,18 @@ impl Flattener<'_> {
         self.slab.add_numbers(numbers);
         at
     }
+}
+
+/// The position of a light, the rows of the matrix to its space, and those of the inverse.
+fn placement(motion: &AnimatedTransform) -> [f32; 21] {
+    let render_from_light = motion.start().matrix().as_dmat4();
+    let mut numbers = [0.0; 21];
+    let rows = [render_from_light.inverse(), render_from_light]
+        .map(|matrix| [0, 1, 2].map(|row| matrix.row(row).truncate().as_vec3().to_array()));
+    let position = render_from_light.transform_point3(DVec3::ZERO).as_vec3().to_array();
+    let all = position.iter().chain(rows.as_flattened().as_flattened());
+    numbers.iter_mut().zip(all).for_each(|(number, x)| *number = *x);
+    numbers
 }
 
 /// The kind and the numbers of a whole sphere, disk or cylinder of an area, placed without

@@ -201,7 +201,7 @@ fn sizes(picture: &Image, spread: i32) -> Vec<f32> {
 }
 
 /// Scenes of the repository that kernels draw.
-const DRAWN: [&str; 23] = [
+const DRAWN: [&str; 24] = [
     "bump-map",
     "caustic-ball",
     "cornell-box",
@@ -209,6 +209,7 @@ const DRAWN: [&str; 23] = [
     "door",
     "environment",
     "instances",
+    "luminaires",
     "mesh",
     "mirror-room",
     "noise",
@@ -263,11 +264,15 @@ fn whitted_has_the_picture_of_the_cpu() {
     compare_all(&["mirror-room", "refraction", "prism"], |_| Algorithm::Whitted(WhittedDesc::default()));
 }
 
-/// Compares pictures of scenes by an algorithm with light paths.
+/// Compares pictures of scenes by an algorithm with light paths, and with `sobol`.
 fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
     let named = scenes.iter().map(|&name| (name, Case::named(name)));
     let others = [("medley", MEDLEY), ("stretched", STRETCHED)];
-    for (name, case) in named.chain(others.map(|(name, text)| (name, Case::of_text(text)))) {
+    for (name, mut case) in named.chain(others.map(|(name, text)| (name, Case::of_text(text)))) {
+        let size = case.desc.film.resolution;
+        let [sampler, light_sampler] =
+            [7, 8].map(|seed| Sampler::Sobol(Sobol::new(SAMPLES, size, Randomize::FastOwen, seed)));
+        (case.sampler, case.light_sampler) = (sampler, light_sampler);
         assert_eq!(case.compare(name, algorithm), None);
     }
 }
@@ -285,7 +290,7 @@ fn light_paths_have_the_picture_of_the_cpu() {
 fn bidirectional_paths_have_the_picture_of_the_cpu() {
     let settings = BdptDesc { max_depth: 4, regularize: true, ..BdptDesc::default() };
     let bdpt = Algorithm::Bdpt(settings);
-    compare_splats(&["depth-of-field", "environment", "prism"], &bdpt);
+    compare_splats(&["depth-of-field", "environment", "luminaires", "prism"], &bdpt);
     assert_eq!(Case::named("cornell-box").compare("cornell-box", &bdpt), None);
 }
 

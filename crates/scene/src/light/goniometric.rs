@@ -43,6 +43,12 @@ impl GoniometricLight {
         Self { render_from_light, mean_intensity, distribution }
     }
 
+    /// From the light's own space to render space, the mean intensity, and the intensity over that,
+    /// on the square.
+    pub fn parts(&self) -> (&AnimatedTransform, &Emission, &PiecewiseConstant2d) {
+        (&self.render_from_light, &self.mean_intensity, &self.distribution)
+    }
+
     /// Position in render space at a shutter time.
     pub fn position(&self, time: f32) -> Point3 {
         self.render_from_light.at(time).point(Vec3::ZERO)

@@ -47,6 +47,11 @@ impl Slide {
         Self { image, screen: Bounds2::new(-corner, corner) }
     }
 
+    /// The screen at z = 1.
+    pub fn screen(&self) -> Bounds2 {
+        self.screen
+    }
+
     /// The integral over solid angle of its colours, without negative components.
     pub fn total(&self) -> Rgb {
         let mut total = [0f64; 3];
@@ -101,6 +106,12 @@ impl ProjectionLight {
         let width = slide.image.image.width() as usize;
         let distribution = PiecewiseConstant2d::new(&brightness, width, Bounds2::UNIT);
         Self { render_from_light, slide, scale, distribution }
+    }
+
+    /// From the light's own space to render space, the slide, the factor on its colours, and the
+    /// distribution over its screen.
+    pub fn parts(&self) -> (&AnimatedTransform, &Slide, f32, &PiecewiseConstant2d) {
+        (&self.render_from_light, &self.slide, self.scale, &self.distribution)
     }
 
     /// Position and unit axis in render space at a shutter time.
