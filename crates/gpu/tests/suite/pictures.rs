@@ -448,7 +448,7 @@ Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
 Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
 Texture "tiles" "float" "checkerboard" "float uscale" 8 "float vscale" 6
 Texture "holes" "float" "mix" "float tex1" 0 "float tex2" 1 "texture amount" "tiles"
-Texture "spots" "float" "dots" "float uscale" 9 "float vscale" 7 "float inside" 1 "float outside" 0
+Texture "spots" "float" "checkerboard" "float uscale" 9 "float vscale" 7 "float tex1" 1 "float tex2" 0
 Shape "sphere" "float radius" 0.5 "texture alpha" "spots"
 Translate -1.2 0.8 0
 Shape "sphere" "float radius" 0.7 "texture alpha" "holes"
@@ -485,8 +485,7 @@ Film "rgb"
 WorldBegin
 LightSource "infinite" "rgb L" [ 1 1 1 ]
 Shape "sphere" "float radius" 0.5 "float alpha" 0.3
-Texture "spots" "spectrum" "dots" "rgb inside" [ 0.1 0.1 0.1 ] "rgb outside" [ 0 0 0 ]
-Material "diffuse" "texture reflectance" "spots"
+Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 Shape "disk" "float radius" 2 "float height" -0.5
 MakeNamedMaterial "white" "string type" "diffuse" "rgb reflectance" [ 1 1 1 ]
 MakeNamedMaterial "black" "string type" "diffuse" "rgb reflectance" [ 0 0 0 ]
