@@ -312,21 +312,23 @@ fn connected(
     var sum = vec4f();
     for (var i = 0u; i <= count; i++) {
         var c: Connection;
-        let is_vertex = i > 0;
+        var other: Vertex;
+        let is_vertex = HAS_CAMERA_PATHS && i > 0;
         if (is_light_path) {
             c = connection_to_camera(v, u_point);
         } else if (!is_vertex) {
             c = connection_to_light(v, context, lambda, u, u_point);
         } else {
-            c = connection_to_vertex(v, light_vertices[i - 1]);
+            other = light_vertices[i - 1];
+            c = connection_to_vertex(v, other);
         }
         // What the other vertex scatters, if there is one, and then this one.
         var others = 0.0;
-        for (var end = select(1u, 0u, HAS_CAMERA_PATHS && is_vertex); end < 2 && c.valid; end++) {
+        for (var end = select(1u, 0u, is_vertex); end < 2 && c.valid; end++) {
             var at = v;
             var w = c.wi;
             if (HAS_CAMERA_PATHS && end == 0) {
-                at = light_vertices[i - 1];
+                at = other;
                 w = -w;
             }
             let found = scattered_along(at, w);

@@ -111,6 +111,11 @@ pub(crate) struct Head {
 }
 
 impl Flat {
+    /// What kernels need for it.
+    pub fn parts(&self) -> Parts {
+        self.parts
+    }
+
     /// The bytes of its buffers.
     pub fn bytes(&self) -> usize {
         let Bvh { nodes, triangles, items, .. } = &self.bvh;

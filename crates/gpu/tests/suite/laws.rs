@@ -103,8 +103,8 @@ macro_rules! law {
     };
 }
 
-/// WGSL that compares value and density of a BxDF. The value is at one place of the program, because
-/// it may be long.
+/// WGSL that compares value and density of a BxDF. The value is at one place of the program,
+/// because it may be long.
 macro_rules! value {
     ($name:literal, $bxdf:literal) => {
         concat!(

@@ -1,9 +1,10 @@
 //! Pictures of scenes by both engines, from the same random numbers.
 
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten};
+use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten, shaders};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc,
     ReflectionsDesc, SceneDesc, WhittedDesc,
@@ -23,24 +24,13 @@ use spectrum::RgbColorSpace;
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
 
-/// Kernels that tests share, so that they are compiled once. A driver in software compiles the
-/// kernels of a device one after another, so that those of different kinds have a device each.
-pub type Shared = OnceLock<Option<Arc<Kernels>>>;
-
-/// The kernels of some tests.
-pub fn kernels_of(shared: &Shared) -> Option<Arc<Kernels>> {
-    shared.get_or_init(|| crate::device().map(|device| Arc::new(Kernels::new(device)))).clone()
-}
-
-/// The kernels of whole pictures by an algorithm.
-fn kernels(algorithm: &Algorithm) -> Option<Arc<Kernels>> {
-    static KERNELS: [Shared; 3] = [const { Shared::new() }; 3];
-    let kind = match algorithm {
-        Algorithm::RayCasting | Algorithm::Whitted(_) | Algorithm::AmbientOcclusion(..) => 0,
-        Algorithm::Path(_) => 1,
-        Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => 2,
-    };
-    kernels_of(&KERNELS[kind])
+/// The kernels of whole pictures, which tests share, so that each is compiled once. A driver in
+/// software compiles the kernels of a device one after another, so that each has a device.
+fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
+    static KERNELS: Mutex<BTreeMap<String, Option<Arc<Kernels>>>> = Mutex::new(BTreeMap::new());
+    let mut known = KERNELS.lock().unwrap_or_else(PoisonError::into_inner);
+    let open = || crate::device().map(|device| Arc::new(Kernels::new(device)));
+    known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
 }
 
 /// A small picture of a scene.
@@ -77,6 +67,30 @@ impl Case {
         Self::new(path, &MemoryAssets::default().with(path, text))
     }
 
+    /// A slide of four colours, thrown through a stretched space at a wall and a sphere.
+    fn projector() -> Self {
+        let text = r#"
+LookAt 0 -6 1  0 0 1  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+AttributeBegin
+    Translate 1 -4 2
+    Rotate 110 1 0 0
+    Scale 1 1.3 -0.8
+    LightSource "projection" "string filename" "slide.pfm" "float fov" 40 "float scale" 30
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -4 2 -3  4 2 -3  -4 2 4  4 2 4 ]
+Translate 0.6 0 0.8
+Shape "sphere" "float radius" 0.6
+"#;
+        let slide: [f32; 12] = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 0.8, 0.8, 0.7];
+        let bytes = [b"PF\n2 2\n-1.0\n".as_slice(), &slide.map(f32::to_le_bytes).concat()].concat();
+        let path = Path::new("scene.pbrt");
+        Self::new(path, &MemoryAssets::default().with(path, text).with("slide.pfm", bytes))
+    }
+
     /// One of the repository's scenes.
     pub fn named(name: &str) -> Self {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
@@ -107,16 +121,18 @@ impl Case {
         flatten(subject, &lights)
     }
 
-    fn on_gpu(&self, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Image {
+    /// The samples of each pixel by the GPU, if there is one.
+    fn on_gpu(&self, algorithm: &Algorithm) -> Option<Image> {
         let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
         let mut film = self.film();
-        let renderer = Renderer::new(kernels.clone(), &flat, algorithm, &film).expect("a renderer");
+        let kernels = kernels(algorithm, &flat)?;
+        let renderer = Renderer::new(kernels, &flat, algorithm, &film).expect("a renderer");
         for index in 0..SAMPLES {
             let rays = renderer.pass(index, &self.view, &self.sampler, &mut film, || false).expect("a pass");
             let [width, height] = self.desc.film.resolution;
             assert!(rays >= Some((width * height / 4) as u64), "{rays:?}");
         }
-        film.develop().expect("a picture")
+        Some(film.develop().expect("a picture"))
     }
 
     /// The first samples of each pixel by the CPU.
@@ -140,15 +156,10 @@ impl Case {
         Box::new(PixelLoop::new(rays, self.sampler.clone()))
     }
 
-    /// Compares the pictures of both engines; what is wrong, if anything.
+    /// Compares the pictures of both engines; what is wrong, if anything. Paths are the same but
+    /// for rounding, which seldom decides where one goes.
     pub fn compare(&self, name: &str, algorithm: &Algorithm) -> Option<String> {
-        self.compare_by(name, &kernels(algorithm)?, algorithm)
-    }
-
-    /// The same, by these kernels. Paths are the same but for rounding, which seldom decides where
-    /// one goes.
-    fn compare_by(&self, name: &str, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Option<String> {
-        let (gpu, cpu) = (self.on_gpu(kernels, algorithm), self.on_cpu(algorithm, SAMPLES));
+        let (gpu, cpu) = (self.on_gpu(algorithm)?, self.on_cpu(algorithm, SAMPLES));
         let pairs: Vec<(f32, f32)> = gpu.values().zip(cpu.values()).collect();
         let mean = pairs.iter().map(|(_, b)| f64::from(*b)).sum::<f64>() / pairs.len() as f64;
         let mut values: Vec<f32> = cpu.values().collect();
@@ -267,8 +278,12 @@ fn whitted_has_the_picture_of_the_cpu() {
 /// Compares pictures of scenes by an algorithm with light paths, and with `sobol`.
 fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
     let named = scenes.iter().map(|&name| (name, Case::named(name)));
-    let others = [("medley", MEDLEY), ("stretched", STRETCHED)];
-    for (name, mut case) in named.chain(others.map(|(name, text)| (name, Case::of_text(text)))) {
+    let others = [
+        ("medley", Case::of_text(MEDLEY)),
+        ("stretched", Case::of_text(STRETCHED)),
+        ("projector", Case::projector()),
+    ];
+    for (name, mut case) in named.chain(others) {
         let size = case.desc.film.resolution;
         let [sampler, light_sampler] =
             [7, 8].map(|seed| Sampler::Sobol(Sobol::new(SAMPLES, size, Randomize::FastOwen, seed)));
@@ -295,12 +310,18 @@ fn bidirectional_paths_have_the_picture_of_the_cpu() {
 }
 
 #[test]
+fn a_projector_has_the_picture_of_the_cpu() {
+    let path = PathDesc { max_depth: 3, ..PathDesc::default() };
+    assert_eq!(Case::projector().compare("projector", &Algorithm::Path(path)), None);
+}
+
+#[test]
 fn points_of_all_samplers_have_the_picture_of_the_cpu() {
     let mut case = Case::named("depth-of-field");
+    let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     let size = case.desc.film.resolution;
     let [none, digits, fast, owen] =
         [Randomize::None, Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
-    case.light_sampler = Sampler::Stratified(Stratified::new([2, 1], true, 8));
     for sampler in [
         Sampler::PaddedSobol(PaddedSobol::new(SAMPLES, fast, 7)),
         Sampler::Sobol(Sobol::new(SAMPLES, size, none, 7)),
@@ -314,7 +335,7 @@ fn points_of_all_samplers_have_the_picture_of_the_cpu() {
     ] {
         let name = format!("{sampler:?}").chars().take(20).collect::<String>();
         case.sampler = sampler;
-        assert_eq!(case.compare(&name, &Algorithm::RayCasting), None);
+        assert_eq!(case.compare(&name, &occlusion), None);
     }
 }
 
@@ -482,7 +503,7 @@ Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
 Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
 Texture "tiles" "float" "checkerboard" "float uscale" 8 "float vscale" 6
 Texture "holes" "float" "mix" "float tex1" 0 "float tex2" 1 "texture amount" "tiles"
-Texture "spots" "float" "dots" "float uscale" 9 "float vscale" 7 "float inside" 1 "float outside" 0
+Texture "spots" "float" "checkerboard" "float uscale" 9 "float vscale" 7 "float tex1" 1 "float tex2" 0
 Shape "sphere" "float radius" 0.5 "texture alpha" "spots"
 Translate -1.2 0.8 0
 Shape "sphere" "float radius" 0.7 "texture alpha" "holes"
@@ -534,9 +555,9 @@ Shape "sphere" "float radius" 0.8
 /// Asserts that the means of both engines agree within five standard deviations of some 3000
 /// values that are about as large as they vary.
 fn assert_mean(case: &Case, algorithm: &Algorithm) {
-    let Some(kernels) = &kernels(algorithm) else { return };
     let mean = |image: Image| image.values().map(f64::from).sum::<f64>() / image.values().count() as f64;
-    let (gpu, cpu) = (mean(case.on_gpu(kernels, algorithm)), mean(case.on_cpu(algorithm, SAMPLES)));
+    let Some(gpu) = case.on_gpu(algorithm).map(mean) else { return };
+    let cpu = mean(case.on_cpu(algorithm, SAMPLES));
     assert!((gpu / cpu - 1.0).abs() < 0.05, "{gpu} {cpu}");
 }
 
@@ -600,8 +621,6 @@ Shape "disk" "float radius" 0.6 "float height" 0.2
 
 #[test]
 fn principled_surfaces_have_the_picture_of_the_cpu() {
-    // No other picture has this kernel, the largest.
-    let Some(kernels) = kernels_of(&Shared::new()) else { return };
     let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
-    assert_eq!(Case::of_text(PRINCIPLED).compare_by("principled", &kernels, &path), None);
+    assert_eq!(Case::of_text(PRINCIPLED).compare("principled", &path), None);
 }

@@ -1,7 +1,7 @@
 //! Pictures that are made at once.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use alhazen_gpu::{Algorithm, Kernels, Realtime, Weights};
 use description::TransformDesc;
@@ -11,12 +11,12 @@ use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::View;
 
-use crate::pictures::{Case, SAMPLES, Shared, kernels_of};
+use crate::pictures::{Case, SAMPLES};
 
 /// The kernels of frames.
 pub fn kernels() -> Option<Arc<Kernels>> {
-    static KERNELS: Shared = Shared::new();
-    kernels_of(&KERNELS)
+    static KERNELS: OnceLock<Option<Arc<Kernels>>> = OnceLock::new();
+    KERNELS.get_or_init(|| crate::device().map(|device| Arc::new(Kernels::new(device)))).clone()
 }
 
 fn realtime(case: &Case, kernels: &Arc<Kernels>, algorithm: &Algorithm) -> Realtime {

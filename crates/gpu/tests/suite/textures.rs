@@ -12,6 +12,13 @@ use crate::pictures::Case;
 /// Tiles in a row.
 const ROW: usize = 6;
 
+/// Mappings other than those of texture coordinates.
+const MAPPINGS: [&str; 3] = [
+    "\"string mapping\" \"spherical\"",
+    "\"string mapping\" \"cylindrical\"",
+    "\"string mapping\" \"planar\" \"vector3 v1\" [ 2 0.3 0 ] \"vector3 v2\" [ -0.2 1 1 ] \"float udelta\" 0.4",
+];
+
 /// An image without structure, of the given channels.
 fn noise<const N: usize>(size: [u32; 2], names: [&str; N]) -> Image {
     let value = |x: u32, y: u32, c: usize| (x * 7919 + y * 104_729 + c as u32 * 31) % 257;
@@ -81,21 +88,15 @@ fn images_have_the_picture_of_the_cpu() {
 
 #[test]
 fn mappings_have_the_picture_of_the_cpu() {
-    let mappings = [
-        "\"string mapping\" \"spherical\"",
-        "\"string mapping\" \"cylindrical\"",
-        "\"string mapping\" \"planar\" \"vector3 v1\" [ 2 0.3 0 ] \"vector3 v2\" [ -0.2 1 1 ] \"float udelta\" 0.4",
-    ];
     let kinds = [
         "\"imagemap\" \"string filename\" \"codes.png\"",
         "\"imagemap\" \"string filename\" \"halves.exr\" \"string filter\" \"ewa\"",
         "\"checkerboard\" \"rgb tex1\" [ 0.9 0.5 0.1 ] \"rgb tex2\" [ 0.1 0.2 0.3 ]",
-        "\"dots\" \"rgb inside\" [ 0.9 0.5 0.1 ] \"rgb outside\" [ 0.1 0.2 0.3 ]",
         "\"bilerp\" \"rgb v00\" [ 0.9 0.5 0.1 ] \"rgb v11\" [ 0.1 0.2 0.3 ]",
     ];
     let all = kinds
         .iter()
-        .flat_map(|kind| mappings.iter().map(move |mapping| format!("\"spectrum\" {kind} {mapping}")));
+        .flat_map(|kind| MAPPINGS.iter().map(move |mapping| format!("\"spectrum\" {kind} {mapping}")));
     compare("mappings", &all.collect::<Vec<_>>());
 }
 
@@ -117,5 +118,7 @@ fn noise_has_the_picture_of_the_cpu() {
     for scale in [1, 9] {
         textures.push(format!("\"spectrum\" \"marble\" \"float scale\" {scale} \"float variation\" 0.4"));
     }
+    let dots = "\"spectrum\" \"dots\" \"rgb inside\" [ 0.9 0.5 0.1 ] \"rgb outside\" [ 0.1 0.2 0.3 ]";
+    textures.extend(MAPPINGS.iter().map(|mapping| format!("{dots} {mapping}")));
     compare("noise", &textures);
 }
