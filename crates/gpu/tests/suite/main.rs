@@ -10,6 +10,7 @@ mod pictures;
 mod raster;
 mod realtime;
 mod reservoirs;
+mod texts;
 mod textures;
 mod trace;
 mod twins;

@@ -1,0 +1,153 @@
+//! Scenes whose pictures are compared.
+
+/// Lights of all kinds that are drawn, meshes with normals and texture coordinates, instances,
+/// rough and dispersive glass, and a thin lens.
+pub const MEDLEY: &str = r#"
+LookAt 0 2 6  0 0.8 0  0 1 0
+Camera "orthographic" "float screenwindow" [ -3 3 -2.2 2.2 ] "float lensradius" 0.02 "float focaldistance" 6
+Film "rgb"
+PixelFilter "triangle"
+WorldBegin
+LightSource "point" "point3 from" [ 0 3 2 ] "rgb I" [ 6 5 4 ]
+LightSource "spot" "point3 from" [ 2 4 2 ] "point3 to" [ 0 0 0 ] "blackbody I" 4000 "float scale" 20
+LightSource "distant" "point3 from" [ 1 1 1 ] "rgb L" [ 0.5 0.6 0.7 ]
+LightSource "infinite" "rgb L" [ 0.2 0.3 0.5 ]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 9 7 4 ] "bool twosided" true
+    Shape "trianglemesh" "point3 P" [ -2 3 -1  -1 3 -1  -1 3 0 ] "integer indices" [ 0 1 2 ]
+    Translate -1.8 1.2 0.5
+    Shape "sphere" "float radius" 0.2
+AttributeEnd
+Texture "squares" "spectrum" "checkerboard" "float uscale" 6 "float vscale" 6
+    "rgb tex1" [ 0.8 0.7 0.6 ] "rgb tex2" [ 0.1 0.3 0.2 ]
+Material "diffuse" "texture reflectance" "squares"
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+Material "conductor" "float roughness" 0.2
+Shape "trianglemesh" "point3 P" [ -3 0 -2  0 0 -2.5  -3 2 -2  0 2 -2.5 ] "integer indices" [ 0 1 2  1 3 2 ]
+    "normal N" [ 0.2 0 1  0 0.1 1  0 -0.1 1  -0.2 0 1 ] "point2 uv" [ 0 0  2 0  0 2  2 2 ]
+Material "diffusetransmission" "rgb reflectance" [ 0.3 0.2 0.2 ] "rgb transmittance" [ 0.4 0.5 0.3 ]
+Shape "bilinearmesh" "point3 P" [ 0.5 0 -1.5  2.5 0 -1  0.5 2 -1.5  2.5 2 -1 ]
+ObjectBegin "pair"
+    Material "dielectric" "spectrum eta" "glass-F11"
+    Shape "sphere" "float radius" 0.4
+    Material "dielectric" "float roughness" 0.3
+    Translate 0.9 0 0
+    Shape "sphere" "float radius" 0.4
+    Material "conductor"
+    Translate 0 0 -0.7
+    Shape "trianglemesh" "point3 P" [ -0.4 -0.4 0  0.4 -0.4 0  0 0.5 0.1 ] "integer indices" [ 0 1 2 ]
+ObjectEnd
+Translate -0.8 0.5 1
+ObjectInstance "pair"
+Translate 2 0.3 0
+Rotate 40 1 1 0
+Scale 0.8 0.6 0.9
+ObjectInstance "pair"
+Material "thindielectric"
+Shape "disk" "float radius" 0.8 "float height" 1
+"#;
+
+/// Parallel camera rays in a space that is stretched, and a plane that hides distant light.
+pub const STRETCHED: &str = r#"
+Scale 1 1.4 0.7
+LookAt 0 -6 2.5  0 0 0.6  0 0 1
+Camera "orthographic" "float screenwindow" [ -2.4 2.4 -1.8 1.8 ]
+Film "rgb"
+WorldBegin
+LightSource "distant" "point3 from" [ 1 -1 2 ] "rgb L" [ 1 0.9 0.8 ]
+LightSource "spot" "point3 from" [ -2 -2 3 ] "point3 to" [ 0 0 0 ] "float coneangle" 35 "float scale" 30
+Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.5 ]
+Shape "plane"
+Translate 0.3 0 0.8
+Material "dielectric"
+Shape "sphere" "float radius" 0.7
+Translate -1.2 0.4 0
+Material "conductor" "float roughness" 0.3
+Shape "sphere" "float radius" 0.5
+"#;
+
+/// Shapes and instances of meshes with holes, one of which is seen through others, under shadow
+/// rays; and with alphas between 0 and 1, whose holes are other ones on both sides, but as many.
+pub const HOLES: &str = r#"
+LookAt 0 3 5  0 0.8 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+LightSource "point" "point3 from" [ 2 4 2 ] "float scale" 60
+Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+Texture "tiles" "float" "checkerboard" "float uscale" 8 "float vscale" 6
+Texture "holes" "float" "mix" "float tex1" 0 "float tex2" 1 "texture amount" "tiles"
+Texture "spots" "float" "checkerboard" "float uscale" 9 "float vscale" 7 "float tex1" 1 "float tex2" 0
+Shape "sphere" "float radius" 0.5 "texture alpha" "spots"
+Translate -1.2 0.8 0
+Shape "sphere" "float radius" 0.7 "texture alpha" "holes"
+Translate 2.4 0 0
+Shape "cylinder" "float radius" 0.6 "texture alpha" "holes"
+ObjectBegin "screen"
+    Shape "trianglemesh" "point3 P" [ -1 -0.6 0  1 -0.6 0  -1 0.9 0  1 0.9 0 ] "integer indices" [ 0 1 2  1 3 2 ]
+        "point2 uv" [ 0 0  1 0  0 1  1 1 ] "texture alpha" "holes"
+    Shape "bilinearmesh" "point3 P" [ -1 -0.6 0.3  1 -0.6 0.3  -1 0.9 0.3  1 0.9 0.8 ] "texture alpha" "spots"
+ObjectEnd
+Translate -1.2 0.2 1.2
+ObjectInstance "screen"
+Rotate 30 0 1 0
+Translate 0 0.3 -2.4
+ObjectInstance "screen"
+"#;
+
+/// Principled surfaces of all kinds: metal with a textured roughness, brushed metal, coats, fuzz,
+/// films, frosted glass, and a window.
+pub const PRINCIPLED: &str = r#"
+LookAt 0 -6 2.4  0 0 0.5  0 0 1
+Camera "perspective" "float fov" 36
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.5 0.6 0.8 ]
+LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
+Texture "tiles" "float" "checkerboard" "float uscale" 8 "float vscale" 8 "float tex1" 0.3 "float tex2" 0.7
+Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "openpbr" "texture base_color" "squares" "texture specular_roughness" "tiles"
+Shape "bilinearmesh" "point3 P" [ -4 -4 -0.5  4 -4 -0.5  -4 4 -0.5  4 4 -0.5 ]
+Translate -2 0 0
+Material "openpbr" "float base_metalness" 1 "rgb base_color" [ 0.9 0.6 0.3 ] "float specular_roughness" 0.5
+    "float specular_roughness_anisotropy" 0.6
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float coat_weight" 1 "rgb coat_color" [ 0.9 0.4 0.3 ] "float base_metalness" 0.4
+    "float coat_roughness" 0.1
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float transmission_weight" 1 "float specular_roughness" 0.4
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float fuzz_weight" 0.8 "rgb fuzz_color" [ 0.6 0.3 0.8 ] "float base_diffuse_roughness" 1
+Shape "sphere" "float radius" 0.45
+Translate 1 0 0
+Material "openpbr" "float thin_film_weight" 1 "float base_metalness" 1 "float specular_roughness" 0.3
+Shape "sphere" "float radius" 0.45
+Translate -2 -1.2 0
+Material "openpbr" "float transmission_weight" 0.8 "bool geometry_thin_walled" true
+    "rgb transmission_color" [ 0.5 0.9 0.6 ] "float subsurface_weight" 0.5
+Shape "disk" "float radius" 0.6 "float height" 0.2
+"#;
+
+/// A slide, thrown through a stretched space at a wall and a sphere.
+pub const PROJECTOR: &str = r#"
+LookAt 0 -6 1  0 0 1  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+AttributeBegin
+    Translate 1 -4 2
+    Rotate 110 1 0 0
+    Scale 1 1.3 -0.8
+    LightSource "projection" "string filename" "slide.pfm" "float fov" 40 "float scale" 30
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -4 2 -3  4 2 -3  -4 2 4  4 2 4 ]
+Translate 0.6 0 0.8
+Shape "sphere" "float radius" 0.6
+"#;
