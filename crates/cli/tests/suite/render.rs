@@ -286,7 +286,7 @@ fn every_instruction_set_gives_the_same_file() {
 #[test]
 fn what_no_gpu_draws_is_left_to_the_cpu() {
     let folder = Folder::new("device");
-    folder.write("scene.pbrt", &LAYERED.replace("Sampler \"independent\"", "Sampler \"halton\""));
+    folder.write("scene.pbrt", &LAYERED.replace("Shape \"sphere\"", "Shape \"cone\""));
     let arguments = ["render", "scene.pbrt", "-o", "a.exr", "--device", "gpu"];
     let told = folder.alhazen(&arguments).expect(0);
     assert!(told.err.contains("GPU") && told.out.contains("CPU"), "{told:?}");
