@@ -298,8 +298,8 @@ fn connection_to_vertex(v: Vertex, other: Vertex) -> Connection {
     return c;
 }
 
-// The weighted light of all connections of a vertex, the first of which `u` chooses and the point at
-// its other end `u_point`; that of one to the camera is splatted.
+// The weighted light of all connections of a vertex, the first of which `u` chooses and the point
+// at its other end `u_point`; that of one to the camera is splatted.
 fn connected(
     v: Vertex,
     context: ShapeSampleContext,

@@ -137,8 +137,8 @@ fn in_light(at: u32, w: vec3f) -> vec3f {
     return times(Rows(vector(at + 7), vector(at + 10), vector(at + 13)), w);
 }
 
-// The position on the square of the sphere of a direction in the space of a goniometric light, whose
-// y is the projection's z.
+// The position on the square of the sphere of a direction in the space of a goniometric light,
+// whose y is the projection's z.
 fn position_on_square(local: vec3f) -> vec2f {
     return equal_area_sphere_to_square(Vec3_normalize(local.xzy));
 }

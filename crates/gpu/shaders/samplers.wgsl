@@ -69,7 +69,8 @@ fn pixel_hash(address: Address, seed: u32) -> vec2u {
     return hash_end(hash_step(pixel, vec2u(address.dimension, seed)));
 }
 
-// The position of a sample in a shuffled set of `count` samples, of which each has a seed of its own.
+// The position of a sample in a shuffled set of `count` samples, of which each has a seed of its
+// own.
 fn shuffled(index: u32, count: u32, seed: u32) -> u32 {
     let round = index / count;
     var own = seed;

@@ -88,8 +88,8 @@ fn coordinates(is_pair: bool) -> vec2f {
     return ZSobol_at_2d(ZSobol(tables[at + 2], tables[at + 3], tables[at + 4], key, place), place);
 }
 
-// The coordinates of `sobol`. On the CPU its first two dimensions are the position in the pixel, and
-// others begin with the third; here camera paths have that position after their first number.
+// The coordinates of `sobol`. On the CPU its first two dimensions are the position in the pixel,
+// and others begin with the third; here camera paths have that position after their first number.
 fn sobol(at: u32, is_pair: bool) -> vec2f {
     let m = tables[at + 2];
     let kept = (1u << m) - 1;

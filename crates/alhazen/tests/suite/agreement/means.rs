@@ -15,8 +15,9 @@ use testkit::{Moments, welch_test};
 use super::scenes::{MEDIA, SCENES, Scene};
 use crate::common::{means, render_text};
 
-/// The tolerated difference of means, or this many standard errors of it if that is more.
+/// The tolerated difference of means.
 const THREE_PER_MILLE: f64 = 3e-3;
+/// In media so many standard errors of it, if that is more.
 const FOUR_ERRORS: f64 = 4.0;
 
 /// The most pictures of a mean.
@@ -196,12 +197,13 @@ fn error(moments: &Moments) -> f64 {
     moments.variance_of_mean().sqrt() / moments.mean
 }
 
-/// The differences of the means of a member from those of a reference, as one of so many tests.
+/// The differences of the means of a member from those of a reference, as one of so many tests;
+/// so many standard errors are tolerated, if they are more than three per mille.
 fn differences(
     scene: &Scene,
     member: &Member,
     [found, expected]: [&[Moments; 3]; 2],
-    tests: usize,
+    (tests, errors): (usize, f64),
 ) -> Vec<String> {
     let mut failures = Vec::new();
     for (channel, (found, expected)) in found.iter().zip(expected).enumerate() {
@@ -216,7 +218,7 @@ fn differences(
         );
         println!("{line}");
         let differs = member.is_unbiased() && welch_test(found, expected, tests).is_err();
-        if differs || difference.abs() > THREE_PER_MILLE.max(FOUR_ERRORS * error) {
+        if differs || difference.abs() > THREE_PER_MILLE.max(errors * error) {
             failures.push(line);
         }
     }
@@ -234,7 +236,7 @@ fn assert_means_agree(scenes: &[Scene], members: &[Member]) {
             // No two means share a seed.
             let found = member.means(scene, MOST * (members.len() as i32 * i + k));
             let reference = reference.get_or_insert(found);
-            failures.extend(differences(scene, member, [&found, reference], tests));
+            failures.extend(differences(scene, member, [&found, reference], (tests, 0.0)));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
@@ -259,7 +261,7 @@ fn assert_mean_agrees(scene: &str, reference: &str, member: &str) {
     let expected = REFERENCES[i].get_or_init(|| means(place(reference)));
     let k = place(member);
     let found = means(k);
-    let failures = differences(scene, &IN_MEDIA[k], [&found, expected], TESTS_IN_MEDIA);
+    let failures = differences(scene, &IN_MEDIA[k], [&found, expected], (TESTS_IN_MEDIA, FOUR_ERRORS));
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
