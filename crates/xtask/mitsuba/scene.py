@@ -29,6 +29,13 @@ class Statement:
         return self.parameters[name][1][0] if name in self.parameters else default
 
 
+def read_pfm(path):
+    """The colours of a file in PFM, whose rows go upwards."""
+    _, size, _, values = Path(path).read_bytes().split(b"\n", 3)
+    width, height = map(int, size.split())
+    return np.frombuffer(values, "<f4").reshape(height, width, 3)[::-1].astype(np.float64)
+
+
 def parse(path):
     """The statements of a file; file names in them become absolute."""
     tokens = re.findall(r'#[^\n]*|"[^"]*"|\[|\]|[^\s\[\]"#]+', Path(path).read_text())
@@ -61,7 +68,7 @@ def parse(path):
                 statement.parameters[name] = (kind, values())
             else:
                 statement.words += values()
-        if "filename" in statement.parameters and statement.name in ("Shape", "Texture"):
+        if "filename" in statement.parameters and statement.name in ("Shape", "Texture", "LightSource"):
             file = str((Path(path).parent / statement.get("filename")).resolve())
             statement.parameters["filename"] = ("string", [file])
         statements.append(statement)
@@ -82,7 +89,7 @@ def comparable(statements):
                 kind, values = s.parameters[name]
                 r, g, b = SILVER[name] if kind == "spectrum" else values
                 s.parameters[name] = ("spectrum", [300, b, 450, b, 550, g, 630, r, 900, r])
-        if s.name == "Texture":
+        if s.name == "Texture" and s.words[2] == "imagemap":
             s.parameters["filter"] = ("string", ["bilinear"])
         if s.name == "Integrator":
             s.words = ["path"]
@@ -147,7 +154,9 @@ def to_mitsuba(statements, mi, width, height, spp, folder):
         elif s.name == "AttributeEnd":
             transform, light, bsdf = stack.pop()
         elif s.name == "Texture":
-            textures[s.words[0]] = {"type": "bitmap", "filename": s.get("filename")}
+            textures[s.words[0]] = texture(s, mi)
+        elif s.name == "LightSource":
+            scene[f"light{len(scene)}"] = sky(s, mi, transform)
         elif s.name in ("MakeNamedMaterial", "Material"):
             made = material(s, textures)
             if s.name == "Material":
@@ -166,6 +175,36 @@ def to_mitsuba(statements, mi, width, height, spp, folder):
         elif s.name not in ("Film", "PixelFilter", "Sampler"):
             raise ValueError(f"{s.name} has no counterpart here")
     return scene
+
+
+def texture(s, mi):
+    """An image, or a checkerboard, of which Mitsuba counts pairs of squares."""
+    if s.words[2] == "imagemap":
+        return {"type": "bitmap", "filename": s.get("filename")}
+    if s.words[2] != "checkerboard":
+        raise ValueError(f"the texture {s.words[2]} has no counterpart here")
+    scales = [s.get("uscale", 1.0) / 2, s.get("vscale", 1.0) / 2, 1]
+    colors = {f"color{i}": {"type": "rgb", "value": s.parameters[f"tex{i + 1}"][1]} for i in range(2)}
+    return {"type": "checkerboard", "to_uv": mi.ScalarTransform4f().scale(scales)} | colors
+
+
+def sky(s, mi, transform):
+    """Light from infinity: an image over longitude and latitude, of twice the resolution of the
+    octahedral one, whose nearest pixels it has [Clarberg 2008]."""
+    if s.words[0] != "infinite" or "filename" not in s.parameters:
+        raise ValueError("only lights at infinity with an image have a counterpart here")
+    pixels = read_pfm(s.get("filename")).astype(np.float32)
+    size = len(pixels)
+    theta = (np.arange(2 * size) + 0.5)[:, None] * np.pi / (2 * size)
+    phi = (np.arange(4 * size) + 0.5)[None, :] * np.pi / (2 * size)
+    world = [np.sin(phi) * np.sin(theta), np.cos(theta) + 0 * phi, -np.cos(phi) * np.sin(theta)]
+    x, y, z = np.tensordot(np.linalg.inv(transform[:3, :3]), np.stack(world), 1)
+    radius = np.sqrt(np.maximum(1 - np.abs(z), 0))
+    v = radius * np.arctan2(np.abs(y), np.abs(x)) * 2 / np.pi
+    u = radius - v
+    u, v = np.where(z < 0, 1 - v, u), np.where(z < 0, 1 - u, v)
+    column, row = (((np.copysign(c, sign) + 1) / 2 * size).astype(int).clip(0, size - 1) for c, sign in ((u, x), (v, y)))
+    return {"type": "envmap", "bitmap": mi.Bitmap(pixels[row, column])}
 
 
 def spectrum(s, name, textures):
