@@ -45,9 +45,12 @@ impl Realtime {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
         let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
-        if algorithm.splats().is_some() {
-            let name = desc.integrator.name();
-            let message = format!("the engine for GPUs draws integrator `{name}` only as a whole picture");
+        let whole = match algorithm.splats() {
+            Some(_) => Some(format!("integrator `{}`", desc.integrator.name())),
+            None => flat.parts().media.then(|| "participating media".to_owned()),
+        };
+        if let Some(what) = whole {
+            let message = format!("the engine for GPUs draws {what} only as a whole picture");
             return Err(vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]);
         }
         let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)

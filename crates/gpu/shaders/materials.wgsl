@@ -9,6 +9,7 @@ const MIX = 5u;
 const COATED_DIFFUSE = 6u;
 const COATED_CONDUCTOR = 7u;
 const PRINCIPLED = 8u;
+const INTERFACE = 9u;
 
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;

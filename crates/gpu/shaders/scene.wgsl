@@ -29,6 +29,7 @@ struct World {
     has_footprints: u32,
     sensor: u32,
     light_paths: u32,
+    media: u32,
 }
 
 @group(0) @binding(0) var<storage, read_write> world: World;

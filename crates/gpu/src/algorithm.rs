@@ -21,6 +21,8 @@ pub enum Algorithm {
     AmbientOcclusion(AmbientOcclusionDesc, &'static RgbColorSpace),
     /// Path tracing.
     Path(PathDesc),
+    /// The same through media.
+    VolPath(PathDesc),
     /// Light paths, connected to the camera.
     LightTracing(LightTracingDesc),
     /// Bidirectional path tracing.
@@ -45,7 +47,8 @@ impl Algorithm {
                 bounded(settings.max_depth).map(|()| Self::Whitted(settings))
             }
             IntegratorDesc::AmbientOcclusion(settings) => Ok(Self::AmbientOcclusion(settings, space)),
-            IntegratorDesc::Path(settings) | IntegratorDesc::VolPath(settings) => Ok(Self::Path(settings)),
+            IntegratorDesc::Path(settings) => Ok(Self::Path(settings)),
+            IntegratorDesc::VolPath(settings) => Ok(Self::VolPath(settings)),
             IntegratorDesc::LightTracing(settings) => Ok(Self::LightTracing(settings)),
             IntegratorDesc::Bdpt(settings) if settings.visualize_strategies || settings.visualize_weights => {
                 Err(format!("pictures of the strategies of integrator `{name}`"))
@@ -61,7 +64,7 @@ impl Algorithm {
             Self::RayCasting | Self::Whitted(_) | Self::AmbientOcclusion(..) | Self::LightTracing(_) => {
                 LightSamplerDesc::Uniform
             }
-            Self::Path(desc) => desc.light_sampler,
+            Self::Path(desc) | Self::VolPath(desc) => desc.light_sampler,
             Self::Bdpt(_) => LightSamplerDesc::Bvh,
         }
     }
@@ -69,7 +72,11 @@ impl Algorithm {
     /// The most splats of a light path; `None` if there are no light paths.
     pub fn splats(&self) -> Option<u32> {
         match self {
-            Self::RayCasting | Self::Whitted(_) | Self::AmbientOcclusion(..) | Self::Path(_) => None,
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(..)
+            | Self::Path(_)
+            | Self::VolPath(_) => None,
             Self::LightTracing(desc) => Some(desc.max_depth),
             Self::Bdpt(desc) => Some(desc.max_depth),
         }

@@ -84,6 +84,8 @@ pub struct Parts {
     pub principled: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
+    /// Participating media, or interfaces, which only [`Algorithm::VolPath`] has.
+    pub media: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm.
@@ -94,14 +96,15 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         Algorithm::RayCasting
         | Algorithm::Whitted(_)
         | Algorithm::AmbientOcclusion(..)
-        | Algorithm::Path(_) => {
+        | Algorithm::Path(_)
+        | Algorithm::VolPath(_) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
-            return traced(parts, &[NO_RESERVOIRS, radiance(algorithm), pixels]);
+            return traced(parts, &[NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
         }
     };
     let constants =
         format!("const HAS_CAMERA_PATHS = {has_camera_paths};\nconst MOST_VERTICES = {most_vertices}u;\n");
-    traced(parts, &[&constants, LENS, LIGHT_PATHS, radiance(algorithm)])
+    traced(parts, &[&constants, LENS, LIGHT_PATHS, radiance(algorithm, parts)])
 }
 
 /// The kernel that finds the light of a real-time frame by an algorithm; but for direct light at
@@ -109,7 +112,7 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
 pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> String {
     let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
     let light = include_str!("../shaders/realtime/light.wgsl");
-    traced(parts, &[reservoirs, radiance(algorithm), FRAME, SENSOR, light])
+    traced(parts, &[reservoirs, radiance(algorithm, parts), FRAME, SENSOR, light])
 }
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
@@ -133,6 +136,7 @@ pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
         Algorithm::RayCasting
         | Algorithm::Whitted(_)
         | Algorithm::Path(_)
+        | Algorithm::VolPath(_)
         | Algorithm::LightTracing(_)
         | Algorithm::Bdpt(_) => "const IS_REFLECTED = true;\n",
     };
@@ -156,12 +160,15 @@ pub fn filters() -> [String; 4] {
 
 /// The function `radiance` of an algorithm, or the whole of one whose paths begin at lights, which
 /// is not for real-time frames.
-fn radiance(algorithm: &Algorithm) -> &'static str {
+fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
     match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
-        Algorithm::Path(_) => include_str!("../shaders/path.wgsl"),
+        Algorithm::VolPath(_) if parts.media => {
+            concat!(include_str!("../shaders/media.wgsl"), include_str!("../shaders/vol_path.wgsl"))
+        }
+        Algorithm::Path(_) | Algorithm::VolPath(_) => include_str!("../shaders/path.wgsl"),
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
     }
 }
@@ -169,7 +176,7 @@ fn radiance(algorithm: &Algorithm) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, rare_samplers } = parts;
+    let Parts { holes, images, noise, coats, principled, rare_samplers, media: _ } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_COATS = {coats};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"

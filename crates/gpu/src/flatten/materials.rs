@@ -10,13 +10,16 @@
 //! | 4 thin dielectric | 0, spectrum of η, whether it varies | |
 //! | 5 mix | the two materials | the probability of the second |
 //! | 8 principled | offset of its record | numbers and colours |
+//! | 9 interface | | |
 //! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
 
 use description::Span;
 use image::WrapMode;
-use scene::material::{Coat, ConductorIndex, ConductorMaterial, Material, MaterialEntry, Roughness};
+use scene::material::{
+    Coat, ConductorIndex, ConductorMaterial, Material, MaterialEntry, MaterialId, Roughness,
+};
 use spectrum::Spectrum;
 
 use super::Flattener;
@@ -30,6 +33,7 @@ const MIX: u32 = 5;
 const COATED_DIFFUSE: u32 = 6;
 const COATED_CONDUCTOR: u32 = 7;
 const PRINCIPLED: u32 = 8;
+const INTERFACE: u32 = 9;
 
 /// The kind, the words and the textures of a material.
 type Record = (u32, [u32; 8], Vec<u32>);
@@ -89,6 +93,12 @@ impl Flattener<'_> {
                 return (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new());
             }
             Material::Mix(m) => {
+                let is_interface = |id: &MaterialId| {
+                    matches!(self.scene.materials()[id.0 as usize].material, Material::Interface)
+                };
+                if m.materials.iter().any(is_interface) {
+                    self.refuse("mixes with material `interface`", span);
+                }
                 let pair = m.materials.map(|material| material.0);
                 return (MIX, words(pair), vec![self.number_texture(m.amount, span)]);
             }
@@ -104,10 +114,10 @@ impl Flattener<'_> {
                 let (record, textures) = self.principled(m, span);
                 return (PRINCIPLED, words([record]), textures);
             }
+            Material::Interface => return (INTERFACE, [0; 8], Vec::new()),
             Material::Hair(_) => "hair",
             Material::Measured(_) => "measured",
             Material::Subsurface(_) => "subsurface",
-            Material::Interface => "interface",
         };
         self.refuse(format!("material `{name}`"), span);
         (DIFFUSE, [0; 8], Vec::new())

@@ -16,6 +16,7 @@ mod light_choices;
 mod light_paths;
 mod lights;
 mod materials;
+mod media;
 mod openpbr;
 mod samplers;
 mod sensors;
@@ -30,7 +31,8 @@ use film::Film;
 use geometry::{GeometryId, InstanceId, Shape};
 use sampling::Sampler;
 use scene::light_sampler::LightSampler;
-use scene::{Scene, View};
+use scene::material::Material;
+use scene::{GeometryEntry, Scene, View};
 
 use crate::algorithm::Algorithm;
 use crate::bvh::{Bvh, BvhError, Top};
@@ -106,8 +108,8 @@ pub(crate) struct Head {
     pub(crate) sensor: u32,
     /// The offset of what light paths need, if there are any.
     pub(crate) light_paths: u32,
-    /// Heads are whole pairs of words.
-    pub(crate) unused: u32,
+    /// The offset of media, if there are any or interfaces between them.
+    pub(crate) media: u32,
 }
 
 impl Flat {
@@ -158,7 +160,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         parts: Parts::default(),
         refusals: Vec::new(),
     };
-    flattener.check(view, film);
+    flattener.check(view, film, algorithm);
     let mut head = Head {
         is_centered: view.options.disable_pixel_jitter.into(),
         has_one_wavelength: view.options.disable_wavelength_jitter.into(),
@@ -185,7 +187,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
             head.max_distance = desc.max_distance;
             head.cos_sample = desc.cos_sample.into();
         }
-        Algorithm::Path(desc) => {
+        Algorithm::Path(desc) | Algorithm::VolPath(desc) => {
             head.max_depth = desc.max_depth;
             head.regularize = desc.regularize.into();
         }
@@ -198,11 +200,23 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     if algorithm.splats().is_some() {
         head.light_paths = flattener.light_paths(light_sampler, film);
     }
+    if has_media(scene) {
+        flattener.parts.media = true;
+        head.media = flattener.media(view.medium);
+    }
     let bvh = flattener.bvh();
     head.top = bvh.top;
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts };
     if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
+}
+
+/// Whether there are media, or interfaces that would be between them.
+fn has_media(scene: &Scene) -> bool {
+    let materials = scene.materials();
+    let is_interface =
+        |entry: &GeometryEntry| matches!(materials[entry.material.0 as usize].material, Material::Interface);
+    !scene.media().is_empty() || scene.geometries().iter().any(is_interface)
 }
 
 /// Tables under construction.
@@ -229,10 +243,11 @@ impl Flattener<'_> {
     }
 
     /// Refuses what concerns the whole picture.
-    fn check(&mut self, view: &View, film: &Film) {
+    fn check(&mut self, view: &View, film: &Film, algorithm: &Algorithm) {
+        let knows_media = matches!(algorithm, Algorithm::VolPath(_));
         let whole = [
             (view.options.force_diffuse, "`forcediffuse`"),
-            (view.medium.is_some() || !self.scene.media().is_empty(), "participating media"),
+            (!knows_media && has_media(self.scene), "participating media or interfaces"),
             (view.wavelengths.is_some(), "spectral films"),
             (film.layers() != film::LayerSet::NONE, "layers beside the colour"),
         ];

@@ -203,7 +203,7 @@ impl Flattener<'_> {
 }
 
 /// The upper three rows of a matrix.
-fn rows(transform: &Transform) -> Vec<f32> {
+pub fn rows(transform: &Transform) -> Vec<f32> {
     let matrix = transform.matrix();
     [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect()
 }

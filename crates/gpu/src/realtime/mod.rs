@@ -122,7 +122,9 @@ impl Realtime {
         algorithm: &Algorithm,
         shared: Option<Weights>,
     ) -> Result<Self, GpuError> {
-        let shared = shared.filter(|_| matches!(algorithm, Algorithm::Path(desc) if desc.max_depth > 0));
+        let shared = shared.filter(
+            |_| matches!(algorithm, Algorithm::Path(desc) | Algorithm::VolPath(desc) if desc.max_depth > 0),
+        );
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();

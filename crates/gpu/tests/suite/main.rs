@@ -5,6 +5,7 @@
 
 mod faults;
 mod laws;
+mod media;
 mod openpbr;
 mod pictures;
 mod raster;

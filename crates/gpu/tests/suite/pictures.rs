@@ -14,7 +14,7 @@ use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
     AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, PixelLoop, RayCasting, RayIntegrator,
-    Session, SessionState, Whitted,
+    Session, SessionState, VolPath, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
@@ -108,7 +108,7 @@ impl Case {
     }
 
     /// The samples of each pixel by the GPU, if there is one.
-    fn on_gpu(&self, algorithm: &Algorithm) -> Option<Image> {
+    pub fn on_gpu(&self, algorithm: &Algorithm) -> Option<Image> {
         let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
         let mut film = self.film();
         let kernels = kernels(algorithm, &flat)?;
@@ -129,6 +129,7 @@ impl Case {
             Algorithm::Whitted(desc) => self.by_rays(Whitted::new(*desc)),
             Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
             Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
+            Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
             Algorithm::LightTracing(desc) => Box::new(LightTracing::new(*desc, sampler, light_sampler)),
             Algorithm::Bdpt(desc) => Box::new(Bdpt::new(*desc, sampler, light_sampler)),
         };

@@ -41,7 +41,7 @@ fn traversal_is_valid() {
 fn parts(bits: u32) -> Parts {
     let [holes, images, noise, coats, principled, rare_samplers] =
         [0, 1, 2, 3, 4, 5].map(|i| bits >> i & 1 == 1);
-    Parts { holes, images, noise, coats, principled, rare_samplers }
+    Parts { holes, images, noise, coats, principled, rare_samplers, media: false }
 }
 
 /// No parts, all of them, and others so that each two parts are there together, each without the
@@ -60,6 +60,7 @@ fn each_two_parts_are_there_in_all_ways() {
 fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     let path = Algorithm::Path(Default::default());
+    let vol_path = Algorithm::VolPath(Default::default());
     let algorithms = [
         Algorithm::RayCasting,
         Algorithm::Whitted(Default::default()),
@@ -81,6 +82,7 @@ fn kernels_are_valid() {
                 add(algorithm, shaders::light(algorithm, parts, false));
             }
         }
+        add(&"media", shaders::pixels(&vol_path, Parts { media: true, ..parts }));
         add(&"other light", shaders::light(&path, parts, true));
         shaders::reservoirs(parts).into_iter().for_each(|source| add(&"reservoirs", source));
     }

@@ -29,6 +29,11 @@ impl<T: Copy> Grid<T> {
         self.resolution
     }
 
+    /// The values, x fastest.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
     /// The interpolation of `value_of` the values at a point of the unit cube.
     #[inline]
     pub(super) fn lookup<V>(&self, p: Point3, zero: V, value_of: impl Fn(T) -> V) -> V

@@ -28,6 +28,11 @@ impl Placement {
         Self { unit_from_render }
     }
 
+    /// From render space to the unit cube, which is the box.
+    pub fn unit_from_render(&self) -> &Transform {
+        &self.unit_from_render
+    }
+
     /// Bounds of the box.
     pub(super) fn bounds(&self) -> Bounds3 {
         self.unit_from_render.inverse().bounds(&Bounds3::new(Vec3::ZERO, Vec3::ONE))
@@ -75,6 +80,16 @@ impl MajorantGrid {
             }
         }
         Self { resolution, values }
+    }
+
+    /// The numbers of cells in x, y and z.
+    pub fn resolution(&self) -> [usize; 3] {
+        self.resolution
+    }
+
+    /// The bound of each cell, x fastest.
+    pub fn values(&self) -> &[f32] {
+        &self.values
     }
 
     /// The majorants on a ray up to `t_max`; `per_density` is the extinction where the density is

@@ -1,0 +1,309 @@
+// Path tracing through media, as `integrators/src/camera_paths/vol_path.rs` has it: next-event
+// estimation, multiple importance sampling over directions and wavelengths, Russian roulette.
+
+// Paths of this survival probability or more survive.
+const CERTAIN = 0.999;
+
+// A path between two of its vertices.
+struct Path {
+    ray: Ray,
+    near: Differentials,
+    medium: u32,
+    throughput: Throughput,
+    heroes: Heroes,
+    depth: u32,
+    // The vertex that the ray starts at, and whether a light sample could have found what it hits.
+    origin: ShapeSampleContext,
+    is_found_twice: bool,
+    // The product of η² over the refractions.
+    eta_scale: f32,
+    rough_before: bool,
+}
+
+// A shadow ray on its way through interfaces, and what it brings.
+struct Connection {
+    is_on_its_way: bool,
+    ray: Ray,
+    t_max: f32,
+    medium: u32,
+    // What the media leave of the light.
+    passage: Throughput,
+    // The light as if nothing were in between, over the density of its sample; the density of the
+    // path over that of the hero; and the density with which scattering finds the light over that of
+    // its sample.
+    l: vec4f,
+    r_u: vec4f,
+    ratio: f32,
+}
+
+// The light that arrives, weighted against that which scattering finds.
+fn arriving(c: Connection, heroes: Heroes) -> vec4f {
+    let by_light = mean_of(heroes, c.r_u * c.passage.r_l);
+    let by_scattering = mean_of(heroes, c.r_u * c.passage.r_u) * c.ratio;
+    if (!(by_light > 0)) {
+        return vec4f();
+    }
+    return c.l * c.passage.beta * (power_heuristic(by_light, by_scattering) / by_light);
+}
+
+// The connection of a vertex with a point of a light, from the medium of the path.
+fn connection(
+    s: Surface,
+    bsdf: Bsdf,
+    path: Path,
+    phase: HenyeyGreenstein,
+    in_medium: bool,
+    choice: Choice,
+    light: LightSample,
+) -> Connection {
+    var pdf: f32;
+    var f: vec4f;
+    if (in_medium) {
+        pdf = HenyeyGreenstein_p(phase, s.wo, light.wi);
+        f = vec4f(pdf);
+    } else {
+        pdf = bsdf_pdf(bsdf, s.wo, light.wi);
+        f = bsdf_f(bsdf, s.wo, light.wi) * abs(dot(light.wi, s.ns));
+    }
+    let shadow = shadow_ray(s, light);
+    let density = choice.pmf * light.pdf;
+    let l = path.throughput.beta * f * light.l / density;
+    let ratio = select(pdf / density, 0, is_delta(light_record(choice.light)));
+    let clear = Throughput(vec4f(1), vec4f(1), vec4f(1));
+    let r_u = path.throughput.r_u;
+    return Connection(!is_black(l), shadow.ray, shadow.t_max, path.medium, clear, l, r_u, ratio);
+}
+
+// What light that only the path's own sampling finds is multiplied by.
+fn carried(path: Path) -> vec4f {
+    return path.throughput.beta / mean_of(path.heroes, path.throughput.r_u);
+}
+
+// The weight of light that a path hits, and that light sampling finds with the density `pdf`.
+fn hit_weight(path: Path, light: u32, pdf: f32) -> f32 {
+    let by_light = mean_of(path.heroes, path.throughput.r_l) * light_pmf(path.origin, light) * pdf;
+    return power_heuristic(mean_of(path.heroes, path.throughput.r_u), by_light);
+}
+
+// The weighted radiance along a ray that leaves the scene.
+fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
+    var sum = vec4f();
+    for (var i = 0u; i < world.infinite_count; i++) {
+        let light = tables[world.infinite + i];
+        let seen = sky(light, path.ray.d, lambda);
+        var weight = 1.0;
+        if (path.is_found_twice) {
+            weight = hit_weight(path, light, seen.pdf);
+        }
+        sum += seen.l * weight;
+    }
+    return sum;
+}
+
+// The weighted emission of a surface back along the ray.
+fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
+    if (s.light == 0) {
+        return vec4f();
+    }
+    let light = s.light - 1;
+    let l = light_radiance(light_record(light), s.n, s.wo, lambda);
+    if (is_black(l) || !path.is_found_twice) {
+        return l;
+    }
+    return l * hit_weight(path, light, pdf_of_surface(light, path.origin, s, uv));
+}
+
+// Leaves a vertex along a direction of the density `pdf`.
+fn leave(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, wi: vec3f, pdf: f32) {
+    (*path).throughput.r_l = (*path).throughput.r_u / pdf;
+    (*path).origin = context;
+    (*path).ray = spawn(s, wi);
+}
+
+// Goes on with the first wavelength alone.
+fn keep_first(path: ptr<function, Path>) {
+    let density = mean_of((*path).heroes, (*path).throughput.r_u);
+    (*path).throughput.beta /= density;
+    (*path).throughput.r_l /= density;
+    (*path).throughput.r_u = vec4f(1);
+    (*path).heroes = Heroes(vec4f(1, 0, 0, 0), 0);
+}
+
+// Plays Russian roulette; false if the path has ended.
+fn survives(path: ptr<function, Path>) -> bool {
+    let probability = 3 * SampledSpectrum_max_component(carried(*path) * (*path).eta_scale);
+    if ((*path).depth <= 1 || probability >= CERTAIN) {
+        return true;
+    }
+    if (!(probability > 0 && get_1d() < probability)) {
+        return false;
+    }
+    (*path).throughput.beta /= probability;
+    return true;
+}
+
+fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
+    var l = vec4f();
+    var path: Path;
+    path.ray = ray;
+    path.near = near;
+    path.medium = tables[world.media];
+    path.throughput = Throughput(vec4f(1), vec4f(1), vec4f(1));
+    path.heroes = Heroes(vec4f(0.25), min(u32(get_1d() * 4), 3));
+    path.eta_scale = 1;
+    var shadow: Connection;
+    var goes_on = true;
+    // Each turn follows a part of the last vertex's shadow ray, until that has ended, or the ray to
+    // the next vertex, as what rays meet is found at one place of the program.
+    while (shadow.is_on_its_way || goes_on) {
+        let is_shadow = shadow.is_on_its_way;
+        var part = path.ray;
+        var t_max = infinity();
+        var medium = path.medium;
+        var throughput = path.throughput;
+        if (is_shadow) {
+            part = shadow.ray;
+            t_max = shadow.t_max;
+            medium = shadow.medium;
+            throughput = shadow.passage;
+        }
+        rays++;
+        let hit = trace(part.o, part.d, t_max, false);
+        let geometry = hit.geometry;
+        var is_interface = false;
+        if (hit.found) {
+            is_interface = tables[material_record(tables[world.geometries + 5 * geometry])] == INTERFACE;
+        }
+        if (is_shadow && hit.found && !is_interface) {
+            shadow.is_on_its_way = false;
+            continue;
+        }
+        var s: Surface;
+        if (hit.found) {
+            s = surface_at(hit, part);
+        }
+        var flight: Flight;
+        if (medium != 0) {
+            // Shadow rays to points are as long as the distance.
+            let scale = select(1, length(part.d), is_shadow);
+            if (!is_shadow) {
+                let first = get_1d();
+                begin_collisions(first, get_1d());
+            }
+            let end = select(t_max, hit.t, hit.found) * scale;
+            let unit = Ray(part.o, part.d / scale, part.time);
+            flight = fly(medium, unit, end, is_shadow, path.heroes, *lambda, &throughput);
+        }
+        if (is_shadow) {
+            shadow.passage = throughput;
+            shadow.t_max -= hit.t;
+            let has_arrived = !hit.found || shadow.t_max <= 0;
+            shadow.is_on_its_way = flight.end != ABSORBED && !has_arrived;
+            if (shadow.is_on_its_way) {
+                shadow.medium = medium_towards(geometry, s.n, part.d, medium);
+                shadow.ray = spawn(s, part.d);
+            } else if (flight.end != ABSORBED) {
+                l += arriving(shadow, path.heroes);
+            }
+            continue;
+        }
+        path.throughput = throughput;
+        l += flight.emitted;
+        let in_medium = flight.end == SCATTERED;
+        if (flight.end == ABSORBED || (in_medium && path.depth == world.max_depth)) {
+            break;
+        }
+        var bsdf: Bsdf;
+        var textures: TextureContext;
+        var flags = 0u;
+        if (in_medium) {
+            s.p = Point3Error(flight.p, vec3f());
+            s.n = vec3f();
+            s.ns = vec3f();
+            s.wo = -part.d;
+        } else {
+            if (!hit.found) {
+                l += carried(path) * escaped(path, *lambda);
+                break;
+            }
+            l += carried(path) * emitted(path, s, hit.uv, *lambda);
+            if (is_interface) {
+                path.medium = medium_towards(geometry, s.n, part.d, medium);
+                path.near.rx_origin += path.near.rx_direction * hit.t;
+                path.near.ry_origin += path.near.ry_direction * hit.t;
+                path.ray = spawn(s, part.d);
+                continue;
+            }
+            textures = texture_context(s, path.near);
+            bsdf = bsdf_at(&s, textures, lambda);
+            if (path.depth == world.max_depth) {
+                break;
+            }
+            if (SampledWavelengths_secondary_terminated(*lambda)) {
+                keep_first(&path);
+            }
+            if (world.regularize == 1 && path.rough_before) {
+                regularize(&bsdf);
+            }
+            flags = bsdf_flags(bsdf);
+        }
+        path.depth++;
+        var context = context_of(s);
+        if (!in_medium) {
+            context = light_context(s, flags);
+        }
+        let phase = HenyeyGreenstein(number(max(medium, 1) + 1));
+        // What chooses the light and its point, the collisions of the shadow ray, and the lobe and its
+        // direction.
+        let samples_light = in_medium || is_non_specular(flags);
+        var u: array<vec2f, 6>;
+        for (var i = select(4u, 0u, samples_light); i < 6; i++) {
+            if (!(in_medium && i == 4)) {
+                u[i] = next_numbers(i == 1 || i == 5);
+            }
+        }
+        var choice: Choice;
+        if (samples_light) {
+            choice = choose_light(context, u[0].x);
+        }
+        if (choice.valid) {
+            let light = sample_light(choice.light, context, u[1], *lambda, true);
+            if (light.valid) {
+                begin_collisions(u[2].x, u[3].x);
+                shadow = connection(s, bsdf, path, phase, in_medium, choice, light);
+                if (!in_medium) {
+                    shadow.medium = medium_towards(geometry, s.n, light.wi, medium);
+                }
+            }
+        }
+        if (in_medium) {
+            let scattered = HenyeyGreenstein_sample_p(phase, s.wo, u[5]);
+            path.near = no_differentials();
+            path.is_found_twice = true;
+            path.rough_before = true;
+            leave(&path, s, context, scattered.v0, scattered.v1);
+            goes_on = survives(&path);
+            continue;
+        }
+        let sample = bsdf_sample(bsdf, s.wo, u[4].x, u[5]);
+        goes_on = sample.valid;
+        if (goes_on) {
+            path.near = scattered_differentials(s, textures, path.near, sample);
+            path.throughput.beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
+            // The density of a sample that is a walk is known as that of its direction alone.
+            var pdf = sample.pdf;
+            if (HAS_COATS && sample.pdf_is_proportional) {
+                pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
+            }
+            path.is_found_twice = (sample.flags & BxdfFlags_SPECULAR) == 0;
+            path.rough_before |= path.is_found_twice;
+            if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
+                path.eta_scale *= sample.eta * sample.eta;
+            }
+            path.medium = medium_towards(geometry, s.n, sample.wi, medium);
+            leave(&path, s, context, sample.wi, pdf);
+            goes_on = survives(&path);
+        }
+    }
+    return l;
+}
