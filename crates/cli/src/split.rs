@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::integrators::Control;
-use alhazen::write_picture;
 use view::split::{SplitReport, picture};
 use view::{Rasterized, Renderer};
 
@@ -42,8 +41,7 @@ pub fn headless(
     let report = report?;
     if let Some(path) = &arguments.output {
         let picture = picture(renderer, &mut rasterized, share, &control)?;
-        let written = write_picture(&picture, path, &arguments.display.settings());
-        written.map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+        crate::view::write(&picture, path, arguments)?;
     }
     Ok(report)
 }

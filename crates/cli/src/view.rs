@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use alhazen::Overrides;
+use alhazen::image::Image;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
+use alhazen::{Overrides, write_picture};
 use view::planet::{Outing, PlanetReport, Spent};
 use view::{Renderer, Report, Stages, World};
 
@@ -31,7 +32,7 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
                 .into(),
         ));
     }
-    if (arguments.split.is_some() || arguments.output.is_some()) && !cfg!(feature = "gpu") {
+    if arguments.split.is_some() && !cfg!(feature = "gpu") {
         return Err(Failure::Usage(
             "this program was built without the engine for GPUs, which the cargo feature `gpu` adds".into(),
         ));
@@ -85,8 +86,11 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     let control = Control::default();
-    let report = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
-    let report = report?;
+    let orbit = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
+    let (report, last) = orbit?;
+    if let (Some(path), Some(frame)) = (&arguments.output, last) {
+        write(&frame.to_image(), path, arguments)?;
+    }
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
         let mut json = report.to_json();
@@ -100,6 +104,12 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes a picture as the arguments say that it is shown.
+pub fn write(picture: &Image, path: &Path, arguments: &View) -> Result<(), Failure> {
+    write_picture(picture, path, &arguments.display.settings())
+        .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
 }
 
 /// A walk over a planet, in a window or without one.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use alhazen::film::Layer;
-use alhazen::image::PixelSource;
+use alhazen::image::{Chromaticities, Image, PixelSource};
 use alhazen::integrators::Session;
 use alhazen::math::Bounds2i;
 use alhazen::scene::View;
@@ -89,7 +89,7 @@ impl Frame {
     /// A finished picture of the pixels in `bounds`.
     #[cfg(feature = "gpu")]
     pub fn of_image(
-        image: &alhazen::image::Image,
+        image: &Image,
         view: View,
         bounds: Bounds2i,
         color_space: &'static RgbColorSpace,
@@ -111,6 +111,17 @@ impl Frame {
             rays: 0,
             stages: None,
         }
+    }
+
+    /// It as an image with its colour space.
+    pub fn to_image(&self) -> Image {
+        let [width, height] = self.size;
+        let pixel = |x: u32, y: u32| self.pixels[(y * width + x) as usize];
+        let mut image = Image::from_fn(width, height, ["R", "G", "B"], pixel);
+        let [red, green, blue] = self.color_space.primaries();
+        let white = self.color_space.white();
+        image.metadata.chromaticities = Some(Chromaticities { red, green, blue, white });
+        image
     }
 
     /// The part that shows these pixels of the film, as fractions of width and height, from the

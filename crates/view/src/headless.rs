@@ -7,7 +7,7 @@ use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
 use crate::step::StepError;
-use crate::{Flight, Renderer, Shot, Stages};
+use crate::{Flight, Frame, Renderer, Shot, Stages};
 
 /// The frame times of a camera path.
 #[derive(Clone, Debug)]
@@ -37,15 +37,15 @@ pub struct Report {
 }
 
 impl Report {
-    /// Renders `frames` frames of a camera that orbits once around what it looks at. `begin` is
-    /// when the program began.
+    /// Renders `frames` frames of a camera that orbits once around what it looks at, and ends where
+    /// it began. `begin` is when the program began. Returns the last frame, too.
     pub fn of_orbit(
         renderer: &mut Renderer,
         flight: &mut Flight,
         frames: u32,
         begin: Instant,
         control: &Control,
-    ) -> Result<Self, StepError> {
+    ) -> Result<(Self, Option<Frame>), StepError> {
         let shot = renderer.shot().clone();
         let bounds = renderer.world().bounds();
         let mut report = Self {
@@ -61,7 +61,9 @@ impl Report {
             shared: renderer.shared(),
             stages: Vec::new(),
         };
+        let mut last = None;
         for frame in 0..frames {
+            flight.orbit(TAU / f64::from(frames), 0.0);
             renderer.aim(Shot { camera: flight.camera().clone(), ..shot.clone() });
             let Some(picture) = renderer.step(control)? else { continue };
             if frame == 0 {
@@ -71,10 +73,10 @@ impl Report {
             report.sizes.push(picture.size);
             report.rays += picture.rays;
             report.stages.extend(picture.stages);
-            flight.orbit(TAU / f64::from(frames), 0.0);
+            last = Some(picture);
         }
         report.device = renderer.device().map(str::to_owned);
-        Ok(report)
+        Ok((report, last))
     }
 
     /// The median time of a part of the frames that a GPU has rendered.

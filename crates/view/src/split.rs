@@ -44,15 +44,15 @@ impl SplitReport {
         rasterized.draw(&Shot { camera: flight.camera().clone(), ..shot.clone() })?;
         let prepared_in = prepared_in + start.elapsed();
         let mut around = flight.clone();
-        let traced = Report::of_orbit(renderer, flight, frames, begin, control)?;
+        let (traced, _) = Report::of_orbit(renderer, flight, frames, begin, control)?;
         let device = rasterized.device().name().to_owned();
         let mut report =
             Self { traced, rasterized: Vec::new(), prepared_in, device, triangles: 0, sprites: 0 };
         for _ in 0..frames {
+            around.orbit(TAU / f64::from(frames), 0.0);
             let picture = rasterized.draw(&Shot { camera: around.camera().clone(), ..shot.clone() })?;
             report.rasterized.push(picture.frame.time);
             (report.triangles, report.sprites) = (picture.triangles, picture.sprites);
-            around.orbit(TAU / f64::from(frames), 0.0);
         }
         Ok(report)
     }

@@ -262,8 +262,9 @@ pub struct View {
     /// the GPU on its right. SHARE is where the slider is, from 0 to 1. [without SHARE: 0.5]
     #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet")]
     pub split: Option<f32>,
-    /// Write the scene's own view, with all samples per pixel on the left of the slider.
-    #[arg(short, long, value_name = "FILE", requires_all = ["headless", "split"])]
+    /// Write the last frame of that path, which is the scene's own view; with --split the whole
+    /// picture of it, with all samples per pixel on the left of the slider.
+    #[arg(short, long, value_name = "FILE", requires = "headless", conflicts_with = "planet")]
     pub output: Option<PathBuf>,
     /// Write one JSON object to standard output instead of text.
     #[arg(long, requires = "headless")]

@@ -29,12 +29,14 @@ LightSource "infinite" "rgb L" [ 0.3 0.4 0.5 ]
 Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.4 ]
 Shape "bilinearmesh" "point3 P" [ -5 -5 0  5 -5 0  -5 5 0  5 5 0 ]
 AttributeBegin
-    AreaLightSource "diffuse" "rgb L" [ 12 8 4 ]
     Translate -1.5 0 2
-    Shape "sphere" "float radius" 0.2
+    AttributeBegin
+        AreaLightSource "diffuse" "rgb L" [ 12 8 4 ]
+        MediumInterface "milk" "milk"
+        Shape "sphere" "float radius" 0.2
+    AttributeEnd
     Material "interface"
     MediumInterface "milk" "fog"
-    AreaLightSource "none"
     Shape "sphere" "float radius" 0.7
 AttributeEnd
 AttributeBegin

@@ -117,7 +117,9 @@ fn a_report_has_the_times_of_a_camera_path() {
     let home = flight.position();
     let mut renderer = Renderer::new(Arc::new(world), TARGET);
     let begin = Instant::now();
-    let report = Report::of_orbit(&mut renderer, &mut flight, 8, begin, &Control::default()).unwrap();
+    let (report, last) = Report::of_orbit(&mut renderer, &mut flight, 8, begin, &Control::default()).unwrap();
+    let image = last.expect("a frame").to_image();
+    assert_eq!(Some(&[image.width(), image.height()]), report.sizes.last());
     assert!(flight.position().distance(home) < 1e-6 * home.length(), "the path is closed");
     assert_eq!((report.frames.len(), report.resolution), (8, [96, 72]));
     let [median, high, most] = [0.5, 0.95, 1.0].map(|share| report.quantile(share));
