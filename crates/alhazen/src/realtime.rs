@@ -45,7 +45,7 @@ impl Realtime {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
         let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
-        if algorithm.splats().is_some() {
+        if algorithm.begins_at_lights() {
             let name = desc.integrator.name();
             let message = format!("the engine for GPUs draws integrator `{name}` only as a whole picture");
             return Err(vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]);

@@ -3,9 +3,11 @@
 //! Tests that need a GPU, or a driver that is one in software, end early and say so where there is
 //! none; with `ALHAZEN_GPU=require` in the environment they fail instead.
 
+mod chains;
 mod faults;
 mod laws;
 mod openpbr;
+mod photons;
 mod pictures;
 mod raster;
 mod realtime;
