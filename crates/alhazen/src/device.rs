@@ -17,6 +17,7 @@ pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal
 /// An algorithm on a device.
 struct OnDevice {
     renderer: Renderer,
+    algorithm: Algorithm,
     sampler: Sampler,
 }
 
@@ -31,7 +32,7 @@ pub(crate) fn integrator(
     let Flattened { flat, algorithm, sampler } =
         flattened(desc, session.scene(), session.view(), film, kernels)?;
     match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
-        Ok(renderer) => Ok(Box::new(OnDevice { renderer, sampler })),
+        Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler })),
         Err(error) => Err(vec![failed(&error)]),
     }
 }
@@ -56,8 +57,8 @@ pub(crate) fn flattened(
         let message = format!("the engine for GPUs does not have {what}");
         vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]
     };
-    let algorithm =
-        Algorithm::new(&desc.integrator.value, color_space(desc.film.color_space)).map_err(refuse)?;
+    let (space, seed) = (color_space(desc.film.color_space), integrators::seed_of_integrator(desc));
+    let algorithm = Algorithm::new(&desc.integrator.value, space, seed).map_err(refuse)?;
     let (sampler, light_sampler) = (integrators::sampler(desc), integrators::light_sampler(desc));
     let never = Default::default();
     let lights = scene.light_sampler(algorithm.light_sampler(), &never).unwrap_or_default();
@@ -83,11 +84,11 @@ pub(crate) fn failed(error: &GpuError) -> Diagnostic {
 
 impl Integrator for OnDevice {
     fn passes(&self) -> u32 {
-        self.sampler.samples_per_pixel()
+        self.algorithm.passes(&self.sampler)
     }
 
     fn splats(&self) -> bool {
-        self.renderer.splats()
+        self.algorithm.splats()
     }
 
     /// All is on the device already.

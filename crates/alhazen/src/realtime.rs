@@ -45,9 +45,10 @@ impl Realtime {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
         let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
-        let whole = match algorithm.splats() {
-            Some(_) => Some(format!("integrator `{}`", desc.integrator.name())),
-            None => flat.parts().media.then(|| "participating media".to_owned()),
+        let whole = if algorithm.begins_at_lights() {
+            Some(format!("integrator `{}`", desc.integrator.name()))
+        } else {
+            flat.parts().media.then(|| "participating media".to_owned())
         };
         if let Some(what) = whole {
             let message = format!("the engine for GPUs draws {what} only as a whole picture");

@@ -365,6 +365,27 @@ settings! {
     }
 }
 
+impl SppmDesc {
+    /// The default radius of the first pass is this times that of the scene over √n, for n light
+    /// paths in a pass. About thirty photons then lie within the radius of a point of a room, so
+    /// that few points are black.
+    const SPACING: f32 = 5.0;
+
+    /// Limit on the default radius, as a fraction of that of the scene.
+    const LARGEST_SHARE: f32 = 0.05;
+
+    /// The number of light paths in each pass, for a picture of so many pixels.
+    pub fn light_paths(&self, pixels: usize) -> usize {
+        self.photons_per_iteration.map_or(pixels, |count| count as usize)
+    }
+
+    /// The radius of the first pass, with so many light paths in a scene of this radius.
+    pub fn first_radius(&self, light_paths: usize, scene_radius: f32) -> f32 {
+        let share = (Self::SPACING / (light_paths as f32).sqrt()).min(Self::LARGEST_SHARE);
+        self.radius.unwrap_or(share * scene_radius)
+    }
+}
+
 settings! {
     /// Settings of vertex connection and merging.
     #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,7 +20,7 @@ fn filter_sample(u: vec2f) -> vec3f {
     let count = vec2u(tables[table], tables[table + 1]);
     let cell = min(vec2u((offset / radius + 1) * 0.5 * vec2f(count)), count - 1);
     let index = cell.y * count.x + cell.x;
-    let is_negative = (tables[tables[at + 4] + index / 32] >> (index & 31) & 1) == 1;
+    let is_negative = ((tables[tables[at + 4] + index / 32] >> (index & 31)) & 1) == 1;
     return vec3f(offset, select(1.0, -1.0, is_negative));
 }
 

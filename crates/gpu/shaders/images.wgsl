@@ -28,11 +28,11 @@ fn level_of(pyramid: u32, index: u32) -> Level {
 fn stored_value(pyramid: u32, first: u32, index: u32) -> f32 {
     switch (tables[pyramid + 1]) {
         case STORED_BYTES: {
-            let code = texels[first + index / 4] >> (8 * (index & 3)) & 255;
+            let code = (texels[first + index / 4] >> (8 * (index & 3))) & 255;
             return number(tables[pyramid + 7] + code);
         }
         case STORED_HALVES: {
-            return from_half(texels[first + index / 2] >> (16 * (index & 1)) & 0xffff);
+            return from_half((texels[first + index / 2] >> (16 * (index & 1))) & 0xffff);
         }
         default: { return bitcast<f32>(texels[first + index]); }
     }

@@ -117,7 +117,7 @@ fn follow(nodes: u32, context: ShapeSampleContext, trail: vec2u, probability: f3
         }
         let both = importances(nodes, node, kind, context);
         let word = select(trail.y, trail.x, depth < 32);
-        let goes_left = (word >> (depth & 31) & 1) == 0;
+        let goes_left = ((word >> (depth & 31)) & 1) == 0;
         let chosen = select(both.y, both.x, goes_left);
         pmf = select(pmf * (chosen / (both.x + both.y)), 0, chosen == 0);
         node = select(kind, node + 1, goes_left);

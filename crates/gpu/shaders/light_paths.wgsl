@@ -61,7 +61,7 @@ fn spot_direction(at: u32, u: vec2f) -> vec3f {
     let cone = 1 - start;
     let ring = 0.5 * (start - end);
     let chosen = u.x * (cone + ring);
-    if (ring <= 0 || cone > 0 && chosen < cone) {
+    if (ring <= 0 || (cone > 0 && chosen < cone)) {
         return sample_uniform_cone(vec2f(clamp(chosen / cone, 0, float_ONE_MINUS_EPSILON), u.y), start);
     }
     // The root of 2t³ − t⁴, to which Newton's iteration falls.

@@ -161,7 +161,7 @@ fn coated_conductor(bsdf: Bsdf) -> Layered_Conductor {
 // The material that a mix has at a point, given the probability of the second one.
 fn chosen_material(at: u32, s: Surface, amount: f32) -> u32 {
     let u = hashed(s.p.p, s.wo, tables[at + 4] ^ mix_word(tables[at + 5]));
-    return tables[at + 4 + u32(amount >= 1 || amount > 0 && u < amount)];
+    return tables[at + 4 + u32(amount >= 1 || (amount > 0 && u < amount))];
 }
 
 fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {

@@ -78,7 +78,7 @@ fn openpbr_corner(table: u32, location: array<f32, 12>, waves: f32, corner: u32)
     var stride = films;
     for (var i = 0u; i < tables[table]; i++) {
         let len = tables[table + OPENPBR_AXES + i * OPENPBR_AXIS + 2];
-        let next = node_among(places[i], len, left >> i & 1);
+        let next = node_among(places[i], len, (left >> i) & 1);
         node = Node(node.index + next.index * stride, node.weight * next.weight);
         stride *= len;
     }

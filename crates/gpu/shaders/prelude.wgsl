@@ -23,7 +23,7 @@ fn real_max(a: f32, b: f32) -> f32 {
 
 // The magnitude of `x` with the sign of `sign`.
 fn copysign(x: f32, sign: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) & 0x7fffffffu | bitcast<u32>(sign) & 0x80000000u);
+    return bitcast<f32>((bitcast<u32>(x) & 0x7fffffffu) | (bitcast<u32>(sign) & 0x80000000u));
 }
 
 // The nearest integer, as a float and as an integer in two's complement.
@@ -55,7 +55,7 @@ var<private> permutation: array<u32, 64> = array(
 
 // The permutation at an index below 512, of which the second half repeats the first.
 fn noise_permuted(index: u32) -> u32 {
-    return permutation[index >> 2 & 63] >> (8 * (index & 3)) & 255;
+    return (permutation[(index >> 2) & 63] >> (8 * (index & 3))) & 255;
 }
 
 // Two words shifted right together.
@@ -64,7 +64,7 @@ fn shifted_right(words: vec2u, bits: u32) -> vec2u {
         return words;
     }
     if (bits < 32) {
-        return vec2u(words.x >> bits | words.y << (32 - bits), words.y >> bits);
+        return vec2u((words.x >> bits) | (words.y << (32 - bits)), words.y >> bits);
     }
     return vec2u(select(0, words.y >> (bits - 32), bits < 64), 0);
 }
@@ -85,7 +85,7 @@ fn ZSobol_point(this_: ZSobol, address: Address) -> array<u32, 2> {
     var code = vec2u(interleaved(x, y), interleaved(x >> 16, y >> 16));
     if (log2 > 0) {
         let index = address.index & ((1u << log2) - 1);
-        code = vec2u(code.x << log2 | index, code.y << log2 | code.x >> (32 - log2));
+        code = vec2u((code.x << log2) | index, (code.y << log2) | (code.x >> (32 - log2)));
     }
     let key = ZSobol_hash(this_, address, 0);
     let is_wide = 2 * side + log2 > 32;
@@ -95,11 +95,11 @@ fn ZSobol_point(this_: ZSobol, address: Address) -> array<u32, 2> {
         let shift = 2 * (place - 1) + odd;
         let hash = hash_of_digits(code, shift + 2, is_wide, key);
         let digit = zsobol_permuted(shifted_right(code, shift).x, hash);
-        point = vec2u(point.x << 2 | digit, point.y << 2 | point.x >> 30);
+        point = vec2u((point.x << 2) | digit, (point.y << 2) | (point.x >> 30));
     }
     if (odd == 1) {
         let digit = (code.x ^ hash_of_digits(code, 1, is_wide, key)) & 1;
-        point = vec2u(point.x << 1 | digit, point.y << 1 | point.x >> 31);
+        point = vec2u((point.x << 1) | digit, (point.y << 1) | (point.x >> 31));
     }
     return array(point.x, point.y);
 }

@@ -10,13 +10,13 @@ fn wide_product(a: vec2u, b: vec2u) -> vec2u {
     let bh = b.x >> 16;
     let low = al * bl;
     let middle = (low >> 16) + ((al * bh) & 0xffff) + ((ah * bl) & 0xffff);
-    let high = ah * bh + (al * bh >> 16) + (ah * bl >> 16) + (middle >> 16);
-    return vec2u(middle << 16 | low & 0xffff, high + a.x * b.y + a.y * b.x);
+    let high = ah * bh + ((al * bh) >> 16) + ((ah * bl) >> 16) + (middle >> 16);
+    return vec2u((middle << 16) | (low & 0xffff), high + a.x * b.y + a.y * b.x);
 }
 
 // A word and what its bits from 47 on are.
 fn folded(a: vec2u) -> vec2u {
-    return vec2u(a.x ^ a.y >> 15, a.y);
+    return vec2u(a.x ^ (a.y >> 15), a.y);
 }
 
 // The steps of `hash` of `sampling/src/hash.rs`: the first of so many words, one of two words, and
@@ -45,10 +45,10 @@ fn permuted_index(index: u32, length: u32, seed: u32) -> u32 {
         i = (i ^ seed) * 0xe170893du;
         i ^= seed >> 16;
         i ^= (i & mask) >> 4;
-        i = (i ^ seed >> 8) * 0x0929eb3fu;
+        i = (i ^ (seed >> 8)) * 0x0929eb3fu;
         i ^= seed >> 23;
         i ^= (i & mask) >> 1;
-        i = i * (1 | seed >> 27) * 0x6935fa69u;
+        i = i * (1 | (seed >> 27)) * 0x6935fa69u;
         i ^= (i & mask) >> 11;
         i *= 0x74dcb303u;
         i ^= (i & mask) >> 2;
@@ -114,9 +114,9 @@ fn pmj02bn(address: Address, log2_samples: u32, key: u32, is_pair: bool) -> vec2
     let log2_side = (32 - log2_samples) / 2;
     let kept = (1u << log2_side) - 1;
     let code = interleaved(address.pixel[0] & kept, address.pixel[1] & kept);
-    let index = code << log2_samples | address.index & ((1u << log2_samples) - 1);
+    let index = (code << log2_samples) | (address.index & ((1u << log2_samples) - 1));
     let round = mix_word(key ^ mix_word(address.index >> log2_samples));
-    let tile = mix_word(mix_word(address.pixel[0] >> log2_side ^ round) ^ address.pixel[1] >> log2_side);
+    let tile = mix_word(mix_word((address.pixel[0] >> log2_side) ^ round) ^ (address.pixel[1] >> log2_side));
     let hash = mix_word(mix_word(address.dimension) ^ tile);
     let point = reverseBits(fast_owen_scramble(reverseBits(index), hash));
     let first = mix_word(hash + 0x9e3779b9u);

@@ -139,7 +139,7 @@ fn uplifted(space: u32, rgb: vec3f) -> vec3f {
     let first = ((largest * UPLIFT_VALUES + below) * UPLIFT_RATIOS + y.below) * UPLIFT_RATIOS + x.below;
     var sum = vec3f();
     for (var corner = 0u; corner < 8; corner++) {
-        let offset = vec3u(corner & 1, corner >> 1 & 1, corner >> 2);
+        let offset = vec3u(corner & 1, (corner >> 1) & 1, corner >> 2);
         let weights = select(1 - t, t, offset == vec3u(1));
         let node = first + offset.x + UPLIFT_RATIOS * (offset.y + UPLIFT_RATIOS * offset.z);
         sum += weights.x * weights.y * weights.z * vector(nodes + 4 * node);

@@ -288,17 +288,21 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
     return s;
 }
 
-// Whether a hit on a surface that is cut out counts: with the probability that its alpha is, by a
-// hash of the ray and the distance.
+// The probability that a hit counts: the alpha of its surface.
+fn alpha_at(hit: Hit, s: Surface) -> f32 {
+    let alpha = tables[world.geometries + 5 * hit.geometry + 4];
+    if (!HAS_HOLES || alpha == 0) {
+        return 1;
+    }
+    let context = TextureContext(s.p.p, s.n, s.uv, Footprint());
+    return clamp(texture(alpha, context, SampledWavelengths()).x, 0, 1);
+}
+
+// Whether a hit on a surface that is cut out counts, by a hash of the ray and the distance.
 fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
     if (!HAS_HOLES) {
         return true;
     }
-    let s = surface_at(hit, Ray(o, d, 0));
-    let context = TextureContext(s.p.p, s.n, s.uv, Footprint());
-    let alpha = texture(tables[world.geometries + 5 * hit.geometry + 4], context, SampledWavelengths()).x;
-    if (alpha <= 0 || alpha >= 1) {
-        return alpha >= 1;
-    }
-    return hashed(o, d, bitcast<u32>(hit.t)) < alpha;
+    let alpha = alpha_at(hit, surface_at(hit, Ray(o, d, 0)));
+    return alpha >= 1 || (alpha > 0 && hashed(o, d, bitcast<u32>(hit.t)) < alpha);
 }

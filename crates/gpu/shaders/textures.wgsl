@@ -43,8 +43,8 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
         let operation = at + 2 + 4 * i;
         let operands = tables[operation + 2];
         let a = slots[operands & 255];
-        let b = slots[operands >> 8 & 255];
-        let c = slots[operands >> 16 & 255];
+        let b = slots[(operands >> 8) & 255];
+        let c = slots[(operands >> 16) & 255];
         let argument = tables[operation + 3];
         var value: vec4f;
         switch (tables[operation]) {

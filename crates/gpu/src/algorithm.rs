@@ -2,12 +2,13 @@
 
 use description::schema::Settings;
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc,
-    ReflectionsDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    MltTechnique, PathDesc, ReflectionsDesc, SppmDesc, WhittedDesc,
 };
+use sampling::Sampler;
 use spectrum::RgbColorSpace;
 
-/// The most scattering events of algorithms whose threads keep what they have found at each.
+/// The most scattering events of algorithms whose threads keep something of each.
 const MAX_DEPTH: u32 = 16;
 
 /// An algorithm with its settings.
@@ -27,12 +28,16 @@ pub enum Algorithm {
     LightTracing(LightTracingDesc),
     /// Bidirectional path tracing.
     Bdpt(BdptDesc),
+    /// Metropolis light transport by the technique `bdpt`, and the seed of its chains.
+    Mlt(MltDesc, u32),
+    /// Stochastic progressive photon mapping, and the seed of its photons.
+    Sppm(SppmDesc, u32),
 }
 
 impl Algorithm {
-    /// The algorithm of a description, for a film in a colour space. The error says what kernels do
-    /// not have.
-    pub fn new(desc: &IntegratorDesc, space: &'static RgbColorSpace) -> Result<Self, String> {
+    /// The algorithm of a description, for a film in a colour space; `seed` is that of what it draws
+    /// beside the numbers of samplers. The error says what kernels do not have.
+    pub fn new(desc: &IntegratorDesc, space: &'static RgbColorSpace, seed: u32) -> Result<Self, String> {
         let name = desc.name();
         let bounded = |max_depth: u32| {
             let refusal = format!("integrator `{name}` with a `maxdepth` above {MAX_DEPTH}");
@@ -54,6 +59,11 @@ impl Algorithm {
                 Err(format!("pictures of the strategies of integrator `{name}`"))
             }
             IntegratorDesc::Bdpt(settings) => bounded(settings.max_depth).map(|()| Self::Bdpt(settings)),
+            IntegratorDesc::Mlt(settings) if settings.technique != MltTechnique::Bdpt => {
+                Err(format!("integrator `{name}` by any technique but `bdpt`"))
+            }
+            IntegratorDesc::Mlt(settings) => bounded(settings.max_depth).map(|()| Self::Mlt(settings, seed)),
+            IntegratorDesc::Sppm(settings) => Ok(Self::Sppm(settings, seed)),
             _ => Err(format!("integrator `{name}`")),
         }
     }
@@ -65,20 +75,39 @@ impl Algorithm {
                 LightSamplerDesc::Uniform
             }
             Self::Path(desc) | Self::VolPath(desc) => desc.light_sampler,
-            Self::Bdpt(_) => LightSamplerDesc::Bvh,
+            Self::Bdpt(_) | Self::Mlt(..) | Self::Sppm(..) => LightSamplerDesc::Bvh,
         }
     }
 
-    /// The most splats of a light path; `None` if there are no light paths.
-    pub fn splats(&self) -> Option<u32> {
+    /// The number of passes that are planned, given the sampler of camera rays.
+    pub fn passes(&self, sampler: &Sampler) -> u32 {
+        match self {
+            Self::Mlt(desc, _) => desc.mutations_per_pixel,
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(..)
+            | Self::Path(_)
+            | Self::VolPath(_)
+            | Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Sppm(..) => sampler.samples_per_pixel(),
+        }
+    }
+
+    /// Whether paths begin at lights, so that there are pictures only as a whole.
+    pub fn begins_at_lights(&self) -> bool {
         match self {
             Self::RayCasting
             | Self::Whitted(_)
             | Self::AmbientOcclusion(..)
             | Self::Path(_)
-            | Self::VolPath(_) => None,
-            Self::LightTracing(desc) => Some(desc.max_depth),
-            Self::Bdpt(desc) => Some(desc.max_depth),
+            | Self::VolPath(_) => false,
+            Self::LightTracing(_) | Self::Bdpt(_) | Self::Mlt(..) | Self::Sppm(..) => true,
         }
+    }
+
+    /// Whether paths add light to any pixel of the film.
+    pub fn splats(&self) -> bool {
+        self.begins_at_lights() && !matches!(self, Self::Sppm(..))
     }
 }

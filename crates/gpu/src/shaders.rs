@@ -48,9 +48,11 @@ const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 /// From light to colours.
 const SENSOR: &str = include_str!("../shaders/sensor.wgsl");
 
-/// The camera's and the lights' ends of paths.
-const LENS: &str = include_str!("../shaders/importance.wgsl");
-const LIGHT_PATHS: &str = include_str!("../shaders/light_paths.wgsl");
+/// The random numbers of samples, instead of which chains have their own.
+const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
+
+/// Subpaths from both ends: the camera's and the lights' ends, and what is between.
+const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
@@ -88,23 +90,41 @@ pub struct Parts {
     pub media: bool,
 }
 
-/// The kernel that renders a sample of each pixel by an algorithm.
+/// The kernel that renders a sample of each pixel by an algorithm; of Metropolis light transport,
+/// what its chains leave out.
 pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
-    let (has_camera_paths, most_vertices) = match algorithm {
-        Algorithm::LightTracing(_) => (false, 1),
-        Algorithm::Bdpt(desc) => (true, desc.max_depth.saturating_sub(1).max(1)),
+    let constants = match algorithm {
+        Algorithm::LightTracing(_) => subpaths(false, true, 1),
+        Algorithm::Bdpt(desc) => subpaths(true, true, desc.max_depth.saturating_sub(1).max(1)),
+        Algorithm::Sppm(..) => subpaths(true, false, 1),
         Algorithm::RayCasting
         | Algorithm::Whitted(_)
         | Algorithm::AmbientOcclusion(..)
         | Algorithm::Path(_)
-        | Algorithm::VolPath(_) => {
+        | Algorithm::VolPath(_)
+        | Algorithm::Mlt(..) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
-            return traced(parts, &[NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
+            return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
         }
     };
-    let constants =
-        format!("const HAS_CAMERA_PATHS = {has_camera_paths};\nconst MOST_VERTICES = {most_vertices}u;\n");
-    traced(parts, &[&constants, LENS, LIGHT_PATHS, radiance(algorithm, parts)])
+    let own = [RANDOM_NUMBERS, &constants, radiance(algorithm, parts)];
+    traced(parts, &[&SUBPATHS[..], &own].concat())
+}
+
+/// The kernel of the chains of Metropolis light transport.
+pub fn chains(parts: Parts) -> String {
+    let constants = subpaths(true, true, 1);
+    let own = [&constants, SENSOR, include_str!("../shaders/metropolis.wgsl")];
+    traced(parts, &[&SUBPATHS[..], &own].concat())
+}
+
+/// What subpaths are made for: whether there are camera paths, whether light paths are connected to
+/// anything, and how many vertices of them are kept.
+fn subpaths(has_camera_paths: bool, are_connected: bool, most_vertices: u32) -> String {
+    format!(
+        "const HAS_CAMERA_PATHS = {has_camera_paths};\nconst ARE_CONNECTED = {are_connected};\n\
+        const MOST_VERTICES = {most_vertices}u;\n"
+    )
 }
 
 /// The kernel that finds the light of a real-time frame by an algorithm; but for direct light at
@@ -112,7 +132,7 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
 pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> String {
     let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
     let light = include_str!("../shaders/realtime/light.wgsl");
-    traced(parts, &[reservoirs, radiance(algorithm, parts), FRAME, SENSOR, light])
+    traced(parts, &[RANDOM_NUMBERS, reservoirs, radiance(algorithm, parts), FRAME, SENSOR, light])
 }
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
@@ -125,22 +145,19 @@ pub fn reservoirs(parts: Parts) -> [String; 2] {
         ),
     ];
     let shared = include_str!("../shaders/realtime/reservoirs.wgsl");
-    texts.map(|text| traced(parts, &[FRAME, SENSOR, shared, text]))
+    texts.map(|text| traced(parts, &[RANDOM_NUMBERS, FRAME, SENSOR, shared, text]))
 }
 
 /// The kernel that finds what is seen in a real-time frame by an algorithm.
 pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
     // Of ambient occlusion light does not depend on the reflectance.
-    let is_reflected = match algorithm {
-        Algorithm::AmbientOcclusion(..) => "const IS_REFLECTED = false;\n",
-        Algorithm::RayCasting
-        | Algorithm::Whitted(_)
-        | Algorithm::Path(_)
-        | Algorithm::VolPath(_)
-        | Algorithm::LightTracing(_)
-        | Algorithm::Bdpt(_) => "const IS_REFLECTED = true;\n",
+    let is_reflected = if matches!(algorithm, Algorithm::AmbientOcclusion(..)) {
+        "const IS_REFLECTED = false;\n"
+    } else {
+        "const IS_REFLECTED = true;\n"
     };
-    traced(parts, &[is_reflected, FRAME, include_str!("../shaders/realtime/surfaces.wgsl")])
+    let surfaces = include_str!("../shaders/realtime/surfaces.wgsl");
+    traced(parts, &[RANDOM_NUMBERS, is_reflected, FRAME, surfaces])
 }
 
 /// The kernels that make a picture of the light of a real-time frame, in the order in which they
@@ -170,6 +187,8 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         }
         Algorithm::Path(_) | Algorithm::VolPath(_) => include_str!("../shaders/path.wgsl"),
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
+        Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),
+        Algorithm::Sppm(..) => include_str!("../shaders/photons.wgsl"),
     }
 }
 

@@ -61,6 +61,18 @@ pub fn light_sampler(scene: &SceneDesc) -> Sampler {
     Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
 }
 
+/// The seed of what the integrator of a scene draws beside the numbers of its samplers: photons, or
+/// chains.
+pub fn seed_of_integrator(scene: &SceneDesc) -> u32 {
+    const PHOTONS: u32 = 0x7068_6f74;
+    let given = match &scene.integrator.value {
+        IntegratorDesc::Sppm(desc) => desc.seed,
+        IntegratorDesc::PhotonMapping(_) | IntegratorDesc::Vcm(_) => None,
+        _ => return seed(scene),
+    };
+    hash(&[given.map_or(seed(scene), |seed| seed as u32), PHOTONS]) as u32
+}
+
 /// The seed of the sampler of a scene.
 fn seed(scene: &SceneDesc) -> u32 {
     scene.sampler.seed.unwrap_or(scene.options.seed) as u32
@@ -178,15 +190,9 @@ impl Builder<'_> {
         self.diagnostics.push(Diagnostic::warning("not-adaptive", message, integrator.origin.span));
     }
 
-    /// The seed of photons, independent of the other samplers.
-    fn photon_seed(&self, seed: Option<i32>) -> u32 {
-        const PHOTONS: u32 = 0x7068_6f74;
-        let seed = seed.or(self.desc.sampler.seed).unwrap_or(self.desc.options.seed);
-        hash(&[seed as u32, PHOTONS]) as u32
-    }
-
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         let color_space = color_space(self.desc.film.color_space);
+        let seed = seed_of_integrator(self.desc);
         match self.desc.integrator.value.clone() {
             IntegratorDesc::RayCasting => self.waves_in_media(RayCasting, sampler),
             IntegratorDesc::Whitted(desc) if desc.reflections != ReflectionsDesc::Traced => {
@@ -211,16 +217,13 @@ impl Builder<'_> {
                 self.techniques(&desc, &bdpt);
                 Box::new(bdpt)
             }
-            IntegratorDesc::Mlt(desc) => Box::new(Mlt::new(desc, sampler, seed(self.desc))),
-            IntegratorDesc::PhotonMapping(desc) => {
-                Box::new(PhotonMapping::new(desc, sampler, self.photon_seed(None)))
-            }
+            IntegratorDesc::Mlt(desc) => Box::new(Mlt::new(desc, sampler, seed)),
+            IntegratorDesc::PhotonMapping(desc) => Box::new(PhotonMapping::new(desc, sampler, seed)),
             IntegratorDesc::Vcm(desc) => {
                 let light_sampler = light_sampler(self.desc);
-                let seed = self.photon_seed(None);
                 Box::new(Vcm::new(desc, [sampler, light_sampler], seed, MAX_PHOTON_PATHS))
             }
-            IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed))),
+            IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, seed)),
             IntegratorDesc::Radiosity(desc) => Box::new(Radiosity::new(desc, sampler, color_space)),
             IntegratorDesc::Function(desc) => {
                 self.diagnostics.extend(Function::unwritable(&desc, &self.desc.integrator.origin));

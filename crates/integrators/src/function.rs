@@ -15,10 +15,9 @@ use image::{Format, Image, WriteOptions, encode};
 use math::{Bounds2i, Vec2};
 use rayon::prelude::*;
 use sampling::Sampler;
-use scene::{Scene, View};
+use scene::{Scene, ShutterSample, View};
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 
-use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, Integrator, OutputFile, PassError};
 
 /// Groups of four wavelengths over which the white of a sample is averaged, the same for all, so

@@ -44,7 +44,7 @@ mod transport;
 mod wavefront;
 
 pub use bidirectional::Bdpt;
-pub use build::{Built, build, light_sampler, sampler};
+pub use build::{Built, build, light_sampler, sampler, seed_of_integrator};
 pub use camera_paths::{
     AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, VolPath, Whitted,
 };

@@ -12,6 +12,7 @@ mod hash_sequence;
 pub mod low_discrepancy;
 mod piecewise_bilinear;
 mod piecewise_constant;
+mod resampling;
 mod reservoir;
 mod rng;
 pub mod sampler;
@@ -24,6 +25,7 @@ pub use hash::{hash, hash_float, mix_bits, mix_quadruple, mix_word, permutation_
 pub use hash_sequence::HashSequence;
 pub use piecewise_bilinear::{LayerWeights, PiecewiseBilinear2d};
 pub use piecewise_constant::{PiecewiseConstant1d, PiecewiseConstant2d};
+pub use resampling::resample;
 pub use reservoir::WeightedReservoir;
 pub use rng::Rng;
 pub use sampler::{Randomize, Sampler};

@@ -54,6 +54,6 @@ fn Cluster_importance(this_: Cluster, p: vec3f, n: vec3f) -> f32 {
         let cosine = cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
         importance = select(importance, importance * cosine, has_normal);
     }
-    let importance_1 = real_min(real_max(importance, 0.0f), 3.4028235e38f / 4.0f);
+    let importance_1 = real_min(real_max(importance, 0.0f), 3.4028234e38f / 4.0f);
     return select(importance_1, 0.0f, is_dark);
 }

@@ -38,11 +38,11 @@ fn bounded(x: f32) -> f32 {
 
 // Zero for infinities and NaN.
 fn or_zero(x: f32) -> f32 {
-    return select(0.0f, x, abs(x) <= 3.4028235e38f);
+    return select(0.0f, x, abs(x) <= 3.4028234e38f);
 }
 
 // From `p` to the point of a ray on the plane through `p` with normal `n`, where there is one.
 fn on_plane(o: vec3f, d: vec3f, p: vec3f, n: vec3f) -> Tuple_Vec3_bool {
     let t = Vec3_dot(n, p - o) / Vec3_dot(n, d);
-    return Tuple_Vec3_bool((o + (d * t)) - p, abs(t) <= 3.4028235e38f);
+    return Tuple_Vec3_bool((o + (d * t)) - p, abs(t) <= 3.4028234e38f);
 }

@@ -31,7 +31,7 @@ fn Vec3_normalize_masked(this_: vec3f) -> Tuple_Vec3_bool {
 
 // Where all coordinates are finite.
 fn Vec3_are_finite(this_: vec3f) -> bool {
-    return ((true & (abs(this_.x) <= 3.4028235e38f)) & (abs(this_.y) <= 3.4028235e38f)) & (abs(this_.z) <= 3.4028235e38f);
+    return ((true & (abs(this_.x) <= 3.4028234e38f)) & (abs(this_.y) <= 3.4028234e38f)) & (abs(this_.z) <= 3.4028234e38f);
 }
 
 // The magnitudes of `self` with the signs of `sign`.

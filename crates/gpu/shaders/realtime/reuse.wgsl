@@ -115,7 +115,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             u = other.u;
             next.count += samples;
         }
-        if (is_choice && other.weight == 0 || !is_choice && aim == 0 || is_shading && next.weight == 0) {
+        if ((is_choice && other.weight == 0) || (!is_choice && aim == 0) || (is_shading && next.weight == 0)) {
             continue;
         }
         place.dimension = 0;

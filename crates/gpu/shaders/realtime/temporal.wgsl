@@ -14,7 +14,7 @@ fn is_same(now: Seen, then: Seen) -> bool {
         return false;
     }
     let off = abs(dot(now.n, then.p - now.p));
-    return now.id == 0 || dot(now.n, then.n) > 0.9 && off < 0.01 * now.distance;
+    return now.id == 0 || (dot(now.n, then.n) > 0.9 && off < 0.01 * now.distance);
 }
 
 @compute @workgroup_size(8, 8)

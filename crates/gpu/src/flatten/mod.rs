@@ -68,6 +68,8 @@ pub struct Flat {
     pub(crate) texels: Vec<u32>,
     /// What kernels need for it.
     pub(crate) parts: Parts,
+    /// The radius of the scene's sphere.
+    pub(crate) radius: f32,
 }
 
 /// The first buffer: `World` of `shaders/scene.wgsl`.
@@ -139,7 +141,7 @@ pub struct Subject<'a> {
     pub algorithm: &'a Algorithm,
     /// The source of random numbers.
     pub sampler: &'a Sampler,
-    /// That of light paths.
+    /// That of light paths, but for photons and chains, which have their own.
     pub light_sampler: &'a Sampler,
     /// The most bytes of a buffer.
     pub largest_buffer: usize,
@@ -196,9 +198,14 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
             head.max_depth = desc.max_depth;
             head.regularize = desc.regularize.into();
         }
+        Algorithm::Mlt(desc, _) => {
+            head.max_depth = desc.max_depth;
+            head.regularize = desc.regularize.into();
+        }
+        Algorithm::Sppm(desc, _) => head.max_depth = desc.max_depth,
     }
-    if algorithm.splats().is_some() {
-        head.light_paths = flattener.light_paths(light_sampler, film);
+    if algorithm.begins_at_lights() {
+        head.light_paths = flattener.light_paths(algorithm, light_sampler, film);
     }
     if has_media(scene) {
         flattener.parts.media = true;
@@ -207,7 +214,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     let bvh = flattener.bvh();
     head.top = bvh.top;
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
-    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts };
+    let radius = scene.sphere().radius;
+    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts, radius };
     if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
 }
 

@@ -3,10 +3,12 @@
 //! Tests that need a GPU, or a driver that is one in software, end early and say so where there is
 //! none; with `ALHAZEN_GPU=require` in the environment they fail instead.
 
+mod chains;
 mod faults;
 mod laws;
 mod media;
 mod openpbr;
+mod photons;
 mod pictures;
 mod raster;
 mod realtime;

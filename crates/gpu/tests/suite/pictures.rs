@@ -6,15 +6,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten, shaders};
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc,
-    ReflectionsDesc, SceneDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
-    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, PixelLoop, RayCasting, RayIntegrator,
-    Session, SessionState, VolPath, Whitted,
+    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RayCasting,
+    RayIntegrator, Session, SessionState, Sppm, VolPath, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
@@ -83,6 +83,14 @@ impl Case {
         Self::new(&Path::new(folder).join(name).with_extension("pbrt"), &Files)
     }
 
+    /// Takes `sobol` for all paths.
+    fn take_sobol(&mut self) {
+        let size = self.desc.film.resolution;
+        let [sampler, light_sampler] =
+            [7, 8].map(|seed| Sampler::Sobol(Sobol::new(SAMPLES, size, Randomize::FastOwen, seed)));
+        (self.sampler, self.light_sampler) = (sampler, light_sampler);
+    }
+
     pub fn film(&self) -> Film {
         film::compile(&self.desc).expect("a film").film
     }
@@ -107,12 +115,17 @@ impl Case {
         flatten(subject, &lights)
     }
 
+    /// Its picture by an algorithm, ready to be rendered by the GPU, if there is one.
+    pub fn renderer(&self, algorithm: &Algorithm) -> Option<Renderer> {
+        let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
+        let kernels = kernels(algorithm, &flat)?;
+        Some(Renderer::new(kernels, &flat, algorithm, &self.film()).expect("a renderer"))
+    }
+
     /// The samples of each pixel by the GPU, if there is one.
     pub fn on_gpu(&self, algorithm: &Algorithm) -> Option<Image> {
-        let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
+        let renderer = self.renderer(algorithm)?;
         let mut film = self.film();
-        let kernels = kernels(algorithm, &flat)?;
-        let renderer = Renderer::new(kernels, &flat, algorithm, &film).expect("a renderer");
         for index in 0..SAMPLES {
             let rays = renderer.pass(index, &self.view, &self.sampler, &mut film, || false).expect("a pass");
             let [width, height] = self.desc.film.resolution;
@@ -132,6 +145,8 @@ impl Case {
             Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
             Algorithm::LightTracing(desc) => Box::new(LightTracing::new(*desc, sampler, light_sampler)),
             Algorithm::Bdpt(desc) => Box::new(Bdpt::new(*desc, sampler, light_sampler)),
+            Algorithm::Mlt(desc, seed) => Box::new(Mlt::new(*desc, sampler, *seed)),
+            Algorithm::Sppm(desc, seed) => Box::new(Sppm::new(*desc, sampler, *seed)),
         };
         let state = SessionState::new(self.film());
         let mut session = Session::new(self.scene.clone(), self.view.clone(), integrator, state);
@@ -153,7 +168,7 @@ impl Case {
         values.sort_by(f32::total_cmp);
         // Bright pixels do not hide the others.
         let floor = values[values.len() / 2] / 10.0;
-        let sizes = sizes(&cpu, if algorithm.splats().is_some() { SPREAD } else { 0 });
+        let sizes = sizes(&cpu, if algorithm.splats() { SPREAD } else { 0 });
         let is_apart = |((a, b), size): (&(f32, f32), &f32)| (a - b).abs() > 1e-3 * size.max(floor);
         let (apart, same): (Vec<_>, Vec<_>) = pairs.iter().zip(&sizes).partition(|pair| is_apart(*pair));
         let other = apart.len() as f64 / pairs.len() as f64;
@@ -271,10 +286,7 @@ fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
         ("projector", Case::projector()),
     ];
     for (name, mut case) in named.chain(others) {
-        let size = case.desc.film.resolution;
-        let [sampler, light_sampler] =
-            [7, 8].map(|seed| Sampler::Sobol(Sobol::new(SAMPLES, size, Randomize::FastOwen, seed)));
-        (case.sampler, case.light_sampler) = (sampler, light_sampler);
+        case.take_sobol();
         assert_eq!(case.compare(name, algorithm), None);
     }
 }
@@ -285,15 +297,16 @@ fn light_paths_have_the_picture_of_the_cpu() {
     compare_splats(&["caustic-ball", "environment"], &light_tracing);
     // With room for so many splats, strips are a row of tiles.
     let long = Algorithm::LightTracing(LightTracingDesc { max_depth: 1000 });
-    assert_eq!(Case::named("cornell-box").compare("splats in strips", &long), None);
+    let mut case = Case::named("cornell-box");
+    case.take_sobol();
+    assert_eq!(case.compare("splats in strips", &long), None);
 }
 
 #[test]
 fn bidirectional_paths_have_the_picture_of_the_cpu() {
     let settings = BdptDesc { max_depth: 4, regularize: true, ..BdptDesc::default() };
     let bdpt = Algorithm::Bdpt(settings);
-    compare_splats(&["depth-of-field", "environment", "luminaires", "prism"], &bdpt);
-    assert_eq!(Case::named("cornell-box").compare("cornell-box", &bdpt), None);
+    compare_splats(&["cornell-box", "depth-of-field", "environment", "luminaires", "prism"], &bdpt);
 }
 
 #[test]
@@ -329,7 +342,7 @@ fn points_of_all_samplers_have_the_picture_of_the_cpu() {
 /// Algorithms without kernels, and settings that kernels do not have.
 #[test]
 fn what_algorithms_have_no_kernel_for_is_refused() {
-    let new = |desc: IntegratorDesc| Algorithm::new(&desc, RgbColorSpace::srgb()).map(|_| ());
+    let new = |desc: IntegratorDesc| Algorithm::new(&desc, RgbColorSpace::srgb(), 1).map(|_| ());
     let bdpt = |desc: BdptDesc| new(IntegratorDesc::Bdpt(desc));
     assert_eq!(bdpt(BdptDesc { max_depth: 16, ..Default::default() }), Ok(()));
     let refused = bdpt(BdptDesc { max_depth: 17, ..Default::default() });
@@ -340,6 +353,12 @@ fn what_algorithms_have_no_kernel_for_is_refused() {
     let refused = new(IntegratorDesc::Whitted(hybrid));
     assert_eq!(refused, Err("integrator `whitted` with reflections that are not traced".into()));
     assert_eq!(new(IntegratorDesc::Vcm(Default::default())), Err("integrator `vcm`".into()));
+    let mlt = |desc: MltDesc| new(IntegratorDesc::Mlt(desc));
+    assert_eq!(mlt(MltDesc { max_depth: 16, ..Default::default() }), Ok(()));
+    let refused = mlt(MltDesc { max_depth: 17, ..Default::default() });
+    assert_eq!(refused, Err("integrator `mlt` with a `maxdepth` above 16".into()));
+    let refused = mlt(MltDesc { technique: MltTechnique::Path, ..Default::default() });
+    assert_eq!(refused, Err("integrator `mlt` by any technique but `bdpt`".into()));
 }
 
 #[test]

@@ -64,7 +64,7 @@ const BLOCK: usize = 8;
 const SIZE: [usize; 2] = [32, 24];
 
 /// The mean of each block of pixels, and that of all.
-fn means(pixels: &[[f32; 3]], width: usize) -> Vec<f64> {
+pub fn means(pixels: &[[f32; 3]], width: usize) -> Vec<f64> {
     let columns = width / BLOCK;
     let mut sums = vec![0.0; pixels.len() / (BLOCK * BLOCK)];
     for (i, pixel) in pixels.iter().enumerate() {
@@ -76,7 +76,7 @@ fn means(pixels: &[[f32; 3]], width: usize) -> Vec<f64> {
 }
 
 /// The means of many independent pictures.
-fn moments(pictures: impl Iterator<Item = Vec<f64>>) -> Vec<Moments> {
+pub fn moments(pictures: impl Iterator<Item = Vec<f64>>) -> Vec<Moments> {
     let mut moments = Vec::new();
     for means in pictures {
         moments.resize(means.len(), Moments::default());
@@ -116,7 +116,7 @@ fn by_sharing(case: &Case, kernels: &Arc<Kernels>, weights: Weights, count: u32)
 }
 
 /// Which means of two lists of pictures differ.
-fn apart(a: &[Moments], b: &[Moments]) -> Vec<String> {
+pub fn apart(a: &[Moments], b: &[Moments]) -> Vec<String> {
     a.iter().zip(b).filter_map(|(x, y)| welch_test(x, y, a.len()).err()).collect()
 }
 

@@ -68,6 +68,8 @@ fn kernels_are_valid() {
         path.clone(),
         Algorithm::LightTracing(Default::default()),
         Algorithm::Bdpt(Default::default()),
+        Algorithm::Mlt(Default::default(), 1),
+        Algorithm::Sppm(Default::default(), 1),
     ];
     // What depends on parts is shared by all kernels; one has them in all ways.
     let all = (0..1 << 6).map(parts);
@@ -77,12 +79,13 @@ fn kernels_are_valid() {
         let mut add = |name: &dyn Debug, source| sources.push((format!("{name:?}, {parts:?}"), source));
         for algorithm in &algorithms {
             add(algorithm, shaders::pixels(algorithm, parts));
-            if algorithm.splats().is_none() {
+            if !algorithm.begins_at_lights() {
                 add(algorithm, shaders::surfaces(algorithm, parts));
                 add(algorithm, shaders::light(algorithm, parts, false));
             }
         }
         add(&"media", shaders::pixels(&vol_path, Parts { media: true, ..parts }));
+        add(&"chains", shaders::chains(parts));
         add(&"other light", shaders::light(&path, parts, true));
         shaders::reservoirs(parts).into_iter().for_each(|source| add(&"reservoirs", source));
     }
@@ -106,4 +109,65 @@ fn kernels_of_frames_are_valid() {
 #[test]
 fn what_is_wrong_is_found() {
     assert!(validate("fn f() -> f32 { return 1u; }").is_err());
+}
+
+/// Whether operators, all between the same brackets, may follow each other by the grammar of WGSL:
+/// bitwise ones are alone but for others of their kind, shifts have no sums and no shifts as
+/// operands, and of `&&` and `||` there is one kind. naga takes all of them, browsers do not.
+fn is_grammatical(operators: &[&str]) -> bool {
+    let has = |some: &[&str]| operators.iter().any(|operator| some.contains(operator));
+    if has(&["&", "|", "^"]) {
+        return operators.iter().all(|operator| *operator == operators[0]);
+    }
+    let sums = operators.split(|operator| ["&&", "||", "==", "!=", "<", ">", "<=", ">="].contains(operator));
+    let is_shift = |operator: &&str| ["<<", ">>"].contains(operator);
+    !(has(&["&&"]) && has(&["||"])) && sums.into_iter().all(|sum| sum.len() < 2 || !sum.iter().any(is_shift))
+}
+
+/// The lines where operators lack parentheses. Binary operators have spaces around them.
+fn ungrammatical(source: &str) -> Vec<&str> {
+    const OPERATORS: [&str; 18] =
+        ["&", "|", "^", "<<", ">>", "+", "-", "*", "/", "%", "&&", "||", "==", "!=", "<", ">", "<=", ">="];
+    let (mut open, mut wrong) = (vec![Vec::new()], Vec::new());
+    for line in source.lines() {
+        let code = line.split("//").next().unwrap_or_default();
+        let spaced: String =
+            code.chars().map(|c| if "(){}[],;".contains(c) { format!(" {c} ") } else { c.into() }).collect();
+        for word in spaced.split_whitespace() {
+            let ends = [")", "]", "}", ",", ";", "=", "return"].contains(&word)
+                || word.ends_with("=") && !OPERATORS.contains(&word);
+            if ends {
+                let operators = open.last_mut().map(std::mem::take).unwrap_or_default();
+                wrong.extend((!is_grammatical(&operators)).then_some(line));
+            }
+            match word {
+                "(" | "[" | "{" => open.push(Vec::new()),
+                ")" | "]" | "}" => drop(open.pop()),
+                _ => {
+                    let operator = OPERATORS.into_iter().find(|operator| *operator == word);
+                    open.last_mut().expect("brackets in pairs").extend(operator);
+                }
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn operators_have_the_parentheses_of_the_grammar() {
+    let wrong = ["a << 2 | b", "a & b == c", "a || b && c", "a + b << 2", "a & b | c"];
+    for code in wrong {
+        assert_eq!(ungrammatical(&format!("let x = f({code});")).len(), 1, "{code}");
+    }
+    let right = "let x = (a << 2) | ((b & 3) | c); if (-a < b * c && d >> 1 == e) { x &= y; }";
+    assert!(ungrammatical(right).is_empty());
+    for folder in ["", "law", "realtime"] {
+        let folder = format!("{}/shaders/{folder}", env!("CARGO_MANIFEST_DIR"));
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_file() && !path.ends_with("trace.wgsl") {
+                let source = std::fs::read_to_string(&path).unwrap();
+                assert_eq!(ungrammatical(&source), [""; 0], "{}", path.display());
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use film::Splatter;
 use math::{Bounds2, Point2};
 use sampling::Sampler;
+use scene::ShutterSample;
 use scene::camera::{CameraRayDifferential, CameraSample, FilmPositions};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
@@ -10,7 +11,6 @@ use crate::bidirectional::Bidirectional;
 use crate::camera_paths::PathsFrom;
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::camera_ray;
-use crate::transport::shutter_sample::ShutterSample;
 
 /// A contribution to the film.
 #[derive(Clone, Copy, Debug)]

@@ -33,12 +33,11 @@ use geometry::RayStats;
 use image::require_memory;
 use rayon::prelude::*;
 use sampling::Sampler;
-use scene::View;
+use scene::{ShutterSample, View};
 
 use crate::bidirectional::{Bidirectional, LightVertex, Vertex};
 use crate::photons::photon_grid::PhotonGrid;
 use crate::transport::Tracer;
-use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, PassError};
 
 /// Number of light subpaths per parallel task.

@@ -20,13 +20,12 @@
 
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
-use scene::Scene;
+use scene::{Scene, ShutterSample};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Bidirectional, Encounter, Found, Vertex};
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::{PixelSample, PixelSamples};
-use crate::transport::shutter_sample::ShutterSample;
 
 /// Further rays for a sample of a pixel that sees a specular surface.
 const FURTHER_RAYS: u32 = 4;

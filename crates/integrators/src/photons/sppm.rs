@@ -43,14 +43,6 @@ use crate::{Cancelled, Control, Integrator, PassError};
 /// The α of the radius.
 const ALPHA: f32 = 2.0 / 3.0;
 
-/// The default radius of the first pass is this times that of the scene over √n, for n light
-/// subpaths in a pass. About thirty photons then lie within the radius of a point of a room, so
-/// that few points are black.
-const SPACING: f32 = 5.0;
-
-/// Limit on the default radius, as a fraction of that of the scene.
-const LARGEST_SHARE: f32 = 0.05;
-
 /// Stochastic progressive photon mapping.
 #[derive(Debug)]
 pub struct Sppm {
@@ -63,7 +55,8 @@ pub struct Sppm {
 impl Sppm {
     /// `sampler` is for camera paths, `photon_seed` for photons.
     pub fn new(settings: SppmDesc, sampler: Sampler, photon_seed: u32) -> Self {
-        let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
+        // Each pass begins with the radius that its film and scene give.
+        let merging = Merging::new(1.0, ALPHA, photon_seed);
         Self { settings, sampler, lights: Lights::none(), merging }
     }
 }
@@ -90,12 +83,8 @@ impl Integrator for Sppm {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, PassError> {
-        let pixel_count = film.pixel_bounds().area();
-        let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
-        if self.settings.radius.is_none() {
-            let share = (SPACING / (photon_paths as f32).sqrt()).min(LARGEST_SHARE);
-            self.merging.begin_with(share * scene.sphere().radius);
-        }
+        let photon_paths = self.settings.light_paths(film.pixel_bounds().area());
+        self.merging.begin_with(self.settings.first_radius(photon_paths, scene.sphere().radius));
         let paths = Bidirectional {
             scene,
             view,

@@ -10,11 +10,9 @@
 //! lamp of the measured Cornell box for s = 0.65. With 16 bands it is 1 %, with 64 it is 0.2 %.
 //! Every sample then has all wavelengths, without the noise of random ones.
 
-use scene::View;
+use scene::{ShutterSample, View};
 use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
-
-use crate::transport::shutter_sample::ShutterSample;
 
 /// Number of groups of [`N`] wavelengths.
 const GROUPS: usize = 8;

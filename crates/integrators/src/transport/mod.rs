@@ -6,7 +6,6 @@
 //! | `tracer` | scene, view, random numbers and statistics of a sample; cancellation |
 //! | `pixel_samples` | camera rays of all pixels of a pass |
 //! | `first_hit` | the first hit of a camera ray, for the AOVs of the film |
-//! | `shutter_sample` | wavelengths and time of a sample |
 //! | `parts` | the first event of a path, for layers of parts of the light |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
@@ -26,7 +25,6 @@ pub(crate) mod pixel_samples;
 mod record;
 pub(crate) mod roulette;
 pub(crate) mod sample_counts;
-pub(crate) mod shutter_sample;
 pub(crate) mod single_scattering;
 pub(crate) mod subsurface;
 pub(crate) mod surroundings;

@@ -11,13 +11,12 @@ use math::Vec2;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::camera::{CameraRayDifferential, CameraSample, differential_scale};
-use scene::{Scene, View};
+use scene::{Scene, ShutterSample, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::first_hit::first_hit;
 use super::sample_counts::SampleCounts;
-use super::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
 /// One sample of each pixel that takes it.

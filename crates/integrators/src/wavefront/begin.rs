@@ -2,13 +2,13 @@
 
 use lanes::{Int, Kernel, Real};
 use sampling::sampler::Address;
+use scene::ShutterSample;
 use scene::camera::differential_scale;
 
 use super::numbers::{CameraNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
 use super::segments::{Besides, Segments, numbers_of};
-use crate::transport::shutter_sample::ShutterSample;
 
 /// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
 pub(super) struct Begin<'a, 'b> {

@@ -121,7 +121,8 @@ pub fn standard_constant(owner: Option<&Type>, name: &str) -> Option<Value> {
         "LOG2_E" => c::LOG2_E,
         "EPSILON" => f32::EPSILON,
         "MIN_POSITIVE" => f32::MIN_POSITIVE,
-        "MAX" => f32::MAX,
+        // The shortest decimal that is nearest to it is larger, which WGSL does not take.
+        "MAX" => return Some(Value::real("3.4028234e38f")),
         // No literal has these values; the prelude makes them of their bits.
         "INFINITY" => return Some(Value::real("infinity()")),
         "NEG_INFINITY" => return Some(Value::real("-infinity()")),

@@ -219,6 +219,11 @@ fn integers_have_limits() {
 }
 
 #[test]
+fn the_largest_float_is_not_exceeded() {
+    assert_body("fn f(x: f32) -> f32 { x + f32::MAX }", &["return x + 3.4028234e38f;"]);
+}
+
+#[test]
 fn arrays_longer_than_vectors_have_no_coordinates() {
     assert_body("fn f<R: Real>(x: [R; 5]) -> R { x[0] + x[4] }", &["return x[0] + x[4];"]);
     assert_body("fn f<R: Real>(x: [R; 4]) -> R { x[0] + x[3] }", &["return x.x + x.w;"]);

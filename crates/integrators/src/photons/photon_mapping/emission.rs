@@ -12,10 +12,10 @@ use image::require_memory;
 use rayon::prelude::*;
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
+use scene::ShutterSample;
 
 use crate::bidirectional::{Arrival, Bidirectional, Vertex, Walk};
 use crate::transport::Tracer;
-use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, PassError};
 
 /// Number of subpaths per parallel task.

@@ -40,7 +40,7 @@ use description::{Diagnostic, LightSamplerDesc, PhotonMappingDesc, PhotonMapping
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scene::{Interfaces, Scene, View};
+use scene::{Interfaces, Scene, ShutterSample, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
@@ -50,7 +50,6 @@ use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, Integrator, PassError};
 
 use emission::{Emission, Kind};

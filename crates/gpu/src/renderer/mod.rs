@@ -5,20 +5,28 @@
 //! wavelengths and weights that it computes from the same random numbers. So it adds the splats of
 //! light paths, a list with room for the most that those of a strip have.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+mod chains;
+mod kernels;
+mod photons;
+mod scene_buffers;
+
+use std::sync::Arc;
 
 use film::{Film, FilmTile, Splatter, TILE_SIZE};
 use math::{Bounds2i, Vec2};
 use rayon::prelude::*;
 use sampling::Sampler;
-use scene::View;
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use scene::{ShutterSample, View};
+use spectrum::SampledSpectrum;
 
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::shaders;
+use chains::Chains;
+pub use kernels::Kernels;
+use photons::{PhotonGrid, Photons};
+use scene_buffers::SceneBuffers;
 
 /// The most pixels of a strip, and the most splats of its light paths, unless a row of tiles has
 /// more.
@@ -30,39 +38,6 @@ const SPLATS_OF_A_THREAD: usize = 1 << 12;
 
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
-
-/// The kernels of a device, each compiled when it is first used.
-pub struct Kernels {
-    device: Device,
-    /// By their sources. What compiles one holds up those alone that want the same.
-    made: Mutex<BTreeMap<String, Slot>>,
-}
-
-/// A kernel, once it is compiled.
-type Slot = Arc<Mutex<Option<Arc<Kernel>>>>;
-
-impl Kernels {
-    /// No kernels yet.
-    pub fn new(device: Device) -> Self {
-        Self { device, made: Mutex::default() }
-    }
-
-    /// The device.
-    pub fn device(&self) -> &Device {
-        &self.device
-    }
-
-    pub(crate) fn get(&self, name: &str, source: String) -> Result<Arc<Kernel>, GpuError> {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = made.entry(source.clone()).or_default().clone();
-        drop(made);
-        let mut kernel = slot.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kernel) = &*kernel {
-            return Ok(kernel.clone());
-        }
-        Ok(kernel.insert(Arc::new(self.device.kernel(name, &source)?)).clone())
-    }
-}
 
 /// What the kernel is to render: `Batch` of `shaders/pixels.wgsl` and `shaders/bidirectional.wgsl`,
 /// where splats follow.
@@ -100,12 +75,16 @@ struct PixelSample {
 
 /// A scene on a device, ready to be rendered.
 pub struct Renderer {
-    kernels: Arc<Kernels>,
+    scene: SceneBuffers,
     kernel: Arc<Kernel>,
-    buffers: [Buffer; 8],
+    /// What the kernel is to render, and what it finds, of a strip.
+    batch: Buffer,
+    samples: Buffer,
     /// The most splats of a light path, and of a strip.
     splats: Option<u32>,
     most: usize,
+    chains: Option<Chains>,
+    photons: Option<Photons>,
     bytes: usize,
 }
 
@@ -118,24 +97,34 @@ impl Renderer {
         film: &Film,
     ) -> Result<Self, GpuError> {
         let kernel = kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?;
-        let device = &kernels.device;
-        let splats = algorithm.splats();
-        let samples = strips(film.pixel_bounds(), splats).map(|strip| strip.area()).max().unwrap_or(0);
-        let most = samples.saturating_mul(splats.unwrap_or(0) as usize);
+        let scene = SceneBuffers::new(kernels.clone(), flat)?;
+        let pixels = film.pixel_bounds().area();
+        let (mut splats, mut chains, mut photons) = (None, None, None);
+        match algorithm {
+            Algorithm::RayCasting
+            | Algorithm::Whitted(_)
+            | Algorithm::AmbientOcclusion(..)
+            | Algorithm::Path(_) => {}
+            Algorithm::LightTracing(desc) => splats = Some(desc.max_depth),
+            Algorithm::Bdpt(desc) => splats = Some(desc.max_depth),
+            Algorithm::Mlt(desc, seed) if desc.max_depth > 0 => {
+                chains = Some(Chains::new(&kernels, &scene, flat, (*desc, *seed), pixels)?);
+            }
+            Algorithm::Mlt(..) => {}
+            Algorithm::Sppm(desc, seed) => {
+                photons = Some(Photons::new(&scene, (desc, *seed), pixels, flat.radius)?);
+            }
+        }
+        let count = strips(film.pixel_bounds(), splats).map(|strip| strip.area()).max().unwrap_or(0);
+        let most = count.saturating_mul(splats.unwrap_or(0) as usize);
         let batch_bytes = size_of::<Splat>().saturating_mul(most.max(1)).saturating_add(size_of::<Batch>());
         let none = PixelSample { l: [0.0; 4], rays: 0, is_terminated: 0, unused: [0; 2] };
-        let buffers = [
-            device.buffer("heads of the scene", &[flat.head])?,
-            device.buffer("nodes of the scene's trees", &flat.bvh.nodes)?,
-            device.buffer("triangles of the scene", &flat.bvh.triangles)?,
-            device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
-            device.buffer("tables of the scene", &flat.tables)?,
-            device.zeros("splats of a strip", batch_bytes as u64)?,
-            device.buffer("samples of a strip", &vec![none; samples])?,
-            device.buffer("texels of the scene", &flat.texels)?,
-        ];
-        let bytes = flat.bytes() + samples * size_of::<PixelSample>() + batch_bytes;
-        Ok(Self { kernels, kernel, buffers, splats, most, bytes })
+        let device = scene.device();
+        let batch = device.zeros("splats of a strip", batch_bytes as u64)?;
+        let samples = device.buffer("samples of a strip", &vec![none; count])?;
+        let own = chains.as_ref().map_or(0, Chains::bytes) + photons.as_ref().map_or(0, Photons::bytes);
+        let bytes = flat.bytes() + count * size_of::<PixelSample>() + batch_bytes + own;
+        Ok(Self { scene, kernel, batch, samples, splats, most, chains, photons, bytes })
     }
 
     /// The bytes of its buffers.
@@ -143,14 +132,9 @@ impl Renderer {
         self.bytes
     }
 
-    /// Whether light paths add splats to the film.
-    pub fn splats(&self) -> bool {
-        self.splats.is_some()
-    }
-
     /// The device that renders.
     pub fn device(&self) -> &Device {
-        &self.kernels.device
+        self.scene.device()
     }
 
     /// Adds the sample of an index of each pixel to the film, strip by strip, until `is_cancelled`.
@@ -169,18 +153,26 @@ impl Renderer {
     ) -> Result<Option<u64>, PassError> {
         let filter = film.filter().clone();
         let bounds = film.pixel_bounds();
-        let opened = match self.splats {
-            None => film.tiles_mut().map(|tiles| (tiles, None)),
-            Some(_) => film.tiles_and_splatter().map(|(tiles, splatter)| (tiles, Some(splatter))),
+        let opened = if self.splats.is_none() && self.chains.is_none() {
+            film.tiles_mut().map(|tiles| (tiles, None))
+        } else {
+            film.tiles_and_splatter().map(|(tiles, splatter)| (tiles, Some(splatter)))
         };
         let (mut tiles, splatter) = opened.map_err(|error| PassError::OutOfMemory(error.to_string()))?;
         let mut rays = 0;
+        let mut grid = None;
+        if let Some(photons) = &self.photons {
+            let Self { scene, kernel, samples, .. } = self;
+            grid = photons.shoot(index, scene, kernel, samples, view, &is_cancelled)?;
+            let Some(grid) = &grid else { return Ok(None) };
+            rays += grid.rays;
+        }
         for strip in strips(bounds, self.splats) {
             if is_cancelled() {
                 return Ok(None);
             }
-            let samples = self.strip(index, &strip)?;
-            if let Some(splatter) = &splatter {
+            let samples = self.strip(index, &strip, grid.as_ref())?;
+            if let (Some(_), Some(splatter)) = (self.splats, &splatter) {
                 self.add_splats(index, &strip, view, sampler, splatter)?;
             }
             rays += samples.iter().map(|sample| u64::from(sample.rays)).sum::<u64>();
@@ -195,25 +187,45 @@ impl Renderer {
                     let sample = &samples[place as usize];
                     sampler.start_pixel_sample(pixel, index, 0);
                     let (wavelength, place) = (sampler.get_1d(), sampler.get_pixel_2d());
-                    let lambda = wavelengths(view, wavelength, sample.is_terminated == 1);
+                    let mut lambda = match &grid {
+                        Some(grid) => grid.shutter.lambda,
+                        None => ShutterSample::wavelengths(view, wavelength),
+                    };
+                    if sample.is_terminated == 1 {
+                        lambda.terminate_secondary();
+                    }
                     let weight = weight(view, &filter, place);
                     tile.add_sample(pixel, &SampledSpectrum::new(sample.l), &lambda, weight);
                 }
             });
         }
+        if let (Some(chains), Some(splatter)) = (&self.chains, &splatter) {
+            let Some(more) = chains.run(index, &self.scene, view, splatter, &is_cancelled)? else {
+                return Ok(None);
+            };
+            rays += more;
+        }
         Ok(Some(rays))
     }
 
-    /// The samples of a strip, row by row.
-    fn strip(&self, index: u32, strip: &Bounds2i) -> Result<Vec<PixelSample>, GpuError> {
-        let device = self.device();
-        let size = [strip.width() as u32, strip.height() as u32];
-        let low = strip.min.map(|x| x as u32);
-        let batch = Batch { low, size, index, most: self.most as u32, ..Batch::default() };
-        device.write(&self.buffers[5], &[batch])?;
-        let [x, y] = size.map(|side| side.div_ceil(WORKGROUP));
-        device.run(&self.kernel, &self.buffers.each_ref(), [x, y, 1])?;
-        device.read(&self.buffers[6])
+    /// The samples of a strip, row by row; `grid` has the photons of the pass, if there are any.
+    fn strip(
+        &self,
+        index: u32,
+        strip: &Bounds2i,
+        grid: Option<&PhotonGrid>,
+    ) -> Result<Vec<PixelSample>, GpuError> {
+        let Self { scene, kernel, batch, samples, .. } = self;
+        if let Some(grid) = grid {
+            grid.gather(scene, kernel, samples, strip)?;
+        } else {
+            let size = [strip.width() as u32, strip.height() as u32];
+            let low = strip.min.map(|x| x as u32);
+            let head = Batch { low, size, index, most: self.most as u32, ..Batch::default() };
+            self.device().write(batch, &[head])?;
+            scene.run(kernel, [batch, samples], workgroups(size))?;
+        }
+        self.device().read(samples)
     }
 
     /// Adds the splats of a strip, and counts its light paths.
@@ -225,7 +237,7 @@ impl Renderer {
         sampler: &Sampler,
         splatter: &Splatter,
     ) -> Result<(), GpuError> {
-        let (device, buffer) = (self.device(), &self.buffers[5]);
+        let (device, buffer) = (self.device(), &self.batch);
         let head: Vec<Batch> = device.read_part(buffer, 0, 1)?;
         let count = head.iter().map(|batch| batch.count as usize).sum::<usize>().min(self.most);
         let splats: Vec<Splat> = device.read_part(buffer, size_of::<Batch>() as u64, count)?;
@@ -234,7 +246,7 @@ impl Renderer {
             for splat in splats {
                 let [x, y] = [splat.path as i32 % strip.width(), splat.path as i32 / strip.width()];
                 sampler.start_pixel_sample([strip.min[0] + x, strip.min[1] + y], index, 0);
-                let lambda = wavelengths(view, sampler.get_1d(), false);
+                let lambda = ShutterSample::wavelengths(view, sampler.get_1d());
                 splatter.add(Vec2::from_array(splat.film), &SampledSpectrum::new(splat.l), &lambda);
             }
         });
@@ -268,13 +280,9 @@ fn strips(bounds: Bounds2i, splats: Option<u32>) -> impl Iterator<Item = Bounds2
         .map(move |y| Bounds2i::new([bounds.min[0], y], [bounds.max[0], (y + height).min(bounds.max[1])]))
 }
 
-fn wavelengths(view: &View, u: f32, is_terminated: bool) -> SampledWavelengths {
-    let u = if view.options.disable_wavelength_jitter { 0.5 } else { u };
-    let mut lambda = SampledWavelengths::sample_visible(u);
-    if is_terminated {
-        lambda.terminate_secondary();
-    }
-    lambda
+/// The workgroups for a rectangle.
+fn workgroups(size: [u32; 2]) -> [u32; 2] {
+    size.map(|side| side.div_ceil(WORKGROUP))
 }
 
 fn weight(view: &View, filter: &film::Filter, place: Vec2) -> f32 {

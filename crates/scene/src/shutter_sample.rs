@@ -2,12 +2,13 @@
 
 use lanes::Real;
 use sampling::hash;
-use scene::View;
 use spectrum::SampledWavelengths;
 
+use crate::View;
+
 /// The wavelengths and the time of a path.
-#[derive(Clone, Copy)]
-pub(crate) struct ShutterSample {
+#[derive(Clone, Copy, Debug)]
+pub struct ShutterSample {
     /// The wavelengths.
     pub lambda: SampledWavelengths,
     /// Sample value in [0, 1) for the shutter time.

@@ -1,0 +1,48 @@
+//! A scene on a device.
+
+use std::sync::Arc;
+
+use super::Kernels;
+use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::flatten::Flat;
+
+/// The buffers of a scene, beside which kernels have two of their own.
+pub(super) struct SceneBuffers {
+    kernels: Arc<Kernels>,
+    buffers: [Buffer; 6],
+}
+
+impl SceneBuffers {
+    /// Takes a scene to the device.
+    pub fn new(kernels: Arc<Kernels>, flat: &Flat) -> Result<Self, GpuError> {
+        let device = kernels.device();
+        let buffers = [
+            device.buffer("heads of the scene", &[flat.head])?,
+            device.buffer("nodes of the scene's trees", &flat.bvh.nodes)?,
+            device.buffer("triangles of the scene", &flat.bvh.triangles)?,
+            device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
+            device.buffer("tables of the scene", &flat.tables)?,
+            device.buffer("texels of the scene", &flat.texels)?,
+        ];
+        Ok(Self { kernels, buffers })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        self.kernels.device()
+    }
+
+    /// Starts a kernel in this many workgroups, after all that was started before. `batch` says what
+    /// it does, `results` are what it makes.
+    pub fn run(
+        &self,
+        kernel: &Kernel,
+        [batch, results]: [&Buffer; 2],
+        workgroups: [u32; 2],
+    ) -> Result<(), GpuError> {
+        let [head, nodes, triangles, items, tables, texels] = self.buffers.each_ref();
+        let [x, y] = workgroups;
+        let all = [head, nodes, triangles, items, tables, batch, results, texels];
+        self.device().run(kernel, &all, [x, y, 1])
+    }
+}
