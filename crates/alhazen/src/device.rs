@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
-use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
+use gpu::{Algorithm, Flat, Renderer, Schedule, Subject, flatten};
 use integrators::{Cancelled, Control, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
@@ -31,7 +31,7 @@ pub(crate) fn integrator(
     let film = &session.state().film;
     let Flattened { flat, algorithm, sampler } =
         flattened(desc, session.scene(), session.view(), film, kernels)?;
-    match Renderer::new(kernels.clone(), &flat, &algorithm, film) {
+    match Renderer::new(kernels.clone(), &flat, &algorithm, film, Schedule::default()) {
         Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler })),
         Err(error) => Err(vec![failed(&error)]),
     }

@@ -1,6 +1,7 @@
 //! `alhazen view --split --headless`: frame times of a ray traced and a rasterised scene, and a
 //! picture of both.
 
+use std::slice;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,7 @@ use view::{Rasterized, Renderer};
 use crate::args::View;
 use crate::console::warn;
 use crate::failure::Failure;
+use crate::results::write_results;
 
 /// Finds both frame times of a camera path, and writes the picture that was asked for.
 pub fn headless(
@@ -41,7 +43,8 @@ pub fn headless(
     let report = report?;
     if let Some(path) = &arguments.output {
         let picture = picture(renderer, &mut rasterized, share, &control)?;
-        crate::view::write(&picture, path, arguments)?;
+        let display = arguments.display.settings();
+        write_results(&picture, slice::from_ref(path), &display, None, Vec::new())?;
     }
     Ok(report)
 }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::slice;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use alhazen::image::Image;
+use alhazen::Overrides;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
-use alhazen::{Overrides, write_picture};
 use view::planet::{Outing, PlanetReport, Spent};
 use view::{Renderer, Report, Stages, World};
 
@@ -17,6 +17,7 @@ use crate::console::say;
 use crate::diagnostics;
 use crate::drive::Prepared;
 use crate::failure::Failure;
+use crate::results::write_results;
 use crate::threads::start_threads;
 
 /// The time that a frame is to take.
@@ -89,7 +90,8 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     let orbit = Report::of_orbit(&mut renderer, &mut flight, arguments.frames, begin, &control);
     let (report, last) = orbit?;
     if let (Some(path), Some(frame)) = (&arguments.output, last) {
-        write(&frame.to_image(), path, arguments)?;
+        let display = arguments.display.settings();
+        write_results(&frame.to_image(), slice::from_ref(path), &display, None, Vec::new())?;
     }
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
@@ -104,12 +106,6 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         }
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Writes a picture as the arguments say that it is shown.
-pub fn write(picture: &Image, path: &Path, arguments: &View) -> Result<(), Failure> {
-    write_picture(picture, path, &arguments.display.settings())
-        .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
 }
 
 /// A walk over a planet, in a window or without one.

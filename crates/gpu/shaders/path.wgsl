@@ -87,75 +87,63 @@ fn survives(path: ptr<function, Path>) -> bool {
     return true;
 }
 
-fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
-    var l = vec4f();
+// A path that begins with a camera ray.
+fn new_path(ray: Ray, near: Differentials) -> Path {
     var path: Path;
     path.ray = ray;
     path.near = near;
     path.beta = vec4f(1);
     path.eta_scale = 1;
-    var direct: DirectLight;
-    var goes_on = true;
-    loop {
-        // The shadow ray of the last vertex, and then the ray to the next one, at one place of the
-        // program, because traversal is long.
-        var hit: Hit;
-        for (var i = 0u; i < 2; i++) {
-            let is_shadow = i == 0;
-            if (select(!goes_on, is_black(direct.l), is_shadow)) {
-                continue;
-            }
-            let o = select(path.ray.o, direct.shadow.ray.o, is_shadow);
-            let d = select(path.ray.d, direct.shadow.ray.d, is_shadow);
-            rays++;
-            hit = trace(o, d, select(infinity(), direct.shadow.t_max, is_shadow), is_shadow);
-            if (is_shadow && !hit.found) {
-                l += direct.l;
-            }
-        }
-        if (!goes_on) {
-            break;
-        }
-        if (!hit.found) {
-            l += path.beta * escaped(path, *lambda);
-            break;
-        }
-        var s = surface_at(hit, path.ray);
-        l += path.beta * emitted(path, s, hit.uv, *lambda);
-        let textures = texture_context(s, path.near);
-        var bsdf = bsdf_at(&s, textures, lambda);
-        if (path.depth == world.max_depth) {
-            break;
-        }
-        path.depth++;
-        if (world.regularize == 1 && path.rough_before) {
-            regularize(&bsdf);
-        }
-        let flags = bsdf_flags(bsdf);
-        let context = light_context(s, flags);
-        // What chooses the light and its point, and the lobe and its direction.
-        var u: array<vec2f, 4>;
-        let samples_light = is_non_specular(flags) && !(HAS_RESERVOIRS && path.depth == 1);
-        for (var i = select(2u, 0u, samples_light); i < 4; i++) {
-            u[i] = next_numbers((i & 1) == 1);
-        }
-        direct.l = vec4f();
-        if (samples_light) {
-            direct = direct_light(s, context, bsdf, *lambda, u[0].x, u[1]);
-            direct.l *= path.beta;
-        }
-        let sample = bsdf_sample(bsdf, s.wo, u[2].x, u[3]);
-        goes_on = sample.valid;
-        if (goes_on) {
-            path.near = scattered_differentials(s, textures, path.near, sample);
-            // The density of a sample that is a walk is known as that of its direction alone.
-            var pdf = sample.pdf;
-            if (HAS_COATS && sample.pdf_is_proportional) {
-                pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
-            }
-            scatter(&path, s, context, sample, pdf);
-            goes_on = survives(&path);
-        }
+    return path;
+}
+
+// What a path does at the end of its ray: it adds light to `l`, finds the direct light of the point
+// and the next ray; false if it has ended.
+fn shade(
+    path: ptr<function, Path>,
+    hit: Hit,
+    lambda: ptr<function, SampledWavelengths>,
+    direct: ptr<function, DirectLight>,
+    l: ptr<function, vec4f>,
+) -> bool {
+    (*direct).l = vec4f();
+    if (!hit.found) {
+        *l += (*path).beta * escaped(*path, *lambda);
+        return false;
     }
-    return l;
+    var s = surface_at(hit, (*path).ray);
+    *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
+    let textures = texture_context(s, (*path).near);
+    var bsdf = bsdf_at(&s, textures, lambda);
+    if ((*path).depth == world.max_depth) {
+        return false;
+    }
+    (*path).depth++;
+    if (world.regularize == 1 && (*path).rough_before) {
+        regularize(&bsdf);
+    }
+    let flags = bsdf_flags(bsdf);
+    let context = light_context(s, flags);
+    // What chooses the light and its point, and the lobe and its direction.
+    var u: array<vec2f, 4>;
+    let samples_light = is_non_specular(flags) && !(HAS_RESERVOIRS && (*path).depth == 1);
+    for (var i = select(2u, 0u, samples_light); i < 4; i++) {
+        u[i] = next_numbers((i & 1) == 1);
+    }
+    if (samples_light) {
+        *direct = direct_light(s, context, bsdf, *lambda, u[0].x, u[1]);
+        (*direct).l *= (*path).beta;
+    }
+    let sample = bsdf_sample(bsdf, s.wo, u[2].x, u[3]);
+    if (!sample.valid) {
+        return false;
+    }
+    (*path).near = scattered_differentials(s, textures, (*path).near, sample);
+    // The density of a sample that is a walk is known as that of its direction alone.
+    var pdf = sample.pdf;
+    if (HAS_COATS && sample.pdf_is_proportional) {
+        pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
+    }
+    scatter(path, s, context, sample, pdf);
+    return survives(path);
 }

@@ -24,4 +24,4 @@ pub use device::{Buffer, Device, GpuError, Kernel};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
-pub use renderer::{Kernels, PassError, Renderer};
+pub use renderer::{Kernels, PassError, Renderer, Schedule};

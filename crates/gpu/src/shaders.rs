@@ -54,6 +54,9 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
+/// What a path does at its vertices.
+const PATH: &str = include_str!("../shaders/path.wgsl");
+
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
 
@@ -109,6 +112,19 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
     };
     let own = [RANDOM_NUMBERS, &constants, radiance(algorithm, parts)];
     traced(parts, &[&SUBPATHS[..], &own].concat())
+}
+
+/// The kernels of the stages of path tracing by a wavefront: paths begin, are extended, shaded, and
+/// connected to lights.
+pub fn wavefront(parts: Parts) -> [String; 4] {
+    let stages = [
+        include_str!("../shaders/wavefront/begin.wgsl"),
+        include_str!("../shaders/wavefront/extend.wgsl"),
+        include_str!("../shaders/wavefront/shade.wgsl"),
+        include_str!("../shaders/wavefront/connect.wgsl"),
+    ];
+    let paths = include_str!("../shaders/wavefront/paths.wgsl");
+    stages.map(|stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, paths, stage]))
 }
 
 /// The kernel of the chains of Metropolis light transport.
@@ -185,7 +201,9 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         Algorithm::VolPath(_) if parts.media => {
             concat!(include_str!("../shaders/media.wgsl"), include_str!("../shaders/vol_path.wgsl"))
         }
-        Algorithm::Path(_) | Algorithm::VolPath(_) => include_str!("../shaders/path.wgsl"),
+        Algorithm::Path(_) | Algorithm::VolPath(_) => {
+            concat!(include_str!("../shaders/path.wgsl"), include_str!("../shaders/path_loop.wgsl"))
+        }
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
         Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),
         Algorithm::Sppm(..) => include_str!("../shaders/photons.wgsl"),

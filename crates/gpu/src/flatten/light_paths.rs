@@ -1,6 +1,6 @@
 //! Light paths: the offset of their random numbers, that of the choice of the light where they
-//! begin, which is in proportion to power, how many of them there are in a pass for each sample of a
-//! pixel, whether a surface may lie beyond the scene's sphere, the centre and radius of that, and
+//! begin, which is in proportion to power, how many of them there are in a pass for each sample of
+//! a pixel, whether a surface may lie beyond the scene's sphere, the centre and radius of that, and
 //! the least and the largest film position that they reach.
 
 use film::Film;
@@ -28,7 +28,8 @@ impl Flattener<'_> {
             | Algorithm::RayCasting
             | Algorithm::Whitted(_)
             | Algorithm::AmbientOcclusion(..)
-            | Algorithm::Path(_) => (self.sampler(sampler), pixels as f32),
+            | Algorithm::Path(_)
+            | Algorithm::VolPath(_) => (self.sampler(sampler), pixels as f32),
         };
         let emitting = self.power(&PowerLightSampler::new(self.scene.lights()));
         let (sphere, reach) = (self.scene.sphere(), film.reach());

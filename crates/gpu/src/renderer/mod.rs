@@ -9,6 +9,7 @@ mod chains;
 mod kernels;
 mod photons;
 mod scene_buffers;
+mod wavefront;
 
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
+use wavefront::Wavefront;
 
 /// The most pixels of a strip, and the most splats of its light paths, unless a row of tiles has
 /// more.
@@ -73,10 +75,27 @@ struct PixelSample {
     unused: [u32; 2],
 }
 
+/// How the work of `path` is cut into kernels. Other algorithms, and `vol-path` in media, have
+/// a megakernel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Schedule {
+    /// A thread follows a whole path.
+    #[default]
+    Megakernel,
+    /// All paths go through each stage together.
+    Wavefront,
+}
+
+/// What makes the samples of a strip.
+enum Maker {
+    Megakernel(Arc<Kernel>),
+    Wavefront(Wavefront),
+}
+
 /// A scene on a device, ready to be rendered.
 pub struct Renderer {
     scene: SceneBuffers,
-    kernel: Arc<Kernel>,
+    maker: Maker,
     /// What the kernel is to render, and what it finds, of a strip.
     batch: Buffer,
     samples: Buffer,
@@ -95,8 +114,8 @@ impl Renderer {
         flat: &Flat,
         algorithm: &Algorithm,
         film: &Film,
+        schedule: Schedule,
     ) -> Result<Self, GpuError> {
-        let kernel = kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?;
         let scene = SceneBuffers::new(kernels.clone(), flat)?;
         let pixels = film.pixel_bounds().area();
         let (mut splats, mut chains, mut photons) = (None, None, None);
@@ -104,7 +123,8 @@ impl Renderer {
             Algorithm::RayCasting
             | Algorithm::Whitted(_)
             | Algorithm::AmbientOcclusion(..)
-            | Algorithm::Path(_) => {}
+            | Algorithm::Path(_)
+            | Algorithm::VolPath(_) => {}
             Algorithm::LightTracing(desc) => splats = Some(desc.max_depth),
             Algorithm::Bdpt(desc) => splats = Some(desc.max_depth),
             Algorithm::Mlt(desc, seed) if desc.max_depth > 0 => {
@@ -116,15 +136,26 @@ impl Renderer {
             }
         }
         let count = strips(film.pixel_bounds(), splats).map(|strip| strip.area()).max().unwrap_or(0);
+        let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
+        let maker = if schedule == Schedule::Wavefront && is_path && !flat.parts.media {
+            Maker::Wavefront(Wavefront::new(&kernels, flat, count)?)
+        } else {
+            Maker::Megakernel(kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?)
+        };
         let most = count.saturating_mul(splats.unwrap_or(0) as usize);
         let batch_bytes = size_of::<Splat>().saturating_mul(most.max(1)).saturating_add(size_of::<Batch>());
         let none = PixelSample { l: [0.0; 4], rays: 0, is_terminated: 0, unused: [0; 2] };
         let device = scene.device();
         let batch = device.zeros("splats of a strip", batch_bytes as u64)?;
         let samples = device.buffer("samples of a strip", &vec![none; count])?;
-        let own = chains.as_ref().map_or(0, Chains::bytes) + photons.as_ref().map_or(0, Photons::bytes);
+        let of_paths = match &maker {
+            Maker::Megakernel(_) => 0,
+            Maker::Wavefront(wavefront) => wavefront.bytes(),
+        };
+        let own =
+            chains.as_ref().map_or(of_paths, Chains::bytes) + photons.as_ref().map_or(0, Photons::bytes);
         let bytes = flat.bytes() + count * size_of::<PixelSample>() + batch_bytes + own;
-        Ok(Self { scene, kernel, batch, samples, splats, most, chains, photons, bytes })
+        Ok(Self { scene, maker, batch, samples, splats, most, chains, photons, bytes })
     }
 
     /// The bytes of its buffers.
@@ -161,8 +192,8 @@ impl Renderer {
         let (mut tiles, splatter) = opened.map_err(|error| PassError::OutOfMemory(error.to_string()))?;
         let mut rays = 0;
         let mut grid = None;
-        if let Some(photons) = &self.photons {
-            let Self { scene, kernel, samples, .. } = self;
+        if let (Some(photons), Maker::Megakernel(kernel)) = (&self.photons, &self.maker) {
+            let Self { scene, samples, .. } = self;
             grid = photons.shoot(index, scene, kernel, samples, view, &is_cancelled)?;
             let Some(grid) = &grid else { return Ok(None) };
             rays += grid.rays;
@@ -215,7 +246,11 @@ impl Renderer {
         strip: &Bounds2i,
         grid: Option<&PhotonGrid>,
     ) -> Result<Vec<PixelSample>, GpuError> {
-        let Self { scene, kernel, batch, samples, .. } = self;
+        let Self { scene, maker, batch, samples, .. } = self;
+        let kernel = match maker {
+            Maker::Megakernel(kernel) => kernel,
+            Maker::Wavefront(wavefront) => return wavefront.run(index, strip, scene),
+        };
         if let Some(grid) = grid {
             grid.gather(scene, kernel, samples, strip)?;
         } else {

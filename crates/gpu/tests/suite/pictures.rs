@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Subject, flatten, shaders};
+use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
     MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
@@ -117,21 +117,29 @@ impl Case {
 
     /// Its picture by an algorithm, ready to be rendered by the GPU, if there is one.
     pub fn renderer(&self, algorithm: &Algorithm) -> Option<Renderer> {
+        self.scheduled(algorithm, Schedule::Megakernel)
+    }
+
+    fn scheduled(&self, algorithm: &Algorithm, schedule: Schedule) -> Option<Renderer> {
         let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
         let kernels = kernels(algorithm, &flat)?;
-        Some(Renderer::new(kernels, &flat, algorithm, &self.film()).expect("a renderer"))
+        Some(Renderer::new(kernels, &flat, algorithm, &self.film(), schedule).expect("a renderer"))
     }
 
     /// The samples of each pixel by the GPU, if there is one.
     pub fn on_gpu(&self, algorithm: &Algorithm) -> Option<Image> {
-        let renderer = self.renderer(algorithm)?;
+        Some(self.drawn(&self.renderer(algorithm)?))
+    }
+
+    /// The samples of each pixel by a renderer.
+    fn drawn(&self, renderer: &Renderer) -> Image {
         let mut film = self.film();
         for index in 0..SAMPLES {
             let rays = renderer.pass(index, &self.view, &self.sampler, &mut film, || false).expect("a pass");
             let [width, height] = self.desc.film.resolution;
             assert!(rays >= Some((width * height / 4) as u64), "{rays:?}");
         }
-        Some(film.develop().expect("a picture"))
+        film.develop().expect("a picture")
     }
 
     /// The first samples of each pixel by the CPU.
@@ -364,6 +372,23 @@ fn what_algorithms_have_no_kernel_for_is_refused() {
 #[test]
 fn paths_have_the_picture_of_the_cpu() {
     compare_all(&DRAWN, |case| Algorithm::Path(case.path()));
+}
+
+/// Stages are functions of the megakernel, but compilers may round their sums otherwise.
+#[test]
+fn a_wavefront_has_the_picture_of_the_megakernel() {
+    for (name, case) in [("cornell-box", Case::named("cornell-box")), ("medley", Case::of_text(MEDLEY))] {
+        let algorithm = Algorithm::Path(case.path());
+        let both = [Schedule::Megakernel, Schedule::Wavefront];
+        let [Some(mega), Some(wave)] = both.map(|schedule| case.scheduled(&algorithm, schedule)) else {
+            return;
+        };
+        let [mega, wave] = [mega, wave].map(|renderer| case.drawn(&renderer));
+        let apart = mega.values().zip(wave.values()).filter(|(a, b)| (a - b).abs() > 1e-4 * a.max(0.01));
+        let share = apart.count() as f64 / mega.values().count() as f64;
+        println!("{name}: {share:.1e} apart");
+        assert!(share <= 0.002 && mega.values().sum::<f32>() > 0.0, "{name}: {share}");
+    }
 }
 
 /// What kernels do not draw is named, and found in the text.

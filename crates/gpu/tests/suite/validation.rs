@@ -86,6 +86,7 @@ fn kernels_are_valid() {
         }
         add(&"media", shaders::pixels(&vol_path, Parts { media: true, ..parts }));
         add(&"chains", shaders::chains(parts));
+        shaders::wavefront(parts).into_iter().for_each(|source| add(&"wavefront", source));
         add(&"other light", shaders::light(&path, parts, true));
         shaders::reservoirs(parts).into_iter().for_each(|source| add(&"reservoirs", source));
     }
