@@ -33,8 +33,8 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
-    /// The algorithm of a description, for a film in a colour space; `seed` is that of what it draws
-    /// beside the numbers of samplers. The error says what kernels do not have.
+    /// The algorithm of a description, for a film in a colour space; `seed` is that of what it
+    /// draws beside the numbers of samplers. The error says what kernels do not have.
     pub fn new(desc: &IntegratorDesc, space: &'static RgbColorSpace, seed: u32) -> Result<Self, String> {
         let name = desc.name();
         let bounded = |max_depth: u32| {

@@ -1,6 +1,6 @@
 //! Light paths: the offset of their random numbers, that of the choice of the light where they
-//! begin, which is in proportion to power, how many of them there are in a pass for each sample of a
-//! pixel, whether a surface may lie beyond the scene's sphere, the centre and radius of that, and
+//! begin, which is in proportion to power, how many of them there are in a pass for each sample of
+//! a pixel, whether a surface may lie beyond the scene's sphere, the centre and radius of that, and
 //! the least and the largest film position that they reach.
 
 use film::Film;

@@ -32,8 +32,8 @@ impl SceneBuffers {
         self.kernels.device()
     }
 
-    /// Starts a kernel in this many workgroups, after all that was started before. `batch` says what
-    /// it does, `results` are what it makes.
+    /// Starts a kernel in this many workgroups, after all that was started before. `batch` says
+    /// what it does, `results` are what it makes.
     pub fn run(
         &self,
         kernel: &Kernel,
