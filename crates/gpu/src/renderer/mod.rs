@@ -4,6 +4,8 @@
 //! strip need little memory however large the picture is. The CPU adds them to the film, with the
 //! wavelengths and weights that it computes from the same random numbers. So it adds the splats of
 //! light paths, a list with room for the most that those of a strip have.
+//!
+//! Metropolis light transport has [`Chains`] beside, and photon mapping [`Photons`] before.
 
 mod chains;
 mod kernels;

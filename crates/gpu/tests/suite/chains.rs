@@ -14,15 +14,16 @@ use crate::realtime::colors;
 use crate::reservoirs::{apart, means, moments};
 use crate::texts::MEDLEY;
 
-const SIZE: [u32; 2] = [32, 24];
+/// As many pixels as mutations of eight chains, which a driver in software runs at once.
+const SIZE: [u32; 2] = [56, 40];
 const MAX_DEPTH: u32 = 4;
 
 /// Passes of the chains, each of which is a picture of its own.
-const PASSES: u32 = 384;
+const PASSES: u32 = 96;
 
 /// Pictures by paths, and the samples of each pixel of them.
 const PICTURES: u32 = 32;
-const SAMPLES: u32 = 64;
+const SAMPLES: u32 = 12;
 
 /// A pass by the GPU.
 fn pass(case: &Case, renderer: &Renderer, index: u32) -> Image {
