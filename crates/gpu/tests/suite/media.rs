@@ -7,9 +7,10 @@ use description::{MediumKind, PathDesc, TemperatureDesc, VoxelsDesc};
 use image::Image;
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use testkit::{Moments, welch_test};
 
 use crate::pictures::{Case, SAMPLES};
+use crate::realtime::colors;
+use crate::reservoirs::{apart, means, moments};
 
 /// A camera in fog that glows, a lamp that an interface surrounds, and glass with a liquid in a
 /// liquid: media that need no random numbers but the sampler's.
@@ -117,11 +118,13 @@ fn voxels() -> VoxelsDesc {
     }
 }
 
+const SIZE: [i32; 2] = [32, 24];
+
 /// The case of [`VARIED`], which has no file for its voxels.
 fn varied() -> Case {
     let mut case = Case::of_text(VARIED);
     let mut desc = case.desc.clone();
-    desc.film.resolution = [32, 24];
+    desc.film.resolution = SIZE;
     for (_, medium) in desc.media.iter_mut() {
         if let MediumKind::Homogeneous { coefficients, .. } = &medium.value.kind {
             medium.value.kind = MediumKind::NanoVdb {
@@ -139,18 +142,6 @@ fn varied() -> Case {
     case
 }
 
-/// The means of blocks of eight by eight pixels, and of all.
-fn means(picture: &Image) -> Vec<f64> {
-    let columns = picture.width() as usize / 8;
-    let mut sums = vec![0.0; columns * (picture.height() as usize / 8)];
-    for (i, value) in picture.values().enumerate() {
-        let (x, y) = (i / 3 % picture.width() as usize, i / 3 / picture.width() as usize);
-        sums[y / 8 * columns + x / 8] += f64::from(value);
-    }
-    sums.push(sums.iter().sum::<f64>() / sums.len() as f64);
-    sums
-}
-
 fn settings(max_depth: u32) -> Algorithm {
     Algorithm::VolPath(PathDesc { max_depth, ..PathDesc::default() })
 }
@@ -165,22 +156,18 @@ fn homogeneous_media_have_the_picture_of_the_cpu() {
 fn media_that_vary_have_the_mean_of_the_cpu() {
     let mut case = varied();
     let algorithm = settings(4);
-    let [mut gpu, mut cpu] = [Vec::new(), Vec::new()];
-    for seed in 0..24 {
-        case.sampler = Sampler::Independent(Independent::new(SAMPLES, 100 + seed));
-        let Some(picture) = case.on_gpu(&algorithm) else { return };
-        for (moments, picture) in [(&mut gpu, picture), (&mut cpu, case.on_cpu(&algorithm, SAMPLES))]
-            as [(&mut Vec<Moments>, Image); 2]
-        {
-            let means = means(&picture);
-            moments.resize(means.len(), Moments::default());
-            moments.iter_mut().zip(means).for_each(|(moments, mean)| moments.push(mean));
-        }
+    if case.renderer(&algorithm).is_none() {
+        return;
     }
-    let error = (gpu[12].variance_of_mean() + cpu[12].variance_of_mean()).sqrt();
-    println!("all {:.4} of {:.4}, error {error:.4}", gpu[12].mean, cpu[12].mean);
-    let wrong: Vec<String> =
-        gpu.iter().zip(&cpu).filter_map(|(a, b)| welch_test(a, b, gpu.len()).err()).collect();
+    let mut pictures = |draw: &dyn Fn(&Case) -> Image| {
+        moments((0..24).map(|seed| {
+            case.sampler = Sampler::Independent(Independent::new(SAMPLES, 100 + seed));
+            means(&colors(&draw(&case)), SIZE[0] as usize)
+        }))
+    };
+    let gpu = pictures(&|case| case.on_gpu(&algorithm).expect("a picture"));
+    let cpu = pictures(&|case| case.on_cpu(&algorithm, SAMPLES));
+    let wrong = apart(&gpu, &cpu);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
