@@ -3,6 +3,7 @@
 //! Tests that need a GPU, or a driver that is one in software, end early and say so where there is
 //! none; with `ALHAZEN_GPU=require` in the environment they fail instead.
 
+mod dynamic;
 mod faults;
 mod laws;
 mod openpbr;
