@@ -3,17 +3,18 @@
 use std::sync::Arc;
 
 use description::schema::Settings;
-use description::{Diagnostic, SceneDesc};
-use gpu::AimError;
-use math::Bounds2i;
+use description::{Diagnostic, SceneDesc, Span};
+use geometry::GeometryId;
+use gpu::{AimError, Algorithm, Flat, MovingError};
+use math::{Bounds2i, Point3};
 use sampling::Sampler;
-use scene::{Scene, View};
+use scene::{MoveError, Scene, View};
 use spectrum::RgbColorSpace;
 
 use crate::device::{Flattened, Kernels, failed, flattened};
 use crate::sketch::coarse;
 
-pub use gpu::{GpuError, Picture, Stages, Weights};
+pub use gpu::{GpuError, Picture, Stages, Update, Weights};
 
 /// A scene on a device.
 pub struct Realtime {
@@ -42,6 +43,31 @@ impl Realtime {
         kernels: &Arc<Kernels>,
         shared: Option<Weights>,
     ) -> Result<Self, Vec<Diagnostic>> {
+        Self::made(scene, desc, kernels, |flat, algorithm| {
+            gpu::Realtime::new(kernels.clone(), &flat, algorithm, shared).map_err(|error| failed(&error))
+        })
+    }
+
+    /// The same, of a scene whose sets of spheres may move. The error says what kernels do not draw
+    /// or move.
+    pub fn animated(
+        scene: &Arc<Scene>,
+        desc: &SceneDesc,
+        kernels: &Arc<Kernels>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        Self::made(scene, desc, kernels, |flat, algorithm| {
+            let made = gpu::Realtime::animated(kernels.clone(), flat, scene.world(), algorithm);
+            made.map_err(|error| Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE))
+        })
+    }
+
+    /// With an engine that is made of what is taken to the device.
+    fn made(
+        scene: &Arc<Scene>,
+        desc: &SceneDesc,
+        kernels: &Arc<Kernels>,
+        engine: impl FnOnce(Flat, &Algorithm) -> Result<gpu::Realtime, Diagnostic>,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
         let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
@@ -54,15 +80,34 @@ impl Realtime {
             let message = format!("the engine for GPUs draws {what} only as a whole picture");
             return Err(vec![Diagnostic::warning("not-on-gpu", message, desc.integrator.origin.span)]);
         }
-        let engine = gpu::Realtime::new(kernels.clone(), &flat, &algorithm, shared)
-            .map_err(|error| vec![failed(&error)])?;
         Ok(Self {
             scene: scene.clone(),
-            engine,
+            engine: engine(flat, &algorithm).map_err(|error| vec![error])?,
             pixels: film.pixel_bounds(),
             color_space: film.color_space(),
             planned: Sampler::samples_per_pixel(&sampler),
         })
+    }
+
+    /// Moves the spheres of some sets of an [animated](Self::animated) scene, each given by its
+    /// geometry and all its centres in render space, on the device alone: the scene stays.
+    ///
+    /// # Errors
+    /// A geometry is no set of spheres, or is one within instances, or shines; or the centres do
+    /// not fit; or the device fails.
+    pub fn move_spheres<'a>(
+        &mut self,
+        moved: impl IntoIterator<Item = (GeometryId, &'a [Point3])>,
+        update: Update,
+    ) -> Result<(), MovingError> {
+        let moved: Vec<_> = moved.into_iter().collect();
+        for (id, _) in &moved {
+            let entry = self.scene.geometries().get(id.0 as usize);
+            if entry.is_some_and(|entry| entry.first_light.is_some()) {
+                return Err(MovingError::Move(MoveError::Lights(*id)));
+            }
+        }
+        self.engine.move_spheres(moved, update)
     }
 
     /// Whether it shows this scene.
@@ -98,6 +143,11 @@ impl Realtime {
     /// picture has. The picture, if it is wanted.
     pub fn resting(&mut self, samples: u32, is_shown: bool) -> Result<Option<Picture>, GpuError> {
         self.engine.resting(samples.min(self.planned.saturating_sub(self.engine.rested())), is_shown)
+    }
+
+    /// The light of the last frame in motion before it is filtered, as colours.
+    pub fn unfiltered(&self) -> Result<Vec<[f32; 3]>, GpuError> {
+        self.engine.unfiltered()
     }
 
     /// The samples of each pixel of the picture at rest, and how many it will have.

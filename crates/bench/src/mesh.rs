@@ -168,9 +168,10 @@ fn radius(d: DVec3, shift: f64) -> f64 {
 
 /// The generator SplitMix64 ([Steele et al. 2014]): the same numbers wherever the meshes and rays
 /// are made.
-pub(crate) struct SplitMix64(pub u64);
+pub struct SplitMix64(pub u64);
 
 impl SplitMix64 {
+    /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = self.0;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::Overrides;
+use alhazen::description::Diagnostic;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
 use view::planet::{Outing, PlanetReport, Spent};
@@ -112,19 +113,45 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
 fn planet(arguments: &View, overrides: &Overrides) -> Result<ExitCode, Failure> {
     let spheres = arguments.planet.unwrap_or_default() as usize;
     let overrides = Overrides { samples_per_pixel: None, ..overrides.clone() };
-    let outing = Outing::new(spheres, &overrides, arguments.spp.unwrap_or(1)).map_err(Failure::Usage)?;
+    let outing = Outing::new(spheres, &overrides, arguments.spp.unwrap_or(1));
+    let mut outing = outing.map_err(Failure::Usage)?;
+    let refusals = take_to_device(&mut outing, arguments);
     if !arguments.headless {
+        for refusal in refusals {
+            say(refusal.message)?;
+        }
         return planet_window(arguments, outing);
     }
-    let mut outing = outing;
     let report = PlanetReport::of_walk(&mut outing, arguments.frames, &Control::default());
     let report = report?;
     if arguments.json {
-        say(report.to_json())?
+        let mut json = report.to_json();
+        json["not_on_gpu"] = refusals.iter().map(|refusal| refusal.message.as_str()).collect();
+        say(json)?
     } else {
-        say(text_of_planet(&report))?
+        say(text_of_planet(&report))?;
+        for refusal in refusals {
+            say(refusal.message)?;
+        }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Takes a planet to the chosen device. What is returned says why the CPU keeps it although another
+/// was chosen.
+#[cfg(feature = "gpu")]
+fn take_to_device(outing: &mut Outing, arguments: &View) -> Vec<Diagnostic> {
+    let moved = crate::device::kernels(arguments.device).and_then(|kernels| match kernels {
+        Some(kernels) => outing.move_to(&kernels),
+        None => Ok(()),
+    });
+    moved.err().unwrap_or_default()
+}
+
+/// Without the feature there is only the CPU.
+#[cfg(not(feature = "gpu"))]
+fn take_to_device(_: &mut Outing, _: &View) -> Vec<Diagnostic> {
+    Vec::new()
 }
 
 #[cfg(feature = "view")]
@@ -208,7 +235,7 @@ fn text_of_planet(report: &PlanetReport) -> String {
          {} move\n  \
          frame time       median {}, 95 % {}, at most {}: {:.1} frames per second\n  \
          of which         {} simulate, {} move the spheres, {} render\n  \
-         rays             {:.2} million per second",
+         rays             {:.2} million per second, by {}",
         report.integrator,
         report.frames.len(),
         report.samples,
@@ -222,5 +249,6 @@ fn text_of_planet(report: &PlanetReport) -> String {
         ms(0.5, |spent| spent.moving),
         ms(0.5, |spent| spent.rendering),
         report.rays_per_second() / 1e6,
+        report.device.as_deref().unwrap_or("the CPU"),
     )
 }

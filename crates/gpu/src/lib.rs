@@ -6,12 +6,15 @@
 //! *laws*, which are physics and are translated from Rust, and *plumbing*, which is written in
 //! WGSL.
 //!
+//! [`Moving`] spheres have a tree that the GPU builds for each picture.
+//!
 //! A [`Rasterizer`] draws scenes triangle by triangle instead, by the raster pipeline.
 
 mod algorithm;
 mod bvh;
 mod commands;
 mod device;
+mod dynamic;
 mod flatten;
 mod raster;
 mod realtime;
@@ -21,6 +24,7 @@ pub mod shaders;
 pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
 pub use device::{Buffer, Device, GpuError, Kernel};
+pub use dynamic::{Moving, MovingError, Sorter, Start, Update};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};

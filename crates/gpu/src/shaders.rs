@@ -226,6 +226,38 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     with_laws(&[&PLUMBING[..], &[direct, &has, &surfaces], texts].concat())
 }
 
+/// The text of a file of `shaders/dynamic/`.
+macro_rules! dynamic {
+    ($($name:literal)*) => { [$(include_str!(concat!("../shaders/dynamic/", $name, ".wgsl"))),*].concat() };
+}
+
+/// The kernels that sort keys by a digit, in the order in which they run.
+pub fn sort() -> [String; 3] {
+    [
+        dynamic! { "plan" "digit" "count" },
+        dynamic! { "plan" "digit" "scan" "sum" },
+        dynamic! { "plan" "digit" "scan" "scatter" },
+    ]
+}
+
+/// The kernel that moves spheres.
+pub fn place() -> String {
+    dynamic! { "plan" "box" "place" }
+}
+
+/// The kernels that build a tree, but for the sort after the first, with their names.
+pub fn tree() -> [(&'static str, String); 7] {
+    [
+        ("codes", dynamic! { "plan" "box" "codes" }),
+        ("split", dynamic! { "plan" "binary" "split" }),
+        ("leaves", dynamic! { "plan" "box" "leaves" }),
+        ("pyramid", dynamic! { "plan" "box" "pyramid" }),
+        ("bounds", dynamic! { "plan" "box" "binary" "bounds" }),
+        ("collapse", dynamic! { "plan" "box" "binary" "children" "collapse" }),
+        ("quantise", dynamic! { "plan" "box" "binary" "children" "quantise" }),
+    ]
+}
+
 /// The shaders of the raster pipeline, one module.
 pub fn raster() -> String {
     plumbing! { "raster" "raster_surfaces" "raster_sky" "raster_water" "raster_sprites" }.join("\n")

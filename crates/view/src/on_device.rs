@@ -114,7 +114,8 @@ impl OnDevice {
     }
 }
 
-fn frame(realtime: &Realtime, aim: Aim, n: u32, picture: Picture, time: Duration) -> Frame {
+/// A picture, in pixels `n` times as wide and high, that took so long.
+pub fn frame(realtime: &Realtime, aim: Aim, n: u32, picture: Picture, time: Duration) -> Frame {
     let (samples, planned) = realtime.progress();
     let Aim { view, pixels: bounds } = aim;
     let of_device = picture.stages;

@@ -24,6 +24,8 @@ usage: cargo xtask TASK
              the ray engine beside Embree, on a million triangles
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
+  bench gpu [--help | OPTIONS]
+             a GPU: rays, triangles and moving spheres in a second, and beside the CPU
   bench forest
              memory and time of forests of 10⁶ to 10⁸ triangles
   wheel      build the Python package, into target/wheels
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(workspace()),
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
+        ["bench", "gpu", ref arguments @ ..] => bench::gpu(workspace(), arguments),
         ["bench", "forest"] => bench::forest(workspace()),
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),

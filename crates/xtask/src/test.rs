@@ -14,7 +14,7 @@ struct Step {
 }
 
 /// What is checked beyond the program of a plain `cargo build`, and what of it is tested.
-const CHECKED: &str = "alhazen-cli/gpu,alhazen-cli/usd,alhazen-cli/view";
+const CHECKED: &str = "alhazen-cli/gpu,alhazen-cli/usd,alhazen-cli/view,alhazen-bench/gpu";
 const TESTED: &str = "alhazen-cli/gpu,alhazen-cli/usd";
 
 /// All have the profile of tests, so that build scripts and procedural macros are built once. Lints

@@ -50,6 +50,31 @@ fn a_walk_over_a_planet_is_reported() {
 }
 
 #[test]
+fn a_planet_is_rendered_by_a_gpu_or_the_cpu_says_why_not() {
+    if cfg!(not(feature = "gpu")) {
+        return;
+    }
+    let folder = Folder::new("view");
+    let settings = ["--set", "film.xresolution=16", "--set", "film.yresolution=12"];
+    let arguments = ["view", "--planet", "100", "--headless", "--frames", "2", "--json", "--device", "gpu"];
+    let arguments = [&arguments[..], &settings].concat();
+    let json = folder.alhazen(&arguments).expect(0).json();
+    let reasons = json["not_on_gpu"].as_array().unwrap();
+    assert_eq!(json["device"] == "CPU", !reasons.is_empty(), "{json}");
+    assert_eq!(json["frames"], 2);
+    // The loader of Vulkan finds no driver.
+    let mut command = folder.command(&arguments);
+    command.env("VK_DRIVER_FILES", "none").env("VK_ICD_FILENAMES", "none");
+    let Finished { code, out, .. } = command.output().unwrap().into();
+    assert_eq!(code, Some(0), "{out}");
+    if cfg!(target_os = "linux") {
+        let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+        assert_eq!(json["device"], "CPU", "{json}");
+        assert!(json["not_on_gpu"][0].as_str().unwrap().contains("no GPU"), "{json}");
+    }
+}
+
+#[test]
 fn a_split_view_reports_both_sides() {
     let folder = Folder::with_scene("view");
     folder.alhazen(&["view", "scene.pbrt", "--headless", "-o", "both.png"]).expect(2);

@@ -6,6 +6,8 @@ use std::ops::Range;
 use geometry::PlainTree;
 use math::Bounds3;
 
+use super::MOST_PRIMITIVES;
+
 /// A binary tree.
 #[derive(Debug, Default)]
 pub struct Binary {
@@ -70,11 +72,23 @@ impl Binary {
         self.nodes.len() - 1
     }
 
+    /// Adds a leaf, in halves where a reference cannot have that many primitives: so many are at
+    /// one place. Its index.
+    fn add_leaf(&mut self, bounds: Bounds3, primitives: Range<usize>) -> usize {
+        if primitives.len() <= MOST_PRIMITIVES {
+            return self.push(bounds, Below::Primitives(primitives));
+        }
+        let middle = primitives.start + primitives.len() / 2;
+        let halves = [primitives.start..middle, middle..primitives.end];
+        let halves = halves.map(|half| self.add_leaf(bounds, half));
+        self.push(bounds, Below::Nodes(halves))
+    }
+
     /// Adds what is below a wide node; its index.
     fn join(&mut self, tree: &PlainTree, node: usize) -> usize {
         let children = tree.nodes[node].iter().map(|child| match child.node {
             Some(node) => self.join(tree, node),
-            None => self.push(child.bounds, Below::Primitives(child.primitives.clone())),
+            None => self.add_leaf(child.bounds, child.primitives.clone()),
         });
         let mut open: Vec<usize> = children.collect();
         while open.len() > 1 {

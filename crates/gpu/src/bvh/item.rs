@@ -38,6 +38,12 @@ pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Word
     Ok([x, y, z, inside, [INSTANCE, 0, 0, 0]])
 }
 
+/// The geometry and the primitive of the first of some items; `None` for an instance.
+pub fn ids(items: &[Words]) -> Option<(GeometryId, u32)> {
+    let [kind, geometry, primitive, _] = items[QUADRUPLES - 1];
+    (kind != INSTANCE).then_some((GeometryId(geometry), primitive))
+}
+
 /// A shape of a geometry.
 pub fn shape(
     world: &World,

@@ -11,13 +11,19 @@ mod binary;
 mod item;
 mod node;
 
+use std::ops::Range;
+
 use binary::Binary;
 use geometry::{GeometryId, GroupId, InstanceId, PlainItem, PlainTree, World};
 use math::Bounds3;
 use node::Writer;
 
 /// The entries of the stack of `shaders/trace.wgsl`.
-const STACK: usize = 128;
+pub(crate) const STACK: usize = 128;
+
+/// How many bits of a leaf's reference are the number of its primitives, and the most of these.
+const COUNT_BITS: u32 = 5;
+const MOST_PRIMITIVES: usize = (1 << COUNT_BITS) - 1;
 
 /// Four words of a buffer.
 pub type Words = [u32; 4];
@@ -34,6 +40,8 @@ pub struct Bvh {
     pub items: Vec<Words>,
     /// Where rays begin.
     pub top: Top,
+    /// The items of the top group that have bounds.
+    pub(crate) bounded: Range<usize>,
 }
 
 /// Where rays begin.
@@ -107,6 +115,7 @@ impl Bvh {
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
         let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         stack += writer.stack;
+        self.bounded = first..first + items.len();
         let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
         if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {
             return Err(match item {
@@ -124,6 +133,23 @@ impl Bvh {
             });
         }
         Ok(Group { roots: [root, item_root], unbounded: open, size, stack })
+    }
+
+    /// The geometry and the primitive of an item; `None` for an instance.
+    pub(crate) fn shape(&self, item: usize) -> Option<(GeometryId, u32)> {
+        item::ids(&self.items[item::QUADRUPLES * item..])
+    }
+
+    /// Replaces the tree of the top group's items by room for another one, of at most so many
+    /// nodes. The index of its root.
+    pub(crate) fn make_room(&mut self, nodes: usize) -> u32 {
+        // It was the last tree that was written, its root first.
+        let [_, root] = self.top.roots;
+        let first = if node::is_leaf(root) { self.nodes.len() / 6 } else { root as usize };
+        self.nodes.truncate(6 * first);
+        self.nodes.resize(6 * (first + nodes), [0; 4]);
+        self.top.roots[1] = first as u32;
+        first as u32
     }
 }
 

@@ -12,8 +12,8 @@
 
 use math::Bounds3;
 
-use super::Words;
 use super::binary::{Below, Binary};
+use super::{COUNT_BITS, MOST_PRIMITIVES, Words};
 
 /// Children of a node.
 const WIDTH: usize = 8;
@@ -23,17 +23,19 @@ const WIDTH: usize = 8;
 pub const TRIANGLES: u32 = 1 << 31;
 pub const ITEMS: u32 = 3 << 30;
 
-/// How many bits of a leaf's reference are the number of its primitives.
-const COUNT_BITS: u32 = 5;
-
 /// A leaf of nothing.
 const EMPTY: u32 = TRIANGLES;
 
 /// The reference of a leaf; `None` where it has too many primitives, or those before it are too
 /// many.
 pub fn leaf(bits: u32, first: usize, count: usize) -> Option<u32> {
-    let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
+    let fits = first < 1 << (30 - COUNT_BITS) && count <= MOST_PRIMITIVES;
     fits.then_some(bits | (first as u32) << COUNT_BITS | count as u32)
+}
+
+/// Whether a reference is one to a leaf.
+pub fn is_leaf(reference: u32) -> bool {
+    reference & TRIANGLES != 0
 }
 
 /// What writes trees into a buffer of nodes.

@@ -9,6 +9,9 @@
 //! Direct light of first surfaces is that of the algorithm, or of samples that pixels and frames
 //! share ([`Weights`]).
 //!
+//! Spheres may move from picture to picture ([`Realtime::animated`]): the first kernels of a
+//! picture then build their tree.
+//!
 //! When the camera rests, samples of the algorithm are added up, and the picture goes over from the
 //! filtered one to their mean: frames that share samples have errors in common, which a mean keeps.
 
@@ -19,7 +22,8 @@ mod reservoirs;
 use std::sync::Arc;
 use std::time::Duration;
 
-use math::Bounds2i;
+use geometry::{GeometryId, World};
+use math::{Bounds2i, Point3};
 use sampling::sampler::Independent;
 use scene::View;
 
@@ -27,6 +31,7 @@ use crate::Flat;
 use crate::algorithm::Algorithm;
 use crate::commands::Commands;
 use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::dynamic::{Moving, MovingError, Update};
 use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
@@ -42,6 +47,7 @@ const WORKGROUP: u32 = 8;
 /// A stage of a frame, as an index of times.
 const TRACE: usize = 0;
 const FILTER: usize = 1;
+const BUILD: usize = 2;
 
 /// The levels of the wavelet transform.
 const LEVELS: u32 = 5;
@@ -68,6 +74,9 @@ pub struct Realtime {
     scene: [Buffer; 6],
     parameters: Buffer,
     canvas: Option<Canvas>,
+    /// The spheres that move, and what is to be done with their tree before the next picture.
+    moving: Option<Moving>,
+    update: Option<Update>,
     /// The camera now, and that of the last frame in motion, if it is of this canvas.
     eye: Eye,
     last: Option<Eye>,
@@ -96,6 +105,8 @@ pub struct Stages {
     pub trace: Duration,
     /// From the light of samples to colours.
     pub filter: Duration,
+    /// The tree of spheres that move.
+    pub build: Duration,
 }
 
 /// Why a scene cannot be shown from somewhere.
@@ -162,6 +173,8 @@ impl Realtime {
             scene,
             parameters,
             canvas: None,
+            moving: None,
+            update: None,
             eye: Eye::default(),
             last: None,
             half: 0,
@@ -169,6 +182,42 @@ impl Realtime {
             moved: 0,
             kernels,
         })
+    }
+
+    /// Takes a scene to the device, whose sets of spheres may move: those outside of instances.
+    /// `world` is that of the scene.
+    pub fn animated(
+        kernels: Arc<Kernels>,
+        mut flat: Flat,
+        world: &World,
+        algorithm: &Algorithm,
+    ) -> Result<Self, MovingError> {
+        let moving = Moving::new(&kernels, world, &mut flat.bvh)?;
+        flat.head.top = flat.bvh.top;
+        let (moving, update) = (Some(moving), Some(Update::Rebuild));
+        Ok(Self { moving, update, ..Self::new(kernels, &flat, algorithm, None)? })
+    }
+
+    /// Moves the spheres of some sets, each given by its geometry and all its centres in render
+    /// space, before the next picture; a picture at rest begins again.
+    ///
+    /// # Errors
+    /// The scene was not made for that, a geometry is no set of spheres that may move, or the
+    /// centres do not fit; or the device fails.
+    pub fn move_spheres<'a>(
+        &mut self,
+        moved: impl IntoIterator<Item = (GeometryId, &'a [Point3])>,
+        update: Update,
+    ) -> Result<(), MovingError> {
+        let Some(moving) = &self.moving else { return Err(MovingError::Refused("a scene at rest")) };
+        // A tree that is to be built has to be, before it can be refitted.
+        let update = if self.update == Some(Update::Rebuild) { Update::Rebuild } else { update };
+        let size = moving.place(self.kernels.device(), moved)?;
+        // Errors of rays are bounded by the largest coordinate.
+        self.head.top.size = self.head.top.size.max(size);
+        self.update = Some(update);
+        self.rested = 0;
+        Ok(())
     }
 
     /// The device.
@@ -235,6 +284,7 @@ impl Realtime {
         }
         let picture = self.develop(commands, canvas, from, groups)?;
         self.moved = self.moved.wrapping_add(samples);
+        self.update = None;
         self.rested = 0;
         self.last = Some(self.eye);
         Ok(Some(picture))
@@ -254,10 +304,14 @@ impl Realtime {
         let groups = groups(&frame);
         let mut commands = self.begin(canvas, self.head, frame)?;
         self.trace(&mut commands, canvas, groups, None);
-        if !is_shown {
-            return commands.finish().map(|()| None);
-        }
-        self.develop(commands, canvas, &canvas.estimates[0], groups).map(Some)
+        let picture = if is_shown {
+            Some(self.develop(commands, canvas, &canvas.estimates[0], groups)?)
+        } else {
+            commands.finish()?;
+            None
+        };
+        self.update = None;
+        Ok(picture)
     }
 
     /// The light of the last frame in motion as its samples have found it, before it is filtered:
@@ -274,7 +328,15 @@ impl Realtime {
         let device = self.kernels.device();
         device.write(&self.scene[0], &[head])?;
         device.write(&self.parameters, &[frame])?;
-        Ok(Commands::new(device, &canvas.timer, 2))
+        let mut commands = Commands::new(device, &canvas.timer, 3);
+        if let (Some(moving), Some(update)) = (&self.moving, self.update) {
+            let [_, nodes, _, items, ..] = &self.scene;
+            let mut start = |kernel: &Kernel, buffers: &[&Buffer], groups: u32| {
+                commands.run(BUILD, kernel, buffers, [groups, 1]);
+            };
+            moving.run(device, update, [items, nodes], &mut start)?;
+        }
+        Ok(commands)
     }
 
     /// Finds the light of the frame, direct light by shared samples if there are any.
@@ -308,7 +370,7 @@ impl Realtime {
         Ok(Picture {
             pixels: colors.as_chunks().0.iter().map(|color| color.map(f32::from_bits)).collect(),
             rays: rays.iter().map(|&rays| u64::from(rays)).sum(),
-            stages: Stages { trace: times[TRACE], filter: times[FILTER] },
+            stages: Stages { trace: times[TRACE], filter: times[FILTER], build: times[BUILD] },
         })
     }
 }

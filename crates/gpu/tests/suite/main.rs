@@ -4,6 +4,7 @@
 //! none; with `ALHAZEN_GPU=require` in the environment they fail instead.
 
 mod chains;
+mod dynamic;
 mod faults;
 mod laws;
 mod media;

@@ -151,3 +151,21 @@ Shape "bilinearmesh" "point3 P" [ -4 2 -3  4 2 -3  -4 2 4  4 2 4 ]
 Translate 0.6 0 0.8
 Shape "sphere" "float radius" 0.6
 "#;
+
+/// Sets of spheres, of which some are mirrors and some are glass, with sun and sky.
+pub const MOVING: &str = r#"
+LookAt 0 -6 2.5   0 0 0.4   0 0 1
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "distant" "rgb L" [ 3.1 2.85 2.5 ] "point3 from" [ 0.75 -0.9 0.62 ] "point3 to" [ 0 0 0 ]
+LightSource "infinite" "rgb L" [ 0.2 0.3 0.47 ]
+Material "diffuse" "rgb reflectance" [ 0.4 0.5 0.3 ]
+Shape "spheres" "float radius" 50 "point3 P" [ 0 0 -50 ]
+Material "diffuse" "rgb reflectance" [ 0.7 0.3 0.2 ]
+Shape "spheres" "float radius" [ 0.3 0.4 0.2 0.35 0.25 0.3 ]
+    "point3 P" [ -1.5 0 0.3  -0.6 1.2 0.4  0.2 -1 0.2  1.1 0.6 0.35  1.8 -0.4 0.25  0.4 0.4 0.9 ]
+Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "float roughness" 0
+Shape "spheres" "float radius" 0.5 "point3 P" [ -0.7 -0.6 0.5  0.9 1.6 0.5 ]
+Material "dielectric"
+Shape "spheres" "float radius" 0.4 "point3 P" [ 0.7 -0.8 0.6 ]
+"#;

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 use std::sync::OnceLock;
 
-use alhazen_gpu::{Bvh, BvhError, Device, GpuError, Kernel, shaders};
+use alhazen_gpu::{Buffer, Bvh, BvhError, Device, GpuError, Kernel, Kernels, shaders};
 use geometry::*;
 use math::*;
 use sampling::warp::sample_uniform_sphere;
@@ -31,33 +31,49 @@ pub const KERNEL: &str = "
     }";
 
 /// A hit, or none, and whether there is any.
-type Traced = (Option<Hit>, bool);
+pub type Traced = (Option<Hit>, bool);
 
-/// A device and the kernel, which is compiled once.
-type Tracer = (Device, Kernel);
+/// A device with its kernels, and the kernel above, which is compiled once.
+pub type Tracer = (Kernels, Kernel);
 
-fn tracer() -> Option<&'static Tracer> {
+pub fn tracer() -> Option<&'static Tracer> {
     static TRACER: OnceLock<Option<Tracer>> = OnceLock::new();
     let make = || {
         let device = crate::device()?;
         let kernel = device.kernel("trace", &format!("{}{KERNEL}", shaders::TRACE));
-        Some((device, kernel.unwrap_or_else(|error| panic!("{error}"))))
+        let kernel = kernel.unwrap_or_else(|error| panic!("{error}"));
+        Some((Kernels::new(device), kernel))
     };
     TRACER.get_or_init(make).as_ref()
 }
 
-fn on_gpu((device, kernel): &Tracer, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
-    let bvh = Bvh::new(world, &|_| false).expect("a world of triangles");
-    let numbers = |(ray, end): &(Ray, f32)| [ray.o.x, ray.o.y, ray.o.z, *end, ray.d.x, ray.d.y, ray.d.z, 0.0];
-    let buffers = [
+/// The buffers of a world: where rays begin, nodes, triangles and items.
+pub fn buffers(device: &Device, bvh: &Bvh) -> Result<[Buffer; 4], GpuError> {
+    Ok([
         device.buffer("world", &[bvh.top])?,
         device.buffer("nodes", &bvh.nodes)?,
         device.buffer("triangles", &bvh.triangles)?,
         device.buffer("items", &bvh.items)?,
-        device.buffer("rays", &rays.iter().map(numbers).collect::<Vec<_>>())?,
-        device.buffer("hits", &vec![[0u32; 8]; rays.len()])?,
+    ])
+}
+
+fn on_gpu(tracer: &Tracer, world: &World, rays: &[(Ray, f32)]) -> Result<Vec<Traced>, GpuError> {
+    let bvh = Bvh::new(world, &|_| false).expect("a world of triangles");
+    traced(tracer, &buffers(tracer.0.device(), &bvh)?, rays)
+}
+
+/// The hits of rays through the buffers of a world.
+pub fn traced(
+    (kernels, kernel): &Tracer,
+    [a, b, c, d]: &[Buffer; 4],
+    rays: &[(Ray, f32)],
+) -> Result<Vec<Traced>, GpuError> {
+    let device = kernels.device();
+    let numbers = |(ray, end): &(Ray, f32)| [ray.o.x, ray.o.y, ray.o.z, *end, ray.d.x, ray.d.y, ray.d.z, 0.0];
+    let [e, f] = [
+        &device.buffer("rays", &rays.iter().map(numbers).collect::<Vec<_>>())?,
+        &device.buffer("hits", &vec![[0u32; 8]; rays.len()])?,
     ];
-    let [a, b, c, d, e, f] = &buffers;
     device.run(kernel, &[a, b, c, d, e, f], [rays.len().div_ceil(64) as u32, 1, 1])?;
     let hit = |[t, u, v, geometry, primitive, instance, found, any]: [u32; 8]| {
         let path = if instance == u32::MAX {
@@ -130,7 +146,7 @@ fn ball(n: u32) -> TriangleMesh {
 }
 
 /// A field of separate triangles, of which some are long and some tiny.
-fn soup(count: usize) -> TriangleMesh {
+pub fn soup(count: usize) -> TriangleMesh {
     let mut random = Random::new(3);
     let mut point = |scale: f32| {
         let [a, b] = random.get_2d();
@@ -146,7 +162,7 @@ fn soup(count: usize) -> TriangleMesh {
     mesh(positions, indices.collect())
 }
 
-fn random_rays(count: usize, scale: f32) -> Vec<(Ray, f32)> {
+pub fn random_rays(count: usize, scale: f32) -> Vec<(Ray, f32)> {
     let mut random = Random::new(5);
     let ray = |_| {
         let [a, b] = random.get_2d();

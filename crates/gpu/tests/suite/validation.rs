@@ -108,6 +108,14 @@ fn kernels_of_frames_are_valid() {
 }
 
 #[test]
+fn kernels_of_moving_spheres_are_valid() {
+    let tree = shaders::tree().map(|(_, source)| source);
+    for source in shaders::sort().into_iter().chain(tree).chain([shaders::place()]) {
+        validate(&source).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+#[test]
 fn what_is_wrong_is_found() {
     assert!(validate("fn f() -> f32 { return 1u; }").is_err());
 }

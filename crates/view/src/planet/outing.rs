@@ -5,7 +5,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::Overrides;
+#[cfg(feature = "gpu")]
+use alhazen::description::Diagnostic;
 use alhazen::description::{CameraDesc, TransformDesc};
+#[cfg(feature = "gpu")]
+use alhazen::device::Kernels;
 use alhazen::geometry::GeometryId;
 use alhazen::import::{MemoryAssets, import};
 use alhazen::integrators::{Control, Limits};
@@ -13,6 +17,8 @@ use alhazen::math::{DMat4, Point3, Vec3};
 use planet::{Input, Planet, Substance, Walker, scene};
 use rayon::prelude::*;
 
+#[cfg(feature = "gpu")]
+use super::on_device::OnDevice;
 use crate::step::StepError;
 use crate::world::summary;
 use crate::{Frame, Shot, World};
@@ -30,7 +36,8 @@ const BLAST_DISTANCE: f32 = 5.0;
 pub struct Spent {
     /// Gravity, collisions and the walker.
     pub simulating: Duration,
-    /// Moving the spheres of the scene, and refitting or building their tree.
+    /// Moving the spheres of the scene, and refitting or building their tree; of a GPU, by its
+    /// clock if it has one.
     pub moving: Duration,
     /// Rendering and developing.
     pub rendering: Duration,
@@ -51,6 +58,9 @@ pub struct Outing {
     shot: Shot,
     /// The sets of spheres of the scene, with what they are made of.
     sets: Vec<(GeometryId, Substance)>,
+    /// What renders instead of the CPU.
+    #[cfg(feature = "gpu")]
+    device: Option<OnDevice>,
 }
 
 impl Outing {
@@ -68,7 +78,31 @@ impl Outing {
         let occurs = |substance: &Substance| !planet.bodies().range(*substance).is_empty();
         let ids = world.scene().sphere_sets().map(|(id, _)| id);
         let sets = ids.zip(Substance::ALL.into_iter().filter(occurs)).collect();
-        Ok(Self { planet, walker, world, shot, sets })
+        Ok(Self {
+            planet,
+            walker,
+            world,
+            shot,
+            sets,
+            #[cfg(feature = "gpu")]
+            device: None,
+        })
+    }
+
+    /// Moves the spheres and renders by a GPU from now on. The error says what it does not draw or
+    /// move; then the CPU goes on.
+    #[cfg(feature = "gpu")]
+    pub fn move_to(&mut self, kernels: &Arc<Kernels>) -> Result<(), Vec<Diagnostic>> {
+        self.device = Some(OnDevice::new(&self.world, &self.shot, kernels)?);
+        Ok(())
+    }
+
+    /// The name of the GPU that renders; `None` if that is the CPU.
+    pub fn device(&self) -> Option<&str> {
+        #[cfg(feature = "gpu")]
+        return self.device.as_ref().map(OnDevice::name);
+        #[cfg(not(feature = "gpu"))]
+        None
     }
 
     /// The planet.
@@ -115,9 +149,20 @@ impl Outing {
             self.planet.step(Some(self.walker.body()), STEP);
         }
         let simulating = begin.elapsed();
-        self.move_spheres()?;
-        let moving = begin.elapsed() - simulating;
+        let moved = self.moved();
         self.shot.camera = self.camera();
+        #[cfg(feature = "gpu")]
+        if let Some(device) = &mut self.device {
+            let copying = begin.elapsed() - simulating;
+            let (mut frame, moving) = device.frame(&self.world, &self.shot, &moved)?;
+            let moving = copying + moving;
+            let rendering = begin.elapsed().saturating_sub(simulating + moving);
+            let spent = Spent { simulating, moving, rendering };
+            frame.time = spent.sum();
+            return Ok((frame, spent));
+        }
+        self.world.move_spheres(moved).map_err(|error| StepError::Problem(error.to_string()))?;
+        let moving = begin.elapsed() - simulating;
         let mut session = self.world.draft(&self.shot, 1)?;
         session.run(0..self.shot.samples, &Limits::default(), control, &mut |_| ())?;
         let mut frame = Frame::of(&session, 1, self.shot.layer);
@@ -127,8 +172,8 @@ impl Outing {
         Ok((frame, spent))
     }
 
-    /// Moves the spheres of the scene to where those of the planet are.
-    fn move_spheres(&mut self) -> Result<(), StepError> {
+    /// Where the spheres of the scene are by now.
+    fn moved(&self) -> Vec<(GeometryId, Arc<[Point3]>)> {
         let origin = self.world.scene().world_from_render().w_axis.truncate().as_vec3();
         let (origin, bodies) = (Vec3::from(origin), self.planet.bodies());
         let centers = |&(id, substance): &(GeometryId, Substance)| {
@@ -136,8 +181,7 @@ impl Outing {
             let centers: Arc<[Point3]> = centers.iter().map(|&center| center - origin).collect();
             (id, centers)
         };
-        let moved: Vec<_> = self.sets.par_iter().map(centers).collect();
-        self.world.move_spheres(moved).map_err(|error| StepError::Problem(error.to_string()))
+        self.sets.par_iter().map(centers).collect()
     }
 
     /// The camera in the walker's eyes. Its right is forward × up.

@@ -22,6 +22,8 @@ pub struct PlanetReport {
     pub samples: u32,
     /// The algorithm.
     pub integrator: String,
+    /// The GPU that has rendered; `None` if that is the CPU.
+    pub device: Option<String>,
     /// The times of each frame.
     pub frames: Vec<Spent>,
     /// The spheres that moved in each.
@@ -40,6 +42,7 @@ impl PlanetReport {
             resolution: [bounds.width() as u32, bounds.height() as u32],
             samples: outing.shot().samples,
             integrator: outing.shot().integrator.clone(),
+            device: outing.device().map(str::to_owned),
             frames: Vec::new(),
             moving: Vec::new(),
             rays: 0,
@@ -96,6 +99,7 @@ impl PlanetReport {
         json!({
             "status": "done",
             "integrator": self.integrator,
+            "device": self.device.as_deref().unwrap_or("CPU"),
             "spheres": self.spheres,
             "moving": { "median": self.median_moving(), "max": self.moving.iter().max() },
             "frames": self.frames.len(),

@@ -54,6 +54,14 @@ pub fn render(root: &Path, arguments: &[&str]) -> Result<(), String> {
     succeed(command.args(arguments).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
+/// Measures a GPU in the workspace at `root`; `arguments` go to the program. It needs no other
+/// files: carried to another machine, it measures the GPU there.
+pub fn gpu(root: &Path, arguments: &[&str]) -> Result<(), String> {
+    let mut command = cargo(root);
+    command.args(["run", "--release", "--quiet", "--package", "alhazen-bench", "--features", "gpu"]);
+    succeed(command.args(["--bin", "gpu", "--"]).args(arguments))
+}
+
 fn embree(root: &Path) -> Result<PathBuf, String> {
     if let Some(library) = env::var_os("EMBREE_LIB") {
         return Ok(library.into());

@@ -72,7 +72,7 @@ const EDGES: [(&str, &[&str]); 22] = [
     ("view", &["alhazen", "planet"]),
     ("cli", &["alhazen", "view"]),
     ("python", &["alhazen"]),
-    ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering"]),
+    ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering", "gpu", "alhazen", "view"]),
     ("xtask", &["lanes", "math", "sampling", "spectrum", "planet"]),
 ];
 

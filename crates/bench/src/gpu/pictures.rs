@@ -1,0 +1,50 @@
+//! Whole pictures by `path`: passes of the GPU beside those of the CPU.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use alhazen::Job;
+use alhazen::device::Kernels;
+use alhazen::import::MemoryAssets;
+use alhazen::integrators::{Control, Limits};
+use serde_json::{Map, Value, json};
+
+use crate::Size;
+use crate::scenes::{Compiled, compile, messages, triangles};
+
+const CORNELL_BOX: &str = include_str!("../../../../scenes/cornell-box.pbrt");
+
+/// Samples in a second, for a simple and for a large scene.
+pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
+    let mut report = Map::new();
+    let (text, assets) = triangles();
+    for (name, text, assets) in
+        [("cornell-box", CORNELL_BOX, MemoryAssets::default()), ("two million triangles", text, assets)]
+    {
+        let Compiled { scene, desc } = compile(text, assets, size)?;
+        let passes = |on_device: bool, passes: u32| {
+            let job = Job::of_scene(scene.clone(), &desc).map_err(|errors| messages(&errors))?;
+            let mut job = job.job;
+            if on_device {
+                job.move_to(kernels).map_err(|errors| messages(&errors))?;
+            }
+            let mut run =
+                |passes| job.session.run(passes, &Limits::default(), &Control::default(), &mut |_| ());
+            // The first pass warms up.
+            run(0..1).map_err(|error| format!("{error:?}"))?;
+            let begin = Instant::now();
+            run(1..1 + passes).map_err(|error| format!("{error:?}"))?;
+            Ok::<_, String>(f64::from(passes) / begin.elapsed().as_secs_f64())
+        };
+        let [gpu, cpu] = [passes(true, size.passes[0])?, passes(false, size.passes[1])?];
+        report.insert(
+            name.into(),
+            json!({
+                "resolution": size.resolution,
+                "passes_per_second": { "gpu": gpu, "cpu": cpu },
+                "speedup": gpu / cpu,
+            }),
+        );
+    }
+    Ok(report.into())
+}

@@ -1,0 +1,91 @@
+//! Rays in a second through a million triangles.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use alhazen::device::Kernels;
+use alhazen_bench::mesh::BenchMesh;
+use alhazen_bench::rays::{Query, ray_sets};
+use geometry::{GroupId, Hit, RayStats, World};
+use gpu::{Bvh, GpuError, shaders};
+use math::Ray;
+use serde_json::{Map, Value, json};
+
+use crate::Size;
+
+/// A kernel that traces rays, of eight numbers each, to distances: 0 where nothing is hit. An end
+/// below 0 is that of a ray which any hit ends.
+const KERNEL: &str = "
+    fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
+    struct World { roots: vec2u, unbounded: u32, size: f32 }
+    @group(0) @binding(0) var<storage, read_write> world: World;
+    @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
+    @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
+    @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
+    @group(0) @binding(4) var<storage, read_write> rays: array<array<vec4f, 2>>;
+    @group(0) @binding(5) var<storage, read_write> hits: array<f32>;
+    @compute @workgroup_size(64)
+    fn main(@builtin(global_invocation_id) id: vec3u) {
+        if (id.x >= arrayLength(&rays)) { return; }
+        let ray = rays[id.x];
+        let hit = trace(ray[0].xyz, ray[1].xyz, abs(ray[0].w), ray[0].w < 0);
+        hits[id.x] = select(0, hit.t, hit.found);
+    }";
+
+/// Millions of rays of each set in a second, for both meshes.
+pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
+    let device = kernels.device();
+    let source = format!("{}{KERNEL}", shaders::TRACE);
+    let kernel = device.kernel("rays", &source).map_err(|error| error.to_string())?;
+    let mut report = Map::new();
+    for mesh in BenchMesh::NAMES.into_iter().filter_map(BenchMesh::named) {
+        let mut builder = World::builder();
+        builder.add_geometry(GroupId::TOP, mesh.triangles().map_err(|error| error.to_string())?);
+        let world = builder.build();
+        let closest = |(ray, end): &(Ray, f32)| {
+            let hit = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default())?;
+            Some((hit.t, hit.primitive as usize))
+        };
+        let bvh = Bvh::new(&world, &|_| false).map_err(|error| format!("{error:?}"))?;
+        let mut rates = Map::new();
+        for set in ray_sets(&mesh, size.rays, closest) {
+            let sign = if set.query == Query::Any { -1.0 } else { 1.0 };
+            let numbers = |(ray, end): &(Ray, f32)| {
+                let (o, d) = (ray.o, ray.d);
+                [o.x, o.y, o.z, sign * end.min(f32::MAX), d.x, d.y, d.z, 0.0]
+            };
+            let made = (|| {
+                let buffers = [
+                    device.buffer("heads", &[bvh.top])?,
+                    device.buffer("nodes", &bvh.nodes)?,
+                    device.buffer("triangles", &bvh.triangles)?,
+                    device.buffer("items", &bvh.items)?,
+                    device.buffer("rays", &set.rays.iter().map(numbers).collect::<Vec<_>>())?,
+                    device.zeros("hits", 4 * set.rays.len() as u64)?,
+                ];
+                let groups = [set.rays.len().div_ceil(64) as u32, 1, 1];
+                // Once to warm up.
+                device.run(&kernel, &buffers.each_ref(), groups)?;
+                let hits = device.read::<f32>(&buffers[5])?.iter().filter(|t| **t > 0.0).count();
+                let begin = Instant::now();
+                for _ in 0..size.repeats {
+                    device.run(&kernel, &buffers.each_ref(), groups)?;
+                }
+                device.read_part::<f32>(&buffers[5], 0, 1)?;
+                Ok((hits, begin.elapsed().as_secs_f64()))
+            })();
+            let (hits, seconds) = made.map_err(|error: GpuError| error.to_string())?;
+            let traced = set.rays.len() as f64 * f64::from(size.repeats);
+            rates.insert(
+                set.name.into(),
+                json!({
+                    "million_rays_per_second": traced / seconds / 1e6,
+                    "rays": set.rays.len(),
+                    "hits": hits,
+                }),
+            );
+        }
+        report.insert(mesh.name.into(), json!({ "triangles": mesh.indices.len(), "sets": rates }));
+    }
+    Ok(report.into())
+}

@@ -1,0 +1,49 @@
+//! Spheres that move: a tree over them that the GPU builds for each picture.
+//!
+//! The order of Morton codes puts near what is near ([`sort`]). Over that order there is one binary
+//! tree whose nodes have the codes with common leading bits, and each of its nodes is found without
+//! the others [Lauterbach 2009] [Karras 2012] ([`tree`]). Nodes of eight children are made of it,
+//! those of [`Bvh`](crate::Bvh), so that every kernel traces rays through them.
+//!
+//! No thread waits for another one of its dispatch, and none reads what another one of it has
+//! written, but for counters: WGSL promises neither that workgroups run at once nor that they see
+//! what others write. Boxes of nodes are usually found bottom up, by threads that meet. Here a node
+//! is a range of the order, and a pyramid of boxes has that of any range.
+//!
+//! A refitted tree has the nodes of the last one built, around the spheres where they are.
+
+mod moving;
+mod sort;
+mod tree;
+
+pub use moving::{Moving, MovingError};
+pub use sort::Sorter;
+
+use crate::device::{Buffer, Kernel};
+
+/// Starts a kernel on buffers, in a number of workgroups.
+pub type Start<'a> = dyn FnMut(&Kernel, &[&Buffer], u32) + 'a;
+
+/// How a tree follows its spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Update {
+    /// It is built anew.
+    Rebuild,
+    /// Its boxes grow and shrink; rays take longer the further neighbours have moved apart.
+    Refit,
+}
+
+/// The threads of a workgroup, but for nodes of eight children.
+const THREADS: u32 = 256;
+
+/// What kernels are told: `Plan` of `shaders/dynamic/plan.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
+struct Plan {
+    count: u32,
+    leaves: u32,
+    step: u32,
+    blocks: u32,
+    first_item: u32,
+    first_node: u32,
+}
