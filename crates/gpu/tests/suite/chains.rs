@@ -19,11 +19,11 @@ const SIZE: [u32; 2] = [56, 40];
 const MAX_DEPTH: u32 = 4;
 
 /// Passes of the chains, each of which is a picture of its own.
-const PASSES: u32 = 96;
+const PASSES: u32 = 48;
 
 /// Pictures by paths, and the samples of each pixel of them.
 const PICTURES: u32 = 32;
-const SAMPLES: u32 = 12;
+const SAMPLES: u32 = 8;
 
 /// A pass by the GPU.
 fn pass(case: &Case, renderer: &Renderer, index: u32) -> Image {
