@@ -6,13 +6,13 @@ use std::sync::atomic::Ordering;
 use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
-use gpu::{Algorithm, Flat, Renderer, Schedule, Subject, flatten};
+use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
 use integrators::{Cancelled, Control, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
 use scene::{Scene, View};
 
-pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal};
+pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal, Schedule};
 
 /// An algorithm on a device.
 struct OnDevice {
@@ -27,11 +27,12 @@ pub(crate) fn integrator(
     desc: &SceneDesc,
     session: &Session,
     kernels: &Arc<Kernels>,
+    schedule: Schedule,
 ) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
     let film = &session.state().film;
     let Flattened { flat, algorithm, sampler } =
         flattened(desc, session.scene(), session.view(), film, kernels)?;
-    match Renderer::new(kernels.clone(), &flat, &algorithm, film, Schedule::default()) {
+    match Renderer::new(kernels.clone(), &flat, &algorithm, film, schedule) {
         Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler })),
         Err(error) => Err(vec![failed(&error)]),
     }

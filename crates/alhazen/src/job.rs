@@ -111,8 +111,12 @@ impl Job {
     /// Goes on with the engine for GPUs. The error says what that does not draw, and leaves the job
     /// as it was.
     #[cfg(feature = "gpu")]
-    pub fn move_to(&mut self, kernels: &Arc<crate::device::Kernels>) -> Result<(), Vec<Diagnostic>> {
-        let integrator = crate::device::integrator(&self.settings, &self.session, kernels)?;
+    pub fn move_to(
+        &mut self,
+        kernels: &Arc<crate::device::Kernels>,
+        schedule: crate::device::Schedule,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let integrator = crate::device::integrator(&self.settings, &self.session, kernels, schedule)?;
         self.session.set_integrator(integrator);
         Ok(())
     }

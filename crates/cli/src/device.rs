@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use alhazen::Job;
 use alhazen::description::{Diagnostic, Span};
-use alhazen::device::{Device, Kernels};
+use alhazen::device::{Device, Kernels, Schedule};
 use alhazen::realtime::Weights;
 use clap::ValueEnum;
 
@@ -42,7 +42,7 @@ impl From<Restir> for Weights {
 /// cannot be, the job is as before, and the warnings say why.
 pub fn choose(choice: DeviceChoice, job: &mut Job) -> Result<Option<String>, Vec<Diagnostic>> {
     let Some(kernels) = kernels(choice)? else { return Ok(None) };
-    job.move_to(&kernels)?;
+    job.move_to(&kernels, Schedule::default())?;
     let notes = job.session.integrator().summary();
     Ok(Some(notes.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")))
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use alhazen::Job;
-use alhazen::device::Kernels;
+use alhazen::device::{Kernels, Schedule};
 use alhazen::import::MemoryAssets;
 use alhazen::integrators::{Control, Limits};
 use serde_json::{Map, Value, json};
@@ -22,11 +22,11 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
         [("cornell-box", CORNELL_BOX, MemoryAssets::default()), ("two million triangles", text, assets)]
     {
         let Compiled { scene, desc } = compile(text, assets, size)?;
-        let passes = |on_device: bool, passes: u32| {
+        let passes = |on_device: Option<Schedule>, passes: u32| {
             let job = Job::of_scene(scene.clone(), &desc).map_err(|errors| messages(&errors))?;
             let mut job = job.job;
-            if on_device {
-                job.move_to(kernels).map_err(|errors| messages(&errors))?;
+            if let Some(schedule) = on_device {
+                job.move_to(kernels, schedule).map_err(|errors| messages(&errors))?;
             }
             let mut run =
                 |passes| job.session.run(passes, &Limits::default(), &Control::default(), &mut |_| ());
@@ -36,12 +36,14 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
             run(1..1 + passes).map_err(|error| format!("{error:?}"))?;
             Ok::<_, String>(f64::from(passes) / begin.elapsed().as_secs_f64())
         };
-        let [gpu, cpu] = [passes(true, size.passes[0])?, passes(false, size.passes[1])?];
+        let [gpu, wavefront] = [Schedule::Megakernel, Schedule::Wavefront]
+            .map(|schedule| passes(Some(schedule), size.passes[0]));
+        let (gpu, wavefront, cpu) = (gpu?, wavefront?, passes(None, size.passes[1])?);
         report.insert(
             name.into(),
             json!({
                 "resolution": size.resolution,
-                "passes_per_second": { "gpu": gpu, "cpu": cpu },
+                "passes_per_second": { "gpu": gpu, "gpu_by_stages": wavefront, "cpu": cpu },
                 "speedup": gpu / cpu,
             }),
         );
