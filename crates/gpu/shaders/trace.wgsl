@@ -108,8 +108,8 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
         return;
     }
     let is_first = instance == (*best).instance && (corner[0].w < (*best).geometry
-        || corner[0].w == (*best).geometry && corner[1].w < (*best).primitive);
-    if (t < (*best).t || (*best).found && t == (*best).t && is_first) {
+        || (corner[0].w == (*best).geometry && corner[1].w < (*best).primitive));
+    if (t < (*best).t || ((*best).found && t == (*best).t && is_first)) {
         let is_cut_out = corner[2].w == 1;
         *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, index, true, instance, true, is_cut_out);
     }
@@ -222,7 +222,7 @@ fn hit_flat(o: vec3f, d: vec3f, far: f32, is_disk: bool, numbers: vec4f, t_max: 
     let t = (height - o.z) / d.z;
     let p = o + d * t;
     let distance = length(p.xy);
-    let is_inside = !is_disk || distance <= numbers.y && distance >= numbers.z && is_swept(p, numbers.w);
+    let is_inside = !is_disk || (distance <= numbers.y && distance >= numbers.z && is_swept(p, numbers.w));
     return select(0, t, is_inside && t > ROUNDING * (far + abs(height)) / abs(d.z) && t < t_max);
 }
 
@@ -249,7 +249,7 @@ fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, after: f32, t_
         let t = roots[i];
         let z = o.z + t * d.z;
         let is_whole = is_sphere && numbers.y == -radius && numbers.z == radius;
-        let is_inside = (is_whole || z >= numbers.y && z <= numbers.z) && is_swept(o + d * t, numbers.w);
+        let is_inside = (is_whole || (z >= numbers.y && z <= numbers.z)) && is_swept(o + d * t, numbers.w);
         if (t > error && t < t_max && is_inside) {
             return t;
         }
@@ -267,8 +267,8 @@ fn is_swept(p: vec3f, limit: f32) -> bool {
 fn bytes(words: vec2u) -> array<f32, 8> {
     let w = words;
     return array(
-        f32(w.x & 255), f32(w.x >> 8 & 255), f32(w.x >> 16 & 255), f32(w.x >> 24),
-        f32(w.y & 255), f32(w.y >> 8 & 255), f32(w.y >> 16 & 255), f32(w.y >> 24),
+        f32(w.x & 255), f32((w.x >> 8) & 255), f32((w.x >> 16) & 255), f32(w.x >> 24),
+        f32(w.y & 255), f32((w.y >> 8) & 255), f32((w.y >> 16) & 255), f32(w.y >> 24),
     );
 }
 

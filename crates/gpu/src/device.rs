@@ -236,7 +236,25 @@ impl Device {
 
     /// Starts a kernel in this many workgroups, after all that was started before.
     pub fn run(&self, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 3]) -> Result<(), GpuError> {
-        let bindings = self.bindings(kernel, buffers);
+        self.start(kernel, self.bindings(kernel, buffers), workgroups)
+    }
+
+    /// The same with buffers of these bindings: a kernel has those alone that it uses.
+    pub(crate) fn run_bound(
+        &self,
+        kernel: &Kernel,
+        buffers: &[(u32, &Buffer)],
+        workgroups: [u32; 3],
+    ) -> Result<(), GpuError> {
+        self.start(kernel, self.bound(kernel, buffers.iter().copied()), workgroups)
+    }
+
+    fn start(
+        &self,
+        kernel: &Kernel,
+        bindings: wgpu::BindGroup,
+        workgroups: [u32; 3],
+    ) -> Result<(), GpuError> {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&kernel.pipeline);
@@ -250,7 +268,15 @@ impl Device {
 
     /// What a kernel is run on.
     pub(crate) fn bindings(&self, kernel: &Kernel, buffers: &[&Buffer]) -> wgpu::BindGroup {
-        let entries = buffers.iter().zip(0..).map(|(buffer, binding)| wgpu::BindGroupEntry {
+        self.bound(kernel, (0..).zip(buffers.iter().copied()))
+    }
+
+    fn bound<'a>(
+        &self,
+        kernel: &Kernel,
+        buffers: impl Iterator<Item = (u32, &'a Buffer)>,
+    ) -> wgpu::BindGroup {
+        let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
             resource: buffer.0.as_entire_binding(),
         });

@@ -40,9 +40,21 @@ impl SceneBuffers {
         [batch, results]: [&Buffer; 2],
         workgroups: [u32; 2],
     ) -> Result<(), GpuError> {
+        self.run_without(&[], kernel, [batch, results], workgroups)
+    }
+
+    /// The same of a kernel that does not use the buffers of some bindings.
+    pub fn run_without(
+        &self,
+        unused: &[u32],
+        kernel: &Kernel,
+        [batch, results]: [&Buffer; 2],
+        workgroups: [u32; 2],
+    ) -> Result<(), GpuError> {
         let [head, nodes, triangles, items, tables, texels] = self.buffers.each_ref();
         let [x, y] = workgroups;
         let all = [head, nodes, triangles, items, tables, batch, results, texels];
-        self.device().run(kernel, &all, [x, y, 1])
+        let used = (0..).zip(all).filter(|(binding, _)| !unused.contains(binding));
+        self.device().run_bound(kernel, &used.collect::<Vec<_>>(), [x, y, 1])
     }
 }

@@ -23,6 +23,11 @@ const ROWS: usize = 20;
 /// Threads of a workgroup.
 const WORKGROUP: u32 = 64;
 
+/// The bindings that camera rays need nothing of: trees, triangles, shapes and texels; and that of
+/// trees, which no ray of a shaded point is traced through.
+const WITHOUT_RAYS: [u32; 4] = [1, 2, 3, 7];
+const WITHOUT_TREES: [u32; 1] = [1];
+
 /// What the kernels are to do: `Batch` of `shaders/wavefront/paths.wgsl`, which the queues follow.
 #[repr(C)]
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -84,19 +89,19 @@ impl Wavefront {
             lengths: [count, 0, 0, 0],
             ..Batch::default()
         };
-        let start = |kernel, threads: u32| {
+        let start = |kernel, unused: &[u32], threads: u32| {
             let buffers = [&self.batch, &self.table];
-            scene.run(kernel, buffers, [threads.div_ceil(WORKGROUP), 1])
+            scene.run_without(unused, kernel, buffers, [threads.div_ceil(WORKGROUP), 1])
         };
         device.write(&self.batch, &[batch])?;
-        start(begin, count)?;
+        start(begin, &WITHOUT_RAYS, count)?;
         while let length @ 1.. = batch.lengths[batch.turn as usize] {
-            start(extend, length)?;
-            start(shade, length)?;
+            start(extend, &[], length)?;
+            start(shade, &WITHOUT_TREES, length)?;
             let found: Vec<Batch> = device.read_part(&self.batch, 0, 1)?;
             batch.lengths = found.first().map_or([0; 4], |batch| batch.lengths);
             if let shadows @ 1.. = batch.lengths[2] {
-                start(connect, shadows)?;
+                start(connect, &[], shadows)?;
             }
             // The queue that was read is the next one to be filled.
             batch.lengths[batch.turn as usize] = 0;
