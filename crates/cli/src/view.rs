@@ -21,9 +21,6 @@ use crate::failure::Failure;
 use crate::results::write_results;
 use crate::threads::start_threads;
 
-/// The time that a frame is to take.
-const TARGET: Duration = Duration::from_millis(33);
-
 /// Opens the window, or reports the frame times of a camera path.
 pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     let begin = Instant::now();
@@ -67,7 +64,7 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
     let mut flight = world.flight();
-    let mut renderer = Renderer::new(Arc::new(world), TARGET);
+    let mut renderer = Renderer::new(Arc::new(world), Duration::from_millis(arguments.frame_time.into()));
     #[cfg(feature = "gpu")]
     if let Some(kernels) = kernels {
         renderer.move_to(kernels, arguments.restir.map(Into::into));

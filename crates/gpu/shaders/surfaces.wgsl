@@ -27,6 +27,11 @@ fn context_of(s: Surface) -> ShapeSampleContext {
     return ShapeSampleContext(s.p, s.n, s.ns, 0);
 }
 
+// The shading normal on the side that is seen: the other side of a surface is another one.
+fn seen_normal(s: Surface) -> vec3f {
+    return select(-s.ns, s.ns, dot(s.n, s.wo) > 0);
+}
+
 fn spawn(s: Surface, d: vec3f) -> Ray {
     return Ray_spawn(s.p, s.n, d, 0);
 }

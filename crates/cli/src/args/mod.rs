@@ -251,6 +251,10 @@ pub struct View {
     /// How the light is shown to begin with.
     #[command(flatten)]
     pub display: DisplayOptions,
+    /// The time that a picture in motion is to take, in milliseconds: its pixels are as large as
+    /// that needs.
+    #[arg(long, value_name = "MS", default_value_t = 33, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=60_000))]
+    pub frame_time: u32,
     /// Open no window, but render a camera path, once around what the camera looks at, or a walk
     /// over the planet, and report the times of its frames.
     #[arg(long)]

@@ -26,7 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     var lambda = common_wavelengths();
     let receiver = receiver_of(r, no_differentials(), &lambda);
-    r.normal = packed_normal(receiver.s.ns);
+    r.normal = packed_normal(seen_normal(receiver.s));
     place.dimension = FIRST_DIMENSION;
     var sum = 0.0;
     var aim = 0.0;

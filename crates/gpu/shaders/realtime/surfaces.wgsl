@@ -38,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var s = surface_at(hit, camera.ray);
         found.p = s.p.p;
         found.distance = hit.t;
-        found.n = s.ns;
+        found.n = seen_normal(s);
         found.id = 1 + s.material;
         if (s.light != 0) {
             found.guide = light_radiance(light_record(s.light - 1), s.n, s.wo, lambda).xyz;

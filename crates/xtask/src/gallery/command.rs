@@ -99,7 +99,7 @@ fn run_and_keep(
         return Ok(Drawn { picture, cost: String::new(), text });
     }
     let json = json(&text).map_err(failed)?;
-    let cost = if *name == "view" { cost_of_split(&json) } else { cost(&json) };
+    let cost = if *name == "view" { cost_of_view(&json) } else { cost(&json) };
     Ok(Drawn { picture, cost, text: String::new() })
 }
 
@@ -146,9 +146,12 @@ fn cost(json: &Value) -> String {
     )
 }
 
-/// What a split view cost in words.
-fn cost_of_split(json: &Value) -> String {
+/// What a view cost in words.
+fn cost_of_view(json: &Value) -> String {
     let [width, height] = [0, 1].map(|i| json["resolution"][i].as_u64().unwrap_or(0));
+    if json["rasterized"].is_null() {
+        return format!("{width} × {height} pixels, the last of {} frames", json["frames"]);
+    }
     let count = |key: &str| json["rasterized"][key].as_f64().unwrap_or(0.0);
     format!(
         "{width} × {height} pixels; rasterised, {:.1} million triangles and {} sprites",
