@@ -75,9 +75,19 @@ fn a_planet_is_rendered_by_a_gpu_or_the_cpu_says_why_not() {
 }
 
 #[test]
+fn the_last_frame_is_written() {
+    let folder = Folder::with_scene("last-frame");
+    folder.alhazen(&["view", "scene.pbrt", "-o", "frame.png"]).expect(2);
+    let arguments = ["view", "scene.pbrt", "--headless", "--frames", "2", "-o", "frame.png", "--json"];
+    assert_eq!(folder.alhazen(&arguments).expect(0).json()["frames"].as_u64(), Some(2));
+    assert_eq!(folder.files(), ["frame.png", "scene.pbrt"]);
+    let missing = ["view", "scene.pbrt", "--headless", "--frames", "1", "-o", "missing/frame.png"];
+    folder.alhazen(&missing).expect(1);
+}
+
+#[test]
 fn a_split_view_reports_both_sides() {
     let folder = Folder::with_scene("view");
-    folder.alhazen(&["view", "scene.pbrt", "--headless", "-o", "both.png"]).expect(2);
     let arguments =
         ["view", "scene.pbrt", "--headless", "--frames", "2", "--split", "-o", "both.png", "--json"];
     let finished = folder.alhazen(&arguments);
