@@ -29,8 +29,8 @@ struct Connection {
     // What the media leave of the light.
     passage: Throughput,
     // The light as if nothing were in between, over the density of its sample; the density of the
-    // path over that of the hero; and the density with which scattering finds the light over that of
-    // its sample.
+    // path over that of the hero; and the density with which scattering finds the light over that
+    // of its sample.
     l: vec4f,
     r_u: vec4f,
     ratio: f32,
@@ -85,32 +85,9 @@ fn hit_weight(path: Path, light: u32, pdf: f32) -> f32 {
     return power_heuristic(mean_of(path.heroes, path.throughput.r_u), by_light);
 }
 
-// The weighted radiance along a ray that leaves the scene.
-fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
-    var sum = vec4f();
-    for (var i = 0u; i < world.infinite_count; i++) {
-        let light = tables[world.infinite + i];
-        let seen = sky(light, path.ray.d, lambda);
-        var weight = 1.0;
-        if (path.is_found_twice) {
-            weight = hit_weight(path, light, seen.pdf);
-        }
-        sum += seen.l * weight;
-    }
-    return sum;
-}
-
-// The weighted emission of a surface back along the ray.
-fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
-    if (s.light == 0) {
-        return vec4f();
-    }
-    let light = s.light - 1;
-    let l = light_radiance(light_record(light), s.n, s.wo, lambda);
-    if (is_black(l) || !path.is_found_twice) {
-        return l;
-    }
-    return l * hit_weight(path, light, pdf_of_surface(light, path.origin, s, uv));
+// All light that paths hit is theirs.
+fn is_reserved(path: Path) -> bool {
+    return false;
 }
 
 // Leaves a vertex along a direction of the density `pdf`.
@@ -253,8 +230,8 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             context = light_context(s, flags);
         }
         let phase = HenyeyGreenstein(number(max(medium, 1) + 1));
-        // What chooses the light and its point, the collisions of the shadow ray, and the lobe and its
-        // direction.
+        // What chooses the light and its point, the collisions of the shadow ray, and the lobe and
+        // its direction.
         let samples_light = in_medium || is_non_specular(flags);
         var u: array<vec2f, 6>;
         for (var i = select(4u, 0u, samples_light); i < 6; i++) {

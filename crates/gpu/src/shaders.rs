@@ -55,7 +55,7 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
 /// What a path does at its vertices.
-const PATH: &str = include_str!("../shaders/path.wgsl");
+const PATH: &str = concat!(include_str!("../shaders/path_hits.wgsl"), include_str!("../shaders/path.wgsl"));
 
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
@@ -199,10 +199,18 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::VolPath(_) if parts.media => {
-            concat!(include_str!("../shaders/media.wgsl"), include_str!("../shaders/vol_path.wgsl"))
+            concat!(
+                include_str!("../shaders/media.wgsl"),
+                include_str!("../shaders/path_hits.wgsl"),
+                include_str!("../shaders/vol_path.wgsl")
+            )
         }
         Algorithm::Path(_) | Algorithm::VolPath(_) => {
-            concat!(include_str!("../shaders/path.wgsl"), include_str!("../shaders/path_loop.wgsl"))
+            concat!(
+                include_str!("../shaders/path_hits.wgsl"),
+                include_str!("../shaders/path.wgsl"),
+                include_str!("../shaders/path_loop.wgsl")
+            )
         }
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
         Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),

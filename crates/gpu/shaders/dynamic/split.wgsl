@@ -1,8 +1,8 @@
 // The inner nodes of a binary tree over sorted Morton codes, each by itself [Karras 2012].
 //
 // Node i has the primitives from i to somewhere, all those whose codes have more leading bits in
-// common than those at its other side; it is split where the next bit changes. Equal codes differ by
-// their places.
+// common than those at its other side; it is split where the next bit changes. Equal codes differ
+// by their places.
 
 @group(0) @binding(1) var<storage, read_write> keys: array<u32>;
 @group(0) @binding(2) var<storage, read_write> inner: array<Inner>;

@@ -3,8 +3,8 @@
 // Paths that go on are appended to the queue of the next stage, each workgroup's together. In which
 // order they are in a queue depends on threads, what they find does not.
 //
-// What a path keeps is a column of a table, four words in each row, so that threads beside each other
-// read words beside each other.
+// What a path keeps is a column of a table, four words in each row, so that threads beside each
+// other read words beside each other.
 
 const L = 0u;
 const COUNTS = 1u;
@@ -37,8 +37,8 @@ const IS_TRIANGLE = 2u;
 // The queues: of paths in two turns, and of shadow rays.
 const SHADOWS = 2u;
 
-// A rectangle of pixels, the index of the sample of each, the number of paths, and the queue of those
-// that go on.
+// A rectangle of pixels, the index of the sample of each, the number of paths, and the queue of
+// those that go on.
 struct Batch {
     low: vec2u,
     size: vec2u,
