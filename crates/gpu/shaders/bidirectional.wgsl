@@ -93,10 +93,7 @@ fn light_of(camera: CameraSample, path: u32) -> vec4f {
             walk = camera_subpath(camera);
         }
         let hit = nearest(walk.ray);
-        if (walk.looks_back) {
-            walk.looks_back = false;
-            walk.ray.d = -walk.ray.d;
-            walk.goes_on = !hit.found;
+        if (looked_back(&walk, hit)) {
             continue;
         }
         var s: Surface;

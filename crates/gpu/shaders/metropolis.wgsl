@@ -176,10 +176,7 @@ fn light_of(s: u32, t: u32, camera: CameraSample) -> Contribution {
     var other: Vertex;
     while (walk.goes_on) {
         let hit = nearest(walk.ray);
-        if (walk.looks_back) {
-            walk.looks_back = false;
-            walk.ray.d = -walk.ray.d;
-            walk.goes_on = !hit.found;
+        if (looked_back(&walk, hit)) {
             continue;
         }
         var surface: Surface;

@@ -125,10 +125,7 @@ fn light_of(start: Subpath, lambda: SampledWavelengths, photons: u32) -> vec4f {
     var before: ShapeSampleContext;
     while (walk.goes_on) {
         let hit = nearest(walk.ray);
-        if (walk.looks_back) {
-            walk.looks_back = false;
-            walk.ray.d = -walk.ray.d;
-            walk.goes_on = !hit.found;
+        if (looked_back(&walk, hit)) {
             continue;
         }
         var s: Surface;

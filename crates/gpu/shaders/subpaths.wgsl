@@ -374,3 +374,15 @@ fn survive(walk: ptr<function, Subpath>) {
     (*walk).beta /= probability;
     (*walk).share /= probability;
 }
+
+// Whether a walk has looked back to where its light path comes from. Then it turns around, and goes
+// on if nothing was in the way.
+fn looked_back(walk: ptr<function, Subpath>, hit: Hit) -> bool {
+    if (!(*walk).looks_back) {
+        return false;
+    }
+    (*walk).looks_back = false;
+    (*walk).ray.d = -(*walk).ray.d;
+    (*walk).goes_on = !hit.found;
+    return true;
+}
