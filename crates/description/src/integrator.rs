@@ -374,6 +374,9 @@ impl SppmDesc {
     /// Limit on the default radius, as a fraction of that of the scene.
     const LARGEST_SHARE: f32 = 0.05;
 
+    /// The α by which the radius shrinks.
+    pub const ALPHA: f32 = 2.0 / 3.0;
+
     /// The number of light paths in each pass, for a picture of so many pixels.
     pub fn light_paths(&self, pixels: usize) -> usize {
         self.photons_per_iteration.map_or(pixels, |count| count as usize)
@@ -384,6 +387,14 @@ impl SppmDesc {
         let share = (Self::SPACING / (light_paths as f32).sqrt()).min(Self::LARGEST_SHARE);
         self.radius.unwrap_or(share * scene_radius)
     }
+}
+
+/// The radius within which photons are merged in a pass, counted from 0, given that of the first
+/// pass: r²ₙ₊₁ = r²ₙ (n + α)/(n + 1) ([Knaus 2011]).
+pub fn merging_radius(first: f32, alpha: f32, pass: u32) -> f32 {
+    let alpha = f64::from(alpha);
+    let shrunk: f64 = (1..=pass).map(|i| (f64::from(i) + alpha) / (f64::from(i) + 1.0)).product();
+    (f64::from(first) * shrunk.sqrt()) as f32
 }
 
 settings! {

@@ -49,7 +49,7 @@ pub use integrator::{
     AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
     LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc,
     PhotonMappingShow, RadiosityDesc, RandomWalkDesc, ReflectionsDesc, SimplePathDesc, SimpleVolPathDesc,
-    SppmDesc, VcmDesc, WhittedDesc,
+    SppmDesc, VcmDesc, WhittedDesc, merging_radius,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{

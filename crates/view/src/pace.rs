@@ -20,14 +20,16 @@ pub struct Pace {
     full: Bounds2i,
     n: u32,
     /// Seconds that a sample of a pixel takes, smoothed.
-    cost: Option<f64>,
+    cost: f64,
+    /// The drafts that it was learnt from.
+    drafts: u32,
 }
 
 impl Pace {
     /// For frames that take this long, of pictures with these pixels. The first has an eighth of
     /// them along each side.
     pub fn new(target: Duration, full: Bounds2i) -> Self {
-        let mut pace = Self { target, full, n: 1, cost: None };
+        let mut pace = Self { target, full, n: 1, cost: 0.0, drafts: 0 };
         pace.n = 8.min(pace.most());
         pace
     }
@@ -41,9 +43,10 @@ impl Pace {
     pub fn after(&mut self, pixels: usize, samples: u32, time: Duration) {
         let samples = f64::from(samples.max(1));
         let cost = time.as_secs_f64() / (pixels.max(1) as f64 * samples);
-        let cost = self.cost.map_or(cost, |before| 0.5 * (before + cost));
-        self.cost = Some(cost);
-        let all = self.full.area() as f64 * samples * cost;
+        // The first draft also compiles kernels and fills caches, so that its cost is replaced.
+        self.cost = if self.drafts < 2 { cost } else { 0.5 * (self.cost + cost) };
+        self.drafts += 1;
+        let all = self.full.area() as f64 * samples * self.cost;
         let side = |share: f64| (all / (share * self.target.as_secs_f64())).sqrt().ceil().max(1.0) as u32;
         let (coarser, finer) = (side(1.0), side(MARGIN));
         // Between the two the resolution is good as it is.

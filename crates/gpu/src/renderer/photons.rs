@@ -6,7 +6,7 @@
 //! hashed cells in the order of their paths, so that nothing depends on the order of threads, and
 //! are taken back to the device, where camera paths gather them.
 
-use description::SppmDesc;
+use description::{SppmDesc, merging_radius};
 use math::Bounds2i;
 use rayon::prelude::*;
 use scene::{ShutterSample, View};
@@ -14,9 +14,6 @@ use scene::{ShutterSample, View};
 use super::scene_buffers::SceneBuffers;
 use super::{WORKGROUP, workgroups};
 use crate::device::{Buffer, GpuError, Kernel};
-
-/// The α of [Knaus 2011] by which the radius shrinks.
-const ALPHA: f64 = 2.0 / 3.0;
 
 /// The most photons that light paths may make at a time, unless one path may make more.
 const MAX_PHOTONS: usize = 1 << 20;
@@ -109,7 +106,7 @@ impl Photons {
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<PhotonGrid>, GpuError> {
         let (device, shutter) = (scene.device(), ShutterSample::of_pass(view, self.seed, pass));
-        let radius = radius(self.radius, pass);
+        let radius = merging_radius(self.radius, SppmDesc::ALPHA, pass);
         let shared = Batch {
             pass_number: pass,
             most: self.most as u32,
@@ -165,12 +162,6 @@ impl PhotonGrid {
         scene.device().write(&self.buffer, &[batch])?;
         scene.run(kernel, [&self.buffer, samples], workgroups(size))
     }
-}
-
-/// The radius of a pass, counted from 0, given that of the first one [Knaus 2011].
-fn radius(first: f32, pass: u32) -> f32 {
-    let shrunk: f64 = (1..=pass).map(|i| (f64::from(i) + ALPHA) / (f64::from(i) + 1.0)).product();
-    (f64::from(first) * shrunk.sqrt()) as f32
 }
 
 /// Photons in the order of the buckets of their cells, and within one in that of their paths: the

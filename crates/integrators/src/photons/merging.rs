@@ -29,6 +29,7 @@
 //!
 //! Sources: [Knaus 2011]; [Hachisuka 2009].
 
+use description::merging_radius;
 use geometry::RayStats;
 use image::require_memory;
 use rayon::prelude::*;
@@ -111,9 +112,7 @@ impl Merging {
 
     /// The radius of a pass, counted from 0.
     pub fn radius(&self, pass: u32) -> f32 {
-        let alpha = f64::from(self.alpha);
-        let shrunk: f64 = (1..=pass).map(|i| (f64::from(i) + alpha) / (f64::from(i) + 1.0)).product();
-        (f64::from(self.radius) * shrunk.sqrt()) as f32
+        merging_radius(self.radius, self.alpha, pass)
     }
 
     /// The wavelengths and the time of a pass.

@@ -40,9 +40,6 @@ use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
 
-/// The α of the radius.
-const ALPHA: f32 = 2.0 / 3.0;
-
 /// Stochastic progressive photon mapping.
 #[derive(Debug)]
 pub struct Sppm {
@@ -56,7 +53,7 @@ impl Sppm {
     /// `sampler` is for camera paths, `photon_seed` for photons.
     pub fn new(settings: SppmDesc, sampler: Sampler, photon_seed: u32) -> Self {
         // Each pass begins with the radius that its film and scene give.
-        let merging = Merging::new(1.0, ALPHA, photon_seed);
+        let merging = Merging::new(1.0, SppmDesc::ALPHA, photon_seed);
         Self { settings, sampler, lights: Lights::none(), merging }
     }
 }

@@ -85,6 +85,11 @@ fn the_resolution_holds_the_frame_time() {
     let mut pace = Pace::new(TARGET, full);
     pace.after(100, 1, Duration::from_secs(60));
     assert_eq!(pace.n(), 30);
+    // What only the first picture costs, such as the compilation of kernels, is forgotten at once.
+    pace.after(1024, 1, Duration::from_micros(100));
+    let mut other = Pace::new(TARGET, full);
+    other.after(1024, 1, Duration::from_micros(100));
+    assert_eq!(pace.n(), other.n());
 }
 
 #[test]
