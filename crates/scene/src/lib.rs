@@ -3,6 +3,7 @@
 //! [`compile`] turns a description into an immutable [`Scene`]. Its parts are stored in tables and
 //! refer to each other by small ids. A [`View`] adds the camera.
 
+mod cache;
 pub mod camera;
 mod compile;
 mod footprint;
@@ -19,6 +20,7 @@ pub mod texture;
 mod traits;
 mod view;
 
+pub use cache::SceneCache;
 pub use compile::{Compiled, compile};
 pub use footprint::Footprint;
 pub use geometry::RayStats;

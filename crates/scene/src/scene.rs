@@ -1,5 +1,6 @@
 //! The compiled scene: geometry, materials and lights.
 
+use crate::cache::SceneCache;
 use crate::camera::{CameraRay, CameraSample};
 use crate::footprint::Footprint;
 use crate::interaction::SurfaceInteraction;
@@ -24,8 +25,8 @@ use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Bxdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::fmt;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Material, alpha and lights of one geometry of the world.
 #[derive(Clone, Copy, Debug)]
@@ -102,9 +103,15 @@ pub struct Scene {
     pub(crate) uses_footprints: bool,
     pub(crate) names: Names,
     pub(crate) traits: SceneTraits,
+    pub(crate) cache: SceneCache,
 }
 
 impl Scene {
+    /// What algorithms have computed of the scene as it is, whatever the view.
+    pub fn cache(&self) -> &SceneCache {
+        &self.cache
+    }
+
     /// The transform from render space, in which rays are traced, to world space.
     pub fn world_from_render(&self) -> DMat4 {
         self.world_from_render
@@ -171,9 +178,18 @@ impl Scene {
         self.lights.infinite()
     }
 
-    /// A sampler of the lights; `None` if `cancel` is set while it is built.
-    pub fn light_sampler(&self, desc: LightSamplerDesc, cancel: &AtomicBool) -> Option<LightSampler> {
-        LightSampler::new(desc, self.lights(), cancel)
+    /// A sampler of the lights, the same one for all views; `None` if `cancel` is set while it is
+    /// built.
+    pub fn light_sampler(&self, desc: LightSamplerDesc, cancel: &AtomicBool) -> Option<Arc<LightSampler>> {
+        type Built = Mutex<Vec<(LightSamplerDesc, Arc<LightSampler>)>>;
+        let built = self.cache.of::<Built>();
+        let all = || built.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = all().iter().find(|(known, _)| *known == desc).map(|(_, sampler)| Arc::clone(sampler));
+        known.or_else(|| {
+            let sampler = Arc::new(LightSampler::new(desc, self.lights(), cancel)?);
+            all().push((desc, Arc::clone(&sampler)));
+            Some(sampler)
+        })
     }
 
     /// The geometry, without materials.
@@ -213,6 +229,7 @@ impl Scene {
             })
             .collect();
         let refitted = self.world.refit_or_rebuild(moved?, BuildQuality::Balanced);
+        self.cache = SceneCache::default();
         refitted.map(drop).map_err(|error| match error {
             RefitError::Unknown(id) | RefitError::Different(id) => MoveError::Centers(id),
         })

@@ -1,5 +1,7 @@
 //! The context of paths that are sampled from both ends.
 
+use std::sync::Arc;
+
 use description::LightSamplerDesc;
 use scene::light_sampler::{LightSampler, PowerLightSampler};
 use scene::{Scene, View};
@@ -13,7 +15,7 @@ use crate::{Cancelled, Control};
 #[derive(Clone, Debug)]
 pub(crate) struct Lights {
     /// For next-event estimation at a vertex.
-    pub seen_from: LightSampler,
+    pub seen_from: Arc<LightSampler>,
     /// For the first vertices of light subpaths.
     pub emitting: PowerLightSampler,
     /// Media where light subpaths start, too.
@@ -23,7 +25,7 @@ pub(crate) struct Lights {
 impl Lights {
     /// Samplers of no lights.
     pub fn none() -> Self {
-        Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default(), media: None }
+        Self { seen_from: Arc::default(), emitting: PowerLightSampler::default(), media: None }
     }
 
     /// Samplers of the lights of a scene.

@@ -29,7 +29,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::{pass_through, throughput};
 use crate::transport::single_scattering::Scattering;
-use crate::transport::surroundings::{Surroundings, picture};
+use crate::transport::surroundings::{AllSurroundings, Surroundings, picture};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
@@ -119,8 +119,9 @@ impl Node {
 }
 
 impl RayIntegrator for Whitted {
-    fn prepare(&mut self, _: &Scene, _: &View, _: &Control) -> Result<(), Cancelled> {
-        self.surroundings = Arc::default();
+    fn prepare(&mut self, scene: &Scene, view: &View, _: &Control) -> Result<(), Cancelled> {
+        let all = scene.cache().of::<AllSurroundings>();
+        self.surroundings = all.of((self.settings, view.medium, view.options));
         Ok(())
     }
 

@@ -46,6 +46,8 @@ mod surfaces;
 mod tests;
 mod unsupported;
 
+use std::sync::Arc;
+
 use description::{Diagnostic, LightSamplerDesc, RadiosityDesc};
 use film::{Film, FilmTile, Sample};
 use geometry::RayStats;
@@ -76,7 +78,7 @@ pub struct Radiosity {
 /// The solution of a scene, and its display.
 struct State {
     solution: Solution,
-    lights: LightSampler,
+    lights: Arc<LightSampler>,
     /// The number of shooting steps done.
     sent: u32,
     interpolation: Interpolation,

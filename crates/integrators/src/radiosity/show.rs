@@ -20,6 +20,7 @@ use sampling::warp;
 use scene::light_sampler::LightSampler;
 use scene::{Scene, SurfaceInteraction};
 use std::f32::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 use super::bands::Bands;
 use super::element::Albedo;
@@ -38,14 +39,14 @@ pub(crate) struct Interpolation {
     vertices: Vec<[Bands; 2]>,
     /// The ambient irradiance of unshot light.
     ambient: Bands,
-    lights: LightSampler,
+    lights: Arc<LightSampler>,
     /// Rays that gather light for each sample of a pixel; 0: interpolated.
     gather: u32,
 }
 
 impl Interpolation {
     /// Averages the irradiance of elements at their vertices.
-    pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather: u32) -> Self {
+    pub fn new(scene: &Scene, solution: &Solution, lights: &Arc<LightSampler>, gather: u32) -> Self {
         let mesh = &solution.cut.mesh;
         let elements = &solution.cut.elements;
         let outline =
@@ -64,7 +65,7 @@ impl Interpolation {
         for (sum, count) in vertices.iter_mut().zip(counts) {
             *sum = sum.map(|side| side * f32::max(count, 1.0).recip());
         }
-        Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
+        Self { outlines, vertices, ambient: solution.ambient(), lights: Arc::clone(lights), gather }
     }
 
     /// Memory taken, in bytes.

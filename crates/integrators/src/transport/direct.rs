@@ -7,6 +7,8 @@
 //! find (delta lights, specular scattering) counts fully. Lights may leave directions to the BSDF
 //! (`allow_incomplete`): their density is then zero there.
 
+use std::sync::Arc;
+
 use description::LightSamplerDesc;
 use lanes::Real;
 use math::{Normal3, Point3, Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
@@ -25,7 +27,7 @@ use crate::{Cancelled, Control};
 /// Direct lighting by one sample of one light, weighted against BSDF sampling.
 #[derive(Clone, Debug)]
 pub(crate) struct DirectLighting {
-    lights: LightSampler,
+    lights: Arc<LightSampler>,
     interfaces: Interfaces,
 }
 
@@ -46,7 +48,7 @@ impl DirectLighting {
 
     /// For no lights.
     pub fn none(interfaces: Interfaces) -> Self {
-        Self { lights: LightSampler::default(), interfaces }
+        Self { lights: Arc::default(), interfaces }
     }
 
     /// The choice of lights.

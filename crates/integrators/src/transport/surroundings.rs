@@ -14,13 +14,16 @@
 //! does not depend on which ray that is.
 
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
+use description::WhittedDesc;
 use geometry::Hit;
 use image::{Image, Projection};
 use math::{Ray, RayDifferential, Vec2, Vector3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
+use scene::ViewOptions;
+use scene::medium::MediumId;
 use scene::texture::SpectrumType;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, xyz_from};
 
@@ -48,6 +51,30 @@ impl Object {
             Some(instance) => Self::Instance(instance.0),
             None => Self::Geometry(hit.geometry.0),
         }
+    }
+}
+
+/// What pictures depend on besides the scene.
+pub(crate) type Circumstances = (WhittedDesc, Option<MediumId>, ViewOptions);
+
+/// The pictures of a scene in the last circumstances. They are the same from wherever the scene is
+/// viewed.
+#[derive(Debug, Default)]
+pub(crate) struct AllSurroundings(Mutex<Vec<(Circumstances, Arc<Surroundings>)>>);
+
+impl AllSurroundings {
+    /// The most circumstances of which pictures are kept.
+    const MOST: usize = 4;
+
+    /// The pictures that have been made in these circumstances.
+    pub fn of(&self, circumstances: Circumstances) -> Arc<Surroundings> {
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = all.iter().position(|(known, _)| *known == circumstances);
+        let last = known.map_or_else(|| (circumstances, Arc::default()), |place| all.remove(place));
+        let surroundings = Arc::clone(&last.1);
+        all.truncate(Self::MOST - 1);
+        all.insert(0, last);
+        surroundings
     }
 }
 

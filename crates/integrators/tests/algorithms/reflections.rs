@@ -1,7 +1,7 @@
 //! Reflections that are traced, looked up, or both.
 
 use alhazen_integrators::{Control, RayIntegrator, Tracer, Whitted};
-use description::{ReflectionsDesc, SceneDesc, ShapeDesc, WhittedDesc};
+use description::{ReflectionsDesc, SceneDesc, ShapeDesc, ShapeKind, SpheresDesc, WhittedDesc};
 use geometry::RayStats;
 use math::{Point3, Ray, Vector3};
 use sampling::Sampler;
@@ -18,7 +18,17 @@ fn whitted(reflections: ReflectionsDesc, distance: f32) -> Whitted {
 
 /// The luminance along a ray, relative to that of a lamp of scale 1: pictures have colours, whose
 /// spectra are others.
-fn along(reflections: ReflectionsDesc, distance: f32, scene: &Scene, (o, d): (Point3, Vector3)) -> f64 {
+fn along(reflections: ReflectionsDesc, distance: f32, scene: &Scene, ray: (Point3, Vector3)) -> f64 {
+    along_with_rays(reflections, distance, scene, ray).0
+}
+
+/// The same, and the number of rays that it took.
+fn along_with_rays(
+    reflections: ReflectionsDesc,
+    distance: f32,
+    scene: &Scene,
+    (o, d): (Point3, Vector3),
+) -> (f64, u64) {
     const SAMPLES: u32 = 64;
     let mut rays = whitted(reflections, distance);
     let ((_, view), control) = (viewed(&SceneDesc::default()), Control::default());
@@ -33,7 +43,7 @@ fn along(reflections: ReflectionsDesc, distance: f32, scene: &Scene, (o, d): (Po
         [l * CIE_Y_INTEGRAL, SampledSpectrum::ONE].map(|l| f64::from(y_from(&l, &lambda)))
     });
     let [found, white] = samples.fold([0.0; 2], |sum, [l, one]| [sum[0] + l, sum[1] + one]);
-    found / white
+    (found / white, stats.rays)
 }
 
 /// A mirror ball at the origin, and lamps with these places, radii and emissions.
@@ -116,4 +126,30 @@ fn the_object_is_missing_in_its_own_picture() {
     desc.shapes.push(ShapeDesc { material, ..at(sphere(1.0), v(0.0, 0.0, 0.0)) });
     let found = along(ReflectionsDesc::Environment, 1.0, &compile(&desc), UP);
     assert!((found - 1.0).abs() < 0.005, "{found}");
+}
+
+/// Pictures are of the scene and not of a view, so that others take them on; but not with other
+/// settings, and not when something has moved.
+#[test]
+fn pictures_are_made_once_until_something_changes() {
+    use ReflectionsDesc::{Environment, Hybrid};
+    let mut desc = SceneDesc::default();
+    white_sky(&mut desc);
+    let (silver, black) = (mirror(&mut desc, 0.0), diffuse(&mut desc, 0.0));
+    desc.shapes.push(ShapeDesc { material: silver, ..at(sphere(1.0), v(0.0, 0.0, 0.0)) });
+    let ball = SpheresDesc { centers: [v(100.0, 0.0, 0.0)].into(), radii: [20.0].into() };
+    desc.shapes.push(ShapeDesc { material: black, ..ShapeKind::Spheres(ball).into() });
+    let mut scene = compile(&desc);
+    let (dark, all) = along_with_rays(Environment, 1.0, &scene, RIGHT);
+    let (again, few) = along_with_rays(Environment, 1.0, &scene.clone(), RIGHT);
+    assert!(dark == 0.0 && again == 0.0, "{dark}, {again}");
+    assert!(all > 1_000_000 && few < 1000, "{all} rays, then {few}");
+    assert!(along_with_rays(Hybrid, 1.0, &scene, RIGHT).1 > 1_000_000);
+
+    let before = scene.clone();
+    let id = scene.sphere_sets().next().expect("a set").0;
+    scene.move_spheres([(id, [v(0.0, 100.0, 0.0)].into())]).expect("the set has one sphere");
+    let (light, new) = along_with_rays(Environment, 1.0, &scene, RIGHT);
+    assert!((light - 1.0).abs() < 0.005 && new > 1_000_000, "{light}, {new} rays");
+    assert!(along_with_rays(Environment, 1.0, &before, RIGHT).1 < 1000);
 }

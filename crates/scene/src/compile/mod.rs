@@ -16,6 +16,7 @@ mod spheres;
 mod subsurface;
 mod tessellation;
 
+use crate::cache::SceneCache;
 use crate::light::{AreaEmission, EmissionId, LightTable, SceneSphere};
 use crate::material::MaterialEntry;
 use crate::medium::Medium;
@@ -120,6 +121,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         uses_footprints,
         names,
         traits,
+        cache: SceneCache::default(),
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }

@@ -9,13 +9,14 @@ use description::{
     TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use testkit::{Chi2, Moments, Random, welch_test};
 
 const KINDS: [LightSamplerDesc; 4] =
     [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh, LightSamplerDesc::Exhaustive];
 
-fn sampler(scene: &Scene, desc: LightSamplerDesc) -> LightSampler {
+fn sampler(scene: &Scene, desc: LightSamplerDesc) -> Arc<LightSampler> {
     scene.light_sampler(desc, &AtomicBool::new(false)).expect("nobody cancels it")
 }
 

@@ -12,6 +12,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::command::{cargo, succeed, target};
+use crate::scenes;
 
 /// The forests, from the smallest.
 const FORESTS: [&str; 4] = ["forest-6", "forest-7", "forest-8", "forest"];
@@ -31,7 +32,7 @@ struct Cost {
 /// `target/forest.svg`.
 pub fn measure(root: &Path) -> Result<(), String> {
     succeed(cargo(root).args(["build", "--release", "--quiet", "--package", "alhazen-cli"]))?;
-    crate::scenes::run(root, &["forest"])?;
+    scenes::run(root, &["forest"], scenes::Size::Whole)?;
     let costs = FORESTS.iter().map(|name| cost(root, name)).collect::<Result<Vec<_>, _>>()?;
     println!("| triangles | trees | memory | ns a ray | tests of extents and primitives a ray |");
     println!("|---|---|---|---|---|");

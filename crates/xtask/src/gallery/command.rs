@@ -9,15 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
 use crate::command::target;
-
-/// How large pictures are made.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Size {
-    /// As the command says.
-    Whole,
-    /// So small that it takes no time.
-    Small,
-}
+use crate::scenes::Size;
 
 /// What a command has drawn.
 pub struct Drawn {
@@ -62,7 +54,8 @@ fn run_and_keep(
     also: Option<&Path>,
 ) -> Result<Drawn, String> {
     let failed = |problem: String| format!("`{line}`: {problem}");
-    let words: Vec<&str> = line.split_whitespace().collect();
+    let line_of_size = line.replace(Size::Whole.folder(), size.folder());
+    let words: Vec<&str> = line_of_size.split_whitespace().collect();
     let ["alhazen", name @ ("render" | "trace-pixel" | "view"), rest @ ..] = &words[..] else {
         return Err(failed("it is none of `alhazen render`, `trace-pixel` and `view`".into()));
     };

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use command::Size;
+use super::scenes::{self, Size};
 use page::Page;
 
 /// The folders of texts and of pages.
@@ -32,7 +32,7 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     let program = super::command::target(root).join("release/alhazen");
     let pages = pages(root)?;
     let is_chosen = |page: &Page| names.is_empty() || names.iter().any(|name| page.file().contains(name));
-    make_scenes(root, pages.iter().filter(|page| is_chosen(page)))?;
+    make_scenes(root, pages.iter().filter(|page| is_chosen(page)), Size::Whole)?;
     for (i, page) in pages.iter().enumerate().filter(|(_, page)| is_chosen(page)) {
         println!("{}", page.title);
         let neighbours = [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)));
@@ -44,11 +44,11 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     fs::write(&index, page::index(&pages)).map_err(|error| format!("{}: {error}", index.display()))
 }
 
-/// Runs the commands of all pages at a small size with the program of tests.
+/// Runs the commands of all pages with small scenes and pictures, and with the program of tests.
 pub fn check(root: &Path) -> Result<(), String> {
     let program = super::command::target(root).join("checked/alhazen");
     let pages = pages(root)?;
-    make_scenes(root, pages.iter())?;
+    make_scenes(root, pages.iter(), Size::Small)?;
     for page in pages {
         for command in page.commands() {
             command::run(root, &program, &command, Size::Small)?;
@@ -58,11 +58,11 @@ pub fn check(root: &Path) -> Result<(), String> {
 }
 
 /// Makes the scenes of formulas that pages draw.
-fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>) -> Result<(), String> {
+fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>, size: Size) -> Result<(), String> {
     let commands: Vec<String> = pages.flat_map(Page::commands).collect();
     let names = made_scenes(&commands);
     // No names at all would be all scenes.
-    if names.is_empty() { Ok(()) } else { super::scenes::run(root, &Vec::from_iter(names)) }
+    if names.is_empty() { Ok(()) } else { scenes::run(root, &Vec::from_iter(names), size) }
 }
 
 /// The names of the scenes in `target/scenes` that commands draw.

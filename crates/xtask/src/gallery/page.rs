@@ -5,7 +5,8 @@ use std::path::Path;
 
 use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd, html};
 
-use super::command::{self, Drawn, Size};
+use super::command::{self, Drawn};
+use crate::scenes::Size;
 
 /// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line;
 /// those of `sh compared` are compared with the last one of the block.

@@ -9,12 +9,15 @@ use std::path::Path;
 
 use planet::{Input, Planet, Viewpoint, Walker, scene};
 
+use super::Size;
+
 /// Planets by the power of ten of their spheres, and the steps of a sixtieth of a second before
 /// they are seen.
 const PLANETS: [(&str, usize, u32); 2] = [("5", 100_000, 120), ("6", 1_000_000, 30)];
 
-pub fn make(folder: &Path) -> io::Result<()> {
+pub fn make(folder: &Path, size: Size) -> io::Result<()> {
     for (power, count, steps) in PLANETS {
+        let (count, steps) = if size == Size::Whole { (count, steps) } else { (count / 100, 2) };
         let mut planet = Planet::new(count);
         let mut walker = Walker::new(&planet);
         for _ in 0..steps {

@@ -40,6 +40,8 @@ pub struct Detail {
 impl Detail {
     /// Two million triangles and a hundred thousand hairs.
     pub const WHOLE: Self = Self { cell: 1.15, steps: 2, hairs: 100_000 };
+    /// A few thousand triangles.
+    pub const SMALL: Self = Self { cell: 6.0, steps: 1, hairs: 200 };
 }
 
 /// Makes the scenes.
@@ -81,7 +83,7 @@ mod tests {
     fn files(name: &str) -> BTreeMap<String, Vec<u8>> {
         let folder = std::env::temp_dir().join(format!("{name}-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
-        make(&folder, Detail { cell: 6.0, steps: 1, hairs: 200 }).unwrap();
+        make(&folder, Detail::SMALL).unwrap();
         let read = |entry: io::Result<fs::DirEntry>| {
             let entry = entry.unwrap();
             (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())
