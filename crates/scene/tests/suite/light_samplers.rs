@@ -327,8 +327,8 @@ fn many_lights() -> Scene {
 
 #[test]
 fn the_light_bvh_does_not_depend_on_threads() {
-    let scene = many_lights();
     let by = |threads| {
+        let scene = many_lights();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| format!("{:?}", sampler(&scene, LightSamplerDesc::Bvh)))
     };
@@ -339,4 +339,14 @@ fn the_light_bvh_does_not_depend_on_threads() {
 fn building_the_light_bvh_can_be_cancelled() {
     let scene = many_lights();
     assert!(scene.light_sampler(LightSamplerDesc::Bvh, &AtomicBool::new(true)).is_none());
+}
+
+#[test]
+fn a_sampler_is_built_once_for_a_scene() {
+    let scene = many_lights();
+    for kind in KINDS {
+        let built = sampler(&scene, kind);
+        assert!(Arc::ptr_eq(&built, &sampler(&scene.clone(), kind)), "{kind:?}");
+        assert!(!Arc::ptr_eq(&built, &sampler(&many_lights(), kind)), "{kind:?}");
+    }
 }
