@@ -29,7 +29,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::{pass_through, throughput};
 use crate::transport::single_scattering::Scattering;
-use crate::transport::surroundings::{AllSurroundings, Surroundings, picture};
+use crate::transport::surroundings::{AllSurroundings, Surroundings};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
@@ -58,14 +58,13 @@ impl Whitted {
         (w, lambda): (Vector3, &SampledWavelengths),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        self.surroundings.radiance(hit, (w, lambda), || {
-            let traced = Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
-            let beyond = match self.settings.reflections {
-                ReflectionsDesc::Hybrid => 0.5 * self.distance(tracer),
-                _ => 0.0,
-            };
-            picture(hit, &traced, (self.settings.reflection_resolution, beyond), tracer)
-        })
+        let traced = Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
+        let beyond = match self.settings.reflections {
+            ReflectionsDesc::Hybrid => 0.5 * self.distance(tracer),
+            _ => 0.0,
+        };
+        let picture = (self.settings.reflection_resolution, beyond);
+        self.surroundings.radiance(hit, (w, lambda), &traced, picture, tracer)
     }
 
     /// From where on reflected rays of a hybrid see the picture alone.

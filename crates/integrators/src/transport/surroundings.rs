@@ -9,17 +9,17 @@
 //! Where rays are traced nearby, what is near must not be in the picture, too: it is of what lies
 //! beyond a distance from that point.
 //!
-//! A picture is square, in the equal-area octahedral mapping, and interpolated bilinearly. It is
-//! made when the first ray is reflected by its object, from random numbers of its own, so that it
-//! does not depend on which ray that is.
+//! A picture is square, in the equal-area octahedral mapping, and interpolated bilinearly. Each of
+//! its pixels is computed when a reflection first looks it up, from random numbers of its own, so
+//! that it does not depend on which ray that is.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
 use description::WhittedDesc;
 use geometry::Hit;
-use image::{Image, Projection};
-use math::{Ray, RayDifferential, Vec2, Vector3};
+use image::{Projection, WrapMode};
+use math::{Point3, Ray, RayDifferential, Vec2, Vector3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::ViewOptions;
@@ -78,70 +78,124 @@ impl AllSurroundings {
     }
 }
 
-/// The pictures that have been made.
+/// The pictures of objects. An object has none where there is no memory for it.
 #[derive(Debug, Default)]
-pub(crate) struct Surroundings(RwLock<HashMap<Object, Arc<Image>>>);
+pub(crate) struct Surroundings(RwLock<HashMap<Object, Option<Arc<Picture>>>>);
 
 impl Surroundings {
     /// The radiance that arrives from direction `w`, of unit length, at the place of the object
-    /// that was hit, whose picture `make` makes if there is none yet; black without it.
+    /// that was hit, as `rays` estimate it, beyond a distance; the picture has `resolution` pixels
+    /// along an edge. Black after a cancellation.
     pub fn radiance(
         &self,
         hit: &Hit,
         (w, lambda): (Vector3, &SampledWavelengths),
-        make: impl FnOnce() -> Option<Image>,
+        rays: &impl RayIntegrator,
+        (resolution, beyond): (u32, f32),
+        tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let object = Object::of(hit);
         let known = self.0.read().unwrap_or_else(PoisonError::into_inner).get(&object).cloned();
-        let picture = match known {
-            Some(picture) => picture,
-            None => {
-                let Some(picture) = make() else { return SampledSpectrum::ZERO };
-                let mut pictures = self.0.write().unwrap_or_else(PoisonError::into_inner);
-                pictures.entry(object).or_insert(Arc::new(picture)).clone()
-            }
-        };
-        let projection = Projection::EqualArea;
-        let rgb = picture.bilerp_rgb(projection.position(w), projection.wrap());
-        SpectrumType::Illuminant.sample_rgb(color_space(), rgb, lambda)
+        let picture = known.unwrap_or_else(|| {
+            let mut pictures = self.0.write().unwrap_or_else(PoisonError::into_inner);
+            let picture = || Picture::new(place(hit, tracer), resolution).map(Arc::new);
+            pictures.entry(object).or_insert_with(picture).clone()
+        });
+        let pixel = |at| pixel(at, object, picture.as_deref()?, rays, beyond, tracer);
+        let rgb = picture.as_ref().and_then(|picture| picture.at(w, pixel)).unwrap_or_default();
+        SpectrumType::Illuminant.sample_rgb(color_space(), rgb.to_array(), lambda)
     }
 }
+
+/// The picture of what surrounds an object.
+#[derive(Debug)]
+pub(crate) struct Picture {
+    /// The place of the object.
+    center: Point3,
+    /// Pixels along an edge.
+    resolution: u32,
+    pixels: Box<[OnceLock<Rgb>]>,
+}
+
+impl Picture {
+    /// A picture without pixels yet; `None` if there is no memory for it.
+    fn new(center: Point3, resolution: u32) -> Option<Self> {
+        let count = resolution as usize * resolution as usize;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).ok()?;
+        pixels.resize_with(count, OnceLock::new);
+        Some(Self { center, resolution, pixels: pixels.into() })
+    }
+
+    /// The radiance from a direction of unit length, of the four pixels around it, each of which
+    /// `compute` computes if it is not known; `None` if it gives none.
+    fn at(&self, w: Vector3, mut compute: impl FnMut([u32; 2]) -> Option<Rgb>) -> Option<Rgb> {
+        let place = PROJECTION.position(w);
+        let [x, y] = [place.x, place.y].map(|t| t * self.resolution as f32 - 0.5);
+        // The pixels on both sides along an axis, each with its weight.
+        let sides = |t: f32| {
+            let (first, weight) = (t.floor(), t - t.floor());
+            [(first as i32, 1.0 - weight), (first as i32 + 1, weight)]
+        };
+        let mut sum = Rgb::default();
+        for (y, weight_y) in sides(y) {
+            for (x, weight_x) in sides(x) {
+                let (x, y) = WRAP.apply(x, y, self.resolution, self.resolution)?;
+                let pixel = &self.pixels[(y * self.resolution + x) as usize];
+                let value = match pixel.get() {
+                    Some(value) => *value,
+                    None => {
+                        let value = compute([x, y])?;
+                        *pixel.get_or_init(|| value)
+                    }
+                };
+                sum += value * (weight_x * weight_y);
+            }
+        }
+        Some(sum)
+    }
+}
+
+/// The mapping of pictures, and what lies beyond their edges.
+const PROJECTION: Projection = Projection::EqualArea;
+const WRAP: WrapMode = WrapMode::OctahedralSphere;
 
 /// The colour space of pictures.
 fn color_space() -> &'static RgbColorSpace {
     RgbColorSpace::rec2020()
 }
 
-/// The picture of what surrounds the object that was hit, beyond a distance, with `resolution`
-/// pixels along an edge and radiance as `rays` estimate it; `None` after a cancellation, and where
-/// there is no memory for it.
-pub(crate) fn picture(
-    hit: &Hit,
+/// Where an object is seen from: the middle of its box, or of the scene if it has none.
+fn place(hit: &Hit, tracer: &Tracer) -> Point3 {
+    let center = tracer.scene.world().bounds_around(hit).centroid();
+    if center.is_finite() { center } else { tracer.scene.sphere().center }
+}
+
+/// A pixel of the picture of what surrounds an object beyond a distance, with radiance as `rays`
+/// estimate it; `None` after a cancellation.
+fn pixel(
+    [x, y]: [u32; 2],
+    object: Object,
+    picture: &Picture,
     rays: &impl RayIntegrator,
-    (resolution, beyond): (u32, f32),
+    beyond: f32,
     tracer: &mut Tracer,
-) -> Option<Image> {
-    let (object, bounds) = (Object::of(hit), tracer.scene.world().bounds_around(hit));
-    let center = bounds.centroid();
-    let center = if center.is_finite() { center } else { tracer.scene.sphere().center };
+) -> Option<Rgb> {
     let mut sampler = Sampler::Independent(Independent::new(SAMPLES, 0));
-    let picture = Image::try_from_fn(resolution, resolution, ["R", "G", "B"], |x, y| {
-        let mut sum = Rgb::splat(0.0);
-        for index in 0..SAMPLES {
-            sampler.start_pixel_sample([x as i32, y as i32], index, 0);
-            let place = sampler.get_pixel_2d() + Vec2::new(x as f32, y as f32);
-            let w = Projection::EqualArea.direction(place / resolution as f32);
-            let mut lambda = SampledWavelengths::sample_visible((index as f32 + 0.5) / SAMPLES as f32);
-            let l = tracer.apart(&mut sampler, |tracer| {
-                let ray = leave(object, Ray::new(center + w * beyond, w, 0.0), tracer);
-                rays.li(tracer, RayDifferential::from(ray), &mut lambda)
-            });
-            sum += color_space().to_rgb(xyz_from(&l, &lambda));
-        }
-        (sum.clamp_zero() / SAMPLES as f32).to_array()
-    });
+    let mut sum = Rgb::default();
+    for index in 0..SAMPLES {
+        sampler.start_pixel_sample([x as i32, y as i32], index, 0);
+        let place = sampler.get_pixel_2d() + Vec2::new(x as f32, y as f32);
+        let w = PROJECTION.direction(place / picture.resolution as f32);
+        let mut lambda = SampledWavelengths::sample_visible((index as f32 + 0.5) / SAMPLES as f32);
+        let l = tracer.apart(&mut sampler, |tracer| {
+            let ray = leave(object, Ray::new(picture.center + w * beyond, w, 0.0), tracer);
+            rays.li(tracer, RayDifferential::from(ray), &mut lambda)
+        });
+        sum += color_space().to_rgb(xyz_from(&l, &lambda));
+    }
     tracer.finish().ok()?;
-    picture.ok()
+    Some(sum.clamp_zero() / SAMPLES as f32)
 }
 
 /// A ray, or its part behind all surfaces of an object that it hits before others.
