@@ -129,7 +129,8 @@ fn the_object_is_missing_in_its_own_picture() {
 }
 
 /// Pictures are of the scene and not of a view, so that others take their pixels on; but not with
-/// other settings, and not when something has moved. The ray looks up four pixels of sixteen samples.
+/// other settings, and not when something has moved. The ray looks up four pixels of sixteen
+/// samples.
 #[test]
 fn pixels_of_pictures_are_computed_once_until_something_changes() {
     use ReflectionsDesc::{Environment, Hybrid};
