@@ -229,10 +229,11 @@ impl Scene {
             })
             .collect();
         let refitted = self.world.refit_or_rebuild(moved?, BuildQuality::Balanced);
-        self.cache = SceneCache::default();
-        refitted.map(drop).map_err(|error| match error {
+        refitted.map_err(|error| match error {
             RefitError::Unknown(id) | RefitError::Different(id) => MoveError::Centers(id),
-        })
+        })?;
+        self.cache = SceneCache::default();
+        Ok(())
     }
 
     /// The sets of spheres, in the order of their description.

@@ -58,13 +58,13 @@ impl Whitted {
         (w, lambda): (Vector3, &SampledWavelengths),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        let traced = Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
+        let traced = || Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
         let beyond = match self.settings.reflections {
             ReflectionsDesc::Hybrid => 0.5 * self.distance(tracer),
             _ => 0.0,
         };
         let picture = (self.settings.reflection_resolution, beyond);
-        self.surroundings.radiance(hit, (w, lambda), &traced, picture, tracer)
+        self.surroundings.radiance(hit, (w, lambda), traced, picture, tracer)
     }
 
     /// From where on reflected rays of a hybrid see the picture alone.

@@ -84,13 +84,13 @@ pub(crate) struct Surroundings(RwLock<HashMap<Object, Option<Arc<Picture>>>>);
 
 impl Surroundings {
     /// The radiance that arrives from direction `w`, of unit length, at the place of the object
-    /// that was hit, as `rays` estimate it, beyond a distance; the picture has `resolution` pixels
+    /// that was hit, as `rays()` estimate it, beyond a distance; the picture has `resolution` pixels
     /// along an edge. Black after a cancellation.
-    pub fn radiance(
+    pub fn radiance<R: RayIntegrator>(
         &self,
         hit: &Hit,
         (w, lambda): (Vector3, &SampledWavelengths),
-        rays: &impl RayIntegrator,
+        rays: impl Fn() -> R,
         (resolution, beyond): (u32, f32),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
@@ -101,7 +101,7 @@ impl Surroundings {
             let picture = || Picture::new(place(hit, tracer), resolution).map(Arc::new);
             pictures.entry(object).or_insert_with(picture).clone()
         });
-        let pixel = |at| pixel(at, object, picture.as_deref()?, rays, beyond, tracer);
+        let pixel = |at| pixel(at, object, picture.as_deref()?, &rays(), beyond, tracer);
         let rgb = picture.as_ref().and_then(|picture| picture.at(w, pixel)).unwrap_or_default();
         SpectrumType::Illuminant.sample_rgb(color_space(), rgb.to_array(), lambda)
     }

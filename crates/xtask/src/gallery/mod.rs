@@ -68,7 +68,8 @@ fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>, size: Siz
 /// The names of the scenes in `target/scenes` that commands draw.
 fn made_scenes(commands: &[String]) -> BTreeSet<&str> {
     let words = commands.iter().flat_map(|line| line.split_whitespace());
-    words.filter_map(|word| word.strip_prefix("target/scenes/")?.split('/').next()).collect()
+    let in_scenes = words.filter_map(|word| word.strip_prefix(Size::Whole.folder())?.strip_prefix('/'));
+    in_scenes.filter_map(|rest| rest.split('/').next()).collect()
 }
 
 /// The texts in the order of their names.
