@@ -84,8 +84,8 @@ pub(crate) struct Surroundings(RwLock<HashMap<Object, Option<Arc<Picture>>>>);
 
 impl Surroundings {
     /// The radiance that arrives from direction `w`, of unit length, at the place of the object
-    /// that was hit, as `rays()` estimate it, beyond a distance; the picture has `resolution` pixels
-    /// along an edge. Black after a cancellation.
+    /// that was hit, as `rays()` estimate it, beyond a distance; the picture has `resolution`
+    /// pixels along an edge. Black after a cancellation.
     pub fn radiance<R: RayIntegrator>(
         &self,
         hit: &Hit,
