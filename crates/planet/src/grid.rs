@@ -1,7 +1,7 @@
 //! A grid of cells in space, in which spheres near a point are found.
 //!
-//! Cells are hashed into a table; the spheres of a cell lie side by side in memory, in the order of
-//! their numbers.
+//! Columns of cells are hashed into a table, where their cells follow each other; so the spheres of a
+//! range of cells of a column lie side by side in memory, in the order of cells and numbers.
 
 use math::{Point3, Vec3};
 
@@ -67,18 +67,24 @@ impl Grid {
         let (low, high) = (cell(p - reach), cell(p + reach));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    let row = row([x, y, z], rows);
-                    let range = self.starts[row] as usize..self.starts[row + 1] as usize;
+                let first = row([x, y, low[2]], rows);
+                // The first row of the table follows its last one.
+                let last = first + ((high[2] - low[2]) as usize).min(rows - 1);
+                let mut visit_rows = |first: usize, last: usize| {
+                    let range = self.starts[first] as usize..self.starts[last + 1] as usize;
                     for entry in &self.entries[range] {
                         let limit = distance + entry.radius;
-                        // Other cells may have the same row.
+                        // Other columns may have the same rows.
                         if entry.center.distance_squared(p) <= limit * limit
-                            && cell(entry.center) == [x, y, z]
+                            && cell(entry.center)[..2] == [x, y]
                         {
                             visit(entry);
                         }
                     }
+                };
+                visit_rows(first, last.min(rows - 1));
+                if last >= rows {
+                    visit_rows(0, last - rows);
                 }
             }
         }
@@ -88,8 +94,6 @@ impl Grid {
 /// The row of a cell in a table whose size is a power of two.
 #[inline]
 fn row([x, y, z]: [i32; 3], rows: usize) -> usize {
-    let mixed = (x as u32).wrapping_mul(0x8da6_b343)
-        ^ (y as u32).wrapping_mul(0xd816_3841)
-        ^ (z as u32).wrapping_mul(0xcb1a_b31f);
-    (mixed ^ mixed >> 15) as usize & (rows - 1)
+    let mixed = (x as u32).wrapping_mul(0x8da6_b343) ^ (y as u32).wrapping_mul(0xd816_3841);
+    (mixed ^ mixed >> 15).wrapping_add(z as u32) as usize & (rows - 1)
 }

@@ -66,7 +66,7 @@ pub struct Planet {
     moon: Option<usize>,
     /// Steps for which each body has been slow.
     still: Vec<u8>,
-    /// The bodies that move, in order.
+    /// The bodies that move.
     moving: Vec<u32>,
     /// The place of each body among those that move.
     place: Vec<u32>,
@@ -215,6 +215,7 @@ impl Planet {
         let mut movers = Vec::from_iter(walker);
         movers.extend(self.move_moon(dt));
         self.wake_around(&movers);
+        self.sort_moving();
         self.fall(dt);
         self.sort_stirred();
         let (contacts, ranges) = self.contacts(&movers, dt);
@@ -468,7 +469,17 @@ impl Planet {
             self.settled.around(p, size + NEAR, &mut carry);
             self.stirred_grid.around(p, size + NEAR, &mut carry);
         }
-        self.moving.sort_unstable();
+    }
+
+    /// Brings the bodies that move into an order in which near ones follow each other, so that what
+    /// is around them is in the cache.
+    fn sort_moving(&mut self) {
+        let center = &self.bodies.center;
+        let key = |&i: &u32| u64::from(place_on_curve(center[i as usize])) << 32 | u64::from(i);
+        let mut keys: Vec<u64> = self.moving.iter().map(key).collect();
+        keys.par_sort_unstable();
+        self.moving.clear();
+        self.moving.extend(keys.into_iter().map(|key| key as u32));
     }
 
     /// Lets bodies rest that have been slow for some time and touch something.
@@ -522,6 +533,14 @@ fn relaxed(
     };
     let places = vectors.par_iter().zip(ranges).enumerate().with_min_len(CHUNK);
     places.map(changed).collect()
+}
+
+/// The place of a point's cell of a metre on a Z-order curve.
+fn place_on_curve(p: Point3) -> u32 {
+    let [x, y, z] = p.to_array().map(|x| x.floor() as i32 as u32);
+    (0..10).fold(0, |code, bit| {
+        code | (x >> bit & 1) << (3 * bit) | (y >> bit & 1) << (3 * bit + 1) | (z >> bit & 1) << (3 * bit + 2)
+    })
 }
 
 /// Whether a held sphere falls when another one is torn off that it touches from above.
