@@ -177,7 +177,10 @@ impl TileSums<'_> {
         let (index, low) = (pixel * self.components + component, low_bits(units));
         self.add_low(index, low);
         // `units` − `low` is a multiple of 2⁹⁶ that may take more than 128 bits.
-        self.add_high(index, (units >> 96) as i64 + i64::from(low < 0));
+        let high = (units >> 96) as i64 + i64::from(low < 0);
+        if high != 0 {
+            self.add_high(index, high);
+        }
     }
 
     /// Adds units that take less than 127 bits.

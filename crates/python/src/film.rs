@@ -17,17 +17,51 @@ use crate::picture::{Picture, image_error};
 /// The film of a render or of some of its shards, with exact sums: merged in any order, shards give
 /// the bits of the whole. It is what the command line writes with --checkpoint.
 #[pyclass(frozen, module = "alhazen")]
-pub struct Film(Mutex<SavedRender>);
+pub struct Film(Mutex<Contents>);
+
+struct Contents {
+    /// Its file, read when more than bytes is asked for: shards travel as they are. Else empty.
+    file: Vec<u8>,
+    saved: Option<SavedRender>,
+}
 
 impl Film {
-    /// A film of a saved render.
-    pub fn new(saved: SavedRender) -> Self {
-        Self(Mutex::new(saved))
+    /// A film of the bytes of a film file.
+    pub fn of_file(file: Vec<u8>) -> Self {
+        Self(Mutex::new(Contents { file, saved: None }))
     }
 
-    fn saved(&self) -> MutexGuard<'_, SavedRender> {
+    fn new(saved: SavedRender) -> Self {
+        Self(Mutex::new(Contents { file: Vec::new(), saved: Some(saved) }))
+    }
+
+    fn contents(&self) -> MutexGuard<'_, Contents> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Uses the film without Python's lock.
+    fn with<T: Send>(
+        &self,
+        py: Python,
+        use_it: impl FnOnce(&mut SavedRender) -> Result<T, FilmFileError> + Send,
+    ) -> PyResult<T> {
+        let done = py.detach(|| {
+            let Contents { file, saved } = &mut *self.contents();
+            match saved {
+                Some(saved) => use_it(saved),
+                None => {
+                    let saved = saved.insert(read(file)?);
+                    *file = Vec::new();
+                    use_it(saved)
+                }
+            }
+        });
+        done.map_err(film_error)
+    }
+}
+
+fn read(bytes: &[u8]) -> Result<SavedRender, FilmFileError> {
+    SavedRender::read(bytes, &ReadLimits::for_file(bytes.len() as u64))
 }
 
 #[pymethods]
@@ -46,22 +80,21 @@ impl Film {
     /// A film of the bytes of a film file.
     #[staticmethod]
     fn from_bytes(py: Python, data: &[u8]) -> PyResult<Self> {
-        let limits = ReadLimits::for_file(data.len() as u64);
-        let saved = py.detach(|| SavedRender::read(data, &limits));
-        Ok(Self::new(saved.map_err(film_error)?))
+        Ok(Self::new(py.detach(|| read(data)).map_err(film_error)?))
     }
 
     /// The bytes of its film file.
     fn __bytes__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| self.saved().write(Vec::new()));
+        let bytes = py.detach(|| match &*self.contents() {
+            Contents { saved: Some(saved), .. } => saved.write(Vec::new()),
+            Contents { file, .. } => Ok(file.clone()),
+        });
         Ok(PyBytes::new(py, &bytes.map_err(film_error)?))
     }
 
     /// Writes its film file, which replaces one that is there only when it is whole.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
-        let written = py
-            .detach(|| replace_file_with(&path, |file| self.saved().write(BufWriter::new(file)).map(|_| ())));
-        written.map_err(film_error)
+        self.with(py, |saved| replace_file_with(&path, |file| saved.write(BufWriter::new(file)).map(|_| ())))
     }
 
     /// Adds another film of the same render, as a Film or as the bytes of a film file. Raises
@@ -74,37 +107,37 @@ impl Film {
         };
         let data = bytes.as_bytes();
         let limits = ReadLimits::for_file(data.len() as u64);
-        py.detach(|| self.saved().merge(data, &limits)).map_err(film_error)
+        self.with(py, |saved| saved.merge(data, &limits))
     }
 
     /// The number of passes that it has.
     #[getter]
-    fn passes(&self) -> u32 {
-        self.saved().done().count()
+    fn passes(&self, py: Python) -> PyResult<u32> {
+        self.with(py, |saved| Ok(saved.done().count()))
     }
 
     /// The shards that it has, as (index, count).
     #[getter]
-    fn shards(&self) -> Vec<(u32, u32)> {
-        self.saved().shards().iter().map(|shard| (shard.index, shard.count)).collect()
+    fn shards(&self, py: Python) -> PyResult<Vec<(u32, u32)>> {
+        self.with(py, |saved| Ok(saved.shards().iter().map(|shard| (shard.index, shard.count)).collect()))
     }
 
     /// The shards and passes that it lacks, by name; it is whole if there are none.
     #[getter]
-    fn missing(&self) -> Vec<String> {
-        self.saved().missing()
+    fn missing(&self, py: Python) -> PyResult<Vec<String>> {
+        self.with(py, |saved| Ok(saved.missing()))
     }
 
     /// The estimated relative standard error of its picture; None if its passes do not alternate
     /// between two films, or are too few.
     #[getter]
-    fn noise(&self, py: Python) -> Option<f64> {
-        py.detach(|| self.saved().noise())
+    fn noise(&self, py: Python) -> PyResult<Option<f64>> {
+        self.with(py, |saved| Ok(saved.noise()))
     }
 
     /// The picture of its passes.
     fn image(&self, py: Python) -> PyResult<Picture> {
-        let collected = py.detach(|| Picture::collect(&self.saved().development()));
+        let collected = self.with(py, |saved| Ok(Picture::collect(&saved.development())))?;
         Picture::new(py, collected.map_err(image_error)?)
     }
 
@@ -114,8 +147,8 @@ impl Film {
         PyTuple::new(py, [make, PyTuple::new(py, [slf.get().__bytes__(py)?])?.into_any()])
     }
 
-    fn __repr__(&self) -> String {
-        format!("<alhazen.Film of {} passes>", self.passes())
+    fn __repr__(&self, py: Python) -> PyResult<String> {
+        Ok(format!("<alhazen.Film of {} passes>", self.passes(py)?))
     }
 }
 

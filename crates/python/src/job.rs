@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::sync::{Mutex, TryLockError};
 use std::time::Duration;
 
-use alhazen::film::ReadLimits;
 use alhazen::integrators::Limits;
-use alhazen::{Overrides, RenderOrder, SavedRender, Shard};
+use alhazen::{Overrides, RenderOrder, Shard};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
@@ -215,7 +214,7 @@ impl Job {
                 Ok(order.write(&job.session, job.header(), Vec::new()))
             })
         })?;
-        film_of(py, &bytes.map_err(film_error)?)
+        Ok(Film::of_file(bytes.map_err(film_error)?))
     }
 
     /// A film of this job without any pass. Only films of the same job merge with it.
@@ -227,7 +226,7 @@ impl Job {
             job.restart(alternate).map_err(image_error)?;
             self.order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
         })?;
-        film_of(py, &bytes)
+        Ok(Film::of_file(bytes))
     }
 
     fn __repr__(&self) -> String {
@@ -250,12 +249,6 @@ impl Job {
             Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err("the job has failed before")),
         })
     }
-}
-
-fn film_of(py: Python, bytes: &[u8]) -> PyResult<Film> {
-    let limits = ReadLimits::for_file(bytes.len() as u64);
-    let saved = py.detach(|| SavedRender::read(bytes, &limits));
-    Ok(Film::new(saved.map_err(film_error)?))
 }
 
 /// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call,

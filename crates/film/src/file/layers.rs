@@ -33,26 +33,24 @@ pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileEr
 /// identifiers.
 pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
     for tile in film.grid.row(row) {
-        let (range, mut numbers) = (film.grid.range(tile), Vec::new());
-        let mut put = |number: &dyn Fn(usize) -> i128| {
-            numbers.clear();
-            numbers.extend((0..range.len()).map(number));
-            put_block(payload, &numbers);
-        };
+        let range = film.grid.range(tile);
+        let pixels = range.len();
         for c in 0..film.color.components() {
-            put(&|pixel| film.color.units(tile, range.start, pixel, c));
+            put_block(payload, pixels, |pixel| film.color.units(tile, range.start, pixel, c));
         }
         if !film.counts.is_empty() {
-            put(&|pixel| film.counts[range.start + pixel].into());
+            put_block(payload, pixels, |pixel| film.counts[range.start + pixel].into());
         }
         for sums in [&film.data, &film.spectrum] {
             for c in 0..sums.components() {
-                put(&|pixel| sums.units(tile, range.start, pixel, c));
+                put_block(payload, pixels, |pixel| sums.units(tile, range.start, pixel, c));
             }
         }
         if !film.splats.is_empty() {
             let sums = film.splats.tile(tile);
-            (0..sums.components()).for_each(|c| put(&|pixel| sums.units(pixel, c)));
+            for c in 0..sums.components() {
+                put_block(payload, pixels, |pixel| sums.units(pixel, c));
+            }
         }
         for ids in film.ids.iter().filter_map(|ids| ids.get(tile)) {
             payload.extend((ids.len() as u32).to_le_bytes());
@@ -72,7 +70,7 @@ pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), F
         for c in 0..film.color.components() {
             let sums = block(fields, range.len())?;
             let mut tile = film.color.tile(tile, range.clone());
-            sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+            sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
         }
         if !film.counts.is_empty() {
             let counts = block(fields, range.len())?;
@@ -85,7 +83,7 @@ pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), F
             for c in 0..own.components() {
                 let sums = block(fields, range.len())?;
                 let mut tile = own.tile(tile, range.clone());
-                sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+                sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
             }
         }
         if !film.splats.is_empty() {
@@ -93,7 +91,7 @@ pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), F
             for c in 0..own.components() {
                 let sums = block(fields, range.len())?;
                 let mut tile = own.open();
-                sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+                sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
             }
         }
         for ids in film.ids.iter_mut().filter_map(|ids| ids.get_mut(tile)) {
@@ -125,35 +123,56 @@ pub fn max_row_bytes(film: &Film, limit: u64) -> u64 {
     (bounds.width() as u64).div_ceil(TILE_SIZE as u64) * components as u64 * tile
 }
 
-/// Appends whole numbers, each in as many bytes as the longest of them needs, with that length
-/// before them.
-fn put_block(payload: &mut Vec<u8>, values: &[i128]) {
-    let length = values.iter().map(|&value| byte_length(value)).max().unwrap_or(0);
+/// Appends `count` whole numbers, each in as many bytes as the longest of them needs, with that
+/// length before them.
+fn put_block(payload: &mut Vec<u8>, count: usize, number: impl Fn(usize) -> i128) {
+    // Those below 0 need as many bits as their complements.
+    let (mut bits, mut is_zero) = (0, true);
+    for number in (0..count).map(&number) {
+        bits |= number ^ number >> 127;
+        is_zero &= number == 0;
+    }
+    let length = if is_zero { 0 } else { byte_length(bits) };
     payload.push(length as u8);
-    values.iter().for_each(|value| payload.extend(&value.to_le_bytes()[..length]));
+    // Sixteen bytes are written of each, of which the next number overwrites what is too much.
+    let start = payload.len();
+    payload.resize(start + length * count + 16, 0);
+    for (index, number) in (0..count).map(&number).enumerate() {
+        let at = start + length * index;
+        payload[at..at + 16].copy_from_slice(&number.to_le_bytes());
+    }
+    payload.truncate(start + length * count);
 }
 
-/// The bytes that a number in two's complement needs; none for 0.
+/// The bytes that a number that is not negative needs in two's complement.
 fn byte_length(value: i128) -> usize {
-    let magnitude = if value < 0 { !value } else { value };
-    let bits = i128::BITS - magnitude.leading_zeros();
-    if value == 0 { 0 } else { (bits as usize + 1).div_ceil(8) }
+    let bits = i128::BITS - value.leading_zeros();
+    (bits as usize + 1).div_ceil(8)
 }
 
 /// Reads a block of `count` numbers.
-fn block(fields: &mut Fields, count: usize) -> Result<Vec<i128>, FilmFileError> {
+fn block<'a>(
+    fields: &mut Fields<'a>,
+    count: usize,
+) -> Result<impl Iterator<Item = i128> + use<'a>, FilmFileError> {
     let length = usize::from(fields.u8()?);
     if length > 16 {
         return Err(fields.wrong(&format!("a number of {length} bytes")));
     }
-    if length == 0 {
-        return Ok(vec![0; count]);
-    }
-    let numbers = fields.bytes(length * count)?.chunks_exact(length).map(|bytes| {
-        let sign = if bytes[length - 1] & 0x80 != 0 { 0xff } else { 0 };
-        i128::from_le_bytes(std::array::from_fn(|index| bytes.get(index).copied().unwrap_or(sign)))
-    });
-    Ok(numbers.collect())
+    let bytes = fields.bytes(length * count)?;
+    let unused = 128 - 8 * length as u32;
+    Ok((0..count).map(move |index| {
+        let rest = &bytes[length * index..];
+        let number = match rest.first_chunk() {
+            Some(sixteen) => i128::from_le_bytes(*sixteen),
+            None => {
+                let mut sixteen = [0; 16];
+                sixteen[..rest.len()].copy_from_slice(rest);
+                i128::from_le_bytes(sixteen)
+            }
+        };
+        number.checked_shl(unused).unwrap_or(0) >> unused.min(127)
+    }))
 }
 
 #[cfg(test)]
@@ -172,12 +191,16 @@ mod tests {
             vec![i128::MAX, i128::MIN, 1 << 96],
         ] {
             let mut payload = Vec::new();
-            put_block(&mut payload, &values);
+            put_block(&mut payload, values.len(), |index| values[index]);
             let section = Section { tag: *b"ROWS", payload };
             let mut fields = section.fields();
-            assert_eq!(block(&mut fields, values.len()).unwrap(), values);
+            assert!(block(&mut fields, values.len()).unwrap().eq(values));
             fields.finish().unwrap();
         }
-        assert_eq!([0, 1, -1, 127, 128, -128, -129].map(byte_length), [0, 1, 1, 1, 2, 1, 2]);
+        for (value, length) in [(0, 0), (1, 1), (-1, 1), (127, 1), (128, 2), (-128, 1), (-129, 2)] {
+            let mut payload = Vec::new();
+            put_block(&mut payload, 2, |index| [0, value][index]);
+            assert_eq!((payload[0], payload.len()), (length, 1 + 2 * usize::from(length)));
+        }
     }
 }
