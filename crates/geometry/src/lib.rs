@@ -29,9 +29,9 @@ pub use flat_shape::FlatShape;
 pub use lanes::InstructionSet;
 pub use patch::{Patch, PatchPoints};
 pub use shape::{
-    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
-    MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, PlainShape, Plane, RevolvedKind, Shape,
-    ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle, TriangleMesh,
+    BilinearPatch, Cone, CurveKind, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit,
+    MeshAttributes, MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, PlainShape, Plane,
+    RevolvedKind, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle, TriangleMesh,
 };
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};

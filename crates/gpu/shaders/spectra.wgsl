@@ -69,6 +69,7 @@ fn spectrum(at: u32, lambda: SampledWavelengths) -> vec4f {
 
 // The types of spectra that RGB values become.
 const ALBEDO = 0u;
+const UNBOUNDED = 1u;
 const ILLUMINANT = 2u;
 
 // The spectrum of an RGB value of a colour space, which has no component below 0.

@@ -227,6 +227,8 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         let dv = cross(twist, s.dpdv);
         s.dndu = (du - n * dot(n, du)) * (side / length(normal));
         s.dndv = (dv - n * dot(n, dv)) * (side / length(normal));
+    } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {
+        s = curve_point(hit, o, d, side);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         let inward = Rows(row[0].xyz, row[1].xyz, row[2].xyz);
@@ -246,6 +248,51 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
     s.ss = s.dpdu;
     s.ts = s.dpdv;
     return s;
+}
+
+// The point of a curve, which is known to within its width.
+fn curve_point(hit: Hit, o: vec3f, d: vec3f, flip: f32) -> Surface {
+    let at = 5 * hit.place;
+    let kind = items[at + 4].x;
+    let ends = ends_of_curve(at);
+    let c = curve_at(at);
+    let z = Vec3_normalize(d);
+    let u = clamp((hit.uv.x - ends.z) / (ends.w - ends.z), 0, 1);
+    var s: Surface;
+    s.uv = hit.uv;
+    let slope = slope_of_curve(c, u);
+    s.dpdu = select(c.p[3] - c.p[0], slope / (ends.w - ends.z), any(slope != vec3f()));
+    let tangent = unit_or(s.dpdu, across(z));
+    var width = mix(ends.x, ends.y, u);
+    let sideways = unit_or(cross(z, tangent), across(tangent));
+    var across_it = sideways;
+    if (kind == TUBE) {
+        let turn = sin_cos((hit.uv.y - 0.5) * 3.1415927);
+        across_it = sideways * turn.v1 - cross(tangent, sideways) * turn.v0;
+    } else if (kind == RIBBON) {
+        let normal = ribbon_normal(hit.geometry, hit.primitive, u);
+        width *= abs(dot(normal, z));
+        across_it = unit_or(cross(normal, tangent), sideways);
+    }
+    s.dpdv = across_it * width;
+    s.n = Vec3_normalize(cross(tangent, across_it)) * flip;
+    let p = o + d * hit.t;
+    s.p = Point3Error(p, vec3f(width) + POINT_ERROR * (abs(o) + abs(d * hit.t)));
+    return s;
+}
+
+// The normal of a ribbon, between those at the ends of a primitive.
+fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f {
+    let at = tables[world.geometries + 5 * geometry + 2] + 6 * primitive;
+    let start = vector(at);
+    let end = vector(at + 3);
+    let angle = 2 * atan2(length(end - start), length(end + start));
+    let sine = sin(angle);
+    // The plane of rotation is undefined at angles of 0 and π.
+    if (sine < 1e-6) {
+        return select(end, start, u < 0.5);
+    }
+    return (start * sin((1 - u) * angle) + end * sin(u * angle)) / sine;
 }
 
 // The point of a surface around the z axis that is nearest to `p`, in object space.

@@ -1,7 +1,8 @@
 // Rays through the trees of a world.
 //
 // A kernel that traces declares the buffers `world`, `nodes`, `triangles` and `items`; `bvh/` has
-// their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts.
+// their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts;
+// `HAS_CURVES`, whether there are curves; and `ribbon_normal`, the normal of one.
 
 const STACK = 128;
 const NO_HIT = 0xffffffffu;
@@ -122,6 +123,9 @@ const SPHERE = 2u;
 const CYLINDER = 3u;
 const DISK = 4u;
 const PLANE = 5u;
+const FLAT_CURVE = 6u;
+const TUBE = 7u;
+const RIBBON = 8u;
 
 // The bits of the last word of a shape.
 const CUT_OUT = 2u;
@@ -134,6 +138,8 @@ fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, be
     var t = -1.0;
     if (ids.x == PATCH) {
         t = hit_patch(o, d, at, after, (*best).t, &uv);
+    } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {
+        t = hit_curve(o, d, at, after, (*best).t, &uv);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         // Relative to the object's origin, so that little is lost near it.
@@ -261,6 +267,123 @@ fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, after: f32, t_
 fn is_swept(p: vec3f, limit: f32) -> bool {
     let phi = atan2(p.y, p.x);
     return limit > 6.28318 || select(phi, phi + 6.2831855, phi < 0) <= limit;
+}
+
+// The control points of a curve.
+struct Cubic {
+    p: array<vec3f, 4>,
+}
+
+// A unit vector perpendicular to a unit vector.
+fn across(z: vec3f) -> vec3f {
+    return normalize(cross(z, select(vec3f(1, 0, 0), vec3f(0, 1, 0), abs(z.x) > 0.7)));
+}
+
+// A vector of unit length, or another one where it has no length.
+fn unit_or(v: vec3f, other: vec3f) -> vec3f {
+    let squared = dot(v, v);
+    return select(other, v * inverseSqrt(squared), squared > 1e-36);
+}
+
+fn curve_at(item: u32) -> Cubic {
+    return Cubic(array(
+        bitcast<vec3f>(items[item].xyz), bitcast<vec3f>(items[item + 1].xyz),
+        bitcast<vec3f>(items[item + 2].xyz), bitcast<vec3f>(items[item + 3].xyz),
+    ));
+}
+
+// The widths of a curve at its ends, and its texture coordinates there.
+fn ends_of_curve(item: u32) -> vec4f {
+    return bitcast<vec4f>(vec4u(items[item].w, items[item + 1].w, items[item + 2].w, items[item + 3].w));
+}
+
+fn blossom(c: Cubic, r: f32, s: f32, t: f32) -> vec3f {
+    let a = array(mix(c.p[0], c.p[1], r), mix(c.p[1], c.p[2], r), mix(c.p[2], c.p[3], r));
+    return mix(mix(a[0], a[1], s), mix(a[1], a[2], s), t);
+}
+
+// The derivative of a curve.
+fn slope_of_curve(c: Cubic, u: f32) -> vec3f {
+    return 3 * mix(mix(c.p[1] - c.p[0], c.p[2] - c.p[1], u), mix(c.p[2] - c.p[1], c.p[3] - c.p[2], u), u);
+}
+
+// How many times a curve is bisected: its parts deviate by less than a twentieth of the width from
+// straight lines.
+fn bisections(c: Cubic, width: f32) -> u32 {
+    let bend = max(abs(c.p[0] - 2 * c.p[1] + c.p[2]), abs(c.p[1] - 2 * c.p[2] + c.p[3]));
+    let ratio = 1.0606602 * max(bend.x, max(bend.y, bend.z)) / (0.05 * width);
+    return u32(clamp(floor(log2(max(ratio, 1)) * 0.5), 0, 10));
+}
+
+// The nearest point of a curve that the ray passes within half its width. Parts that it may pass
+// are bisected: part `index` of 2^`level` comes before those that follow ([Pharr 2023 §6.7],
+// `geometry/src/curve/mod.rs`).
+fn hit_curve(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<function, vec2f>) -> f32 {
+    let ids = items[at + 4];
+    let ends = ends_of_curve(at);
+    let length_of_d = length(d);
+    let z = d / length_of_d;
+    // The curve as the ray sees it.
+    var c = curve_at(at);
+    let y = unit_or(cross(z, c.p[3] - c.p[0]), across(z));
+    let x = cross(y, z);
+    for (var i = 0; i < 4; i++) {
+        let p = c.p[i] - o;
+        c.p[i] = vec3f(dot(x, p), dot(y, p), dot(z, p));
+    }
+    let levels = bisections(c, max(ends.x, ends.y));
+    var nearest = t_max;
+    var found = 0.0;
+    var level = 0u;
+    var index = 0u;
+    loop {
+        let size = 1 / f32(1u << level);
+        let u0 = f32(index) * size;
+        let u1 = u0 + size;
+        let p = array(blossom(c, u0, u0, u0), blossom(c, u0, u0, u1), blossom(c, u0, u1, u1), blossom(c, u1, u1, u1));
+        let radius = 0.5 * max(mix(ends.x, ends.y, u0), mix(ends.x, ends.y, u1));
+        let low = min(min(p[0], p[1]), min(p[2], p[3]));
+        let high = max(max(p[0], p[1]), max(p[2], p[3]));
+        let is_near = radius > 0 && all(low.xy <= vec2f(radius)) && all(high.xy >= vec2f(-radius))
+            && high.z >= 0 && low.z <= nearest * length_of_d;
+        if (is_near && level < levels) {
+            level++;
+            index *= 2;
+            continue;
+        }
+        let chord = p[3].xy - p[0].xy;
+        // Beyond the lines across the curve at its ends, another part is nearer, or none.
+        let is_within = dot(p[1].xy - p[0].xy, p[0].xy) <= 0 && dot(p[2].xy - p[3].xy, p[3].xy) <= 0;
+        if (is_near && is_within && dot(chord, chord) > 0) {
+            let w = clamp(-dot(p[0].xy, chord) / dot(chord, chord), 0, 1);
+            let u = u0 + w * size;
+            var width = mix(ends.x, ends.y, u);
+            if (ids.x == RIBBON) {
+                width *= abs(dot(ribbon_normal(ids.y, ids.z, u), z));
+            }
+            let q = blossom(Cubic(p), w, w, w);
+            let distance = length(q.xy);
+            let t = q.z / length_of_d;
+            if (distance <= 0.5 * width && t > after && t < nearest) {
+                let along = slope_of_curve(Cubic(p), w);
+                let is_left = along.y * q.x > along.x * q.y;
+                let offset = select(distance / width, 0, width <= 0);
+                nearest = t;
+                found = t;
+                *uv = vec2f(mix(ends.z, ends.w, u), 0.5 + select(-offset, offset, is_left));
+            }
+        }
+        // The next part that does not begin within this one.
+        while ((index & 1) == 1) {
+            index >>= 1;
+            level--;
+        }
+        if (level == 0) {
+            break;
+        }
+        index++;
+    }
+    return found;
 }
 
 // Bytes as numbers.

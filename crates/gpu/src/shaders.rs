@@ -15,11 +15,11 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 59] = laws! {
+const LAWS: [&str; 60] = laws! {
     "address" "arc" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
     "diffuse" "diffuse_transmission" "direct" "disk" "dots" "error" "exponential" "flags"
-    "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hash" "hash_sequence"
-    "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"
+    "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hair" "hash"
+    "hash_sequence" "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"
     "minimum_differentials" "noise" "octahedral" "orthographic" "perspective" "phase" "power"
     "randomize" "ray" "rectangle" "rgb_spectrum" "sample" "sampled" "scatter" "screen" "sobol"
     "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector" "walk"
@@ -37,9 +37,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 13] = plumbing! {
+const PLUMBING: [&str; 14] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "lights" "light_choices" "cameras"
+    "hair_material" "lights" "light_choices" "cameras"
 };
 
 /// What kernels of real-time frames share.
@@ -87,6 +87,10 @@ pub struct Parts {
     pub coats: bool,
     /// Principled surfaces.
     pub principled: bool,
+    /// Curves.
+    pub curves: bool,
+    /// The material of hair.
+    pub hair: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
     /// Participating media, or interfaces, which only [`Algorithm::VolPath`] has.
@@ -221,10 +225,11 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, rare_samplers, media: _ } = parts;
+    let Parts { holes, images, noise, coats, principled, curves, hair, rare_samplers, media: _ } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_COATS = {coats};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
+        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

@@ -17,6 +17,8 @@ use crate::Size;
 /// below 0 is that of a ray which any hit ends.
 const KERNEL: &str = "
     fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
+    const HAS_CURVES = false;
+    fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;

@@ -18,7 +18,7 @@
 mod bezier;
 
 use crate::placement::Placement;
-use crate::shape::ShapeHit;
+use crate::shape::{CurveKind, PlainShape, ShapeHit};
 use crate::surface::SurfacePoint;
 use bezier::{Cubic, evaluate, halves, part};
 use math::{Bounds3, DVec3, Normal3, Point3, Ray, Transform, Vec2, Vec3, coordinate_system};
@@ -179,6 +179,25 @@ impl Curves {
             [Vec3::ZERO; 2],
             ray,
         )
+    }
+
+    /// A primitive in render space; `None` where widths depend on directions.
+    pub fn plain(&self, primitive: u32) -> Option<PlainShape> {
+        let scale = self.placement.uniform_scale()?;
+        let (segment, range) = self.part(primitive);
+        let normal = |u: f64| self.ribbon_normal(primitive, u).map(|n| self.placement.unit_normal(n));
+        Some(PlainShape::Curve {
+            kind: match &self.profile {
+                CurveProfile::Flat => CurveKind::Flat,
+                CurveProfile::Cylinder => CurveKind::Cylinder,
+                CurveProfile::Ribbon(_) => CurveKind::Ribbon,
+            },
+            points: part(&segment.cubic(), range).map(|p| self.placement.point(p, DVec3::ZERO).p),
+            widths: range.map(|u| (segment.width_at(u) * scale) as f32),
+            range: range.map(|u| u as f32),
+            normals: range.map(|u| normal(u).unwrap_or(Normal3::ZERO)),
+            flips: self.flips,
+        })
     }
 
     /// The segment of a primitive, and the range of its parameters.

@@ -39,7 +39,7 @@ pub use implicit::{Formula, FormulaError, Implicit};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
-pub use plain::{PlainShape, RevolvedKind};
+pub use plain::{CurveKind, PlainShape, RevolvedKind};
 pub use plane::Plane;
 pub(crate) use quadric::first_root;
 pub use sample::{ShapeHit, ShapeSample, ShapeSampleContext};

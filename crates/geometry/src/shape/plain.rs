@@ -1,6 +1,6 @@
 //! Shapes as plain data, for engines that trace rays elsewhere.
 
-use math::{DMat4, Point3, Vector3};
+use math::{DMat4, Normal3, Point3, Vector3};
 
 /// A shape at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,32 @@ pub enum PlainShape {
         /// The numbers that its kind has, then zeros.
         numbers: [f32; 4],
     },
+    /// A part of a curve: a cubic Bézier segment with a line across it.
+    Curve {
+        /// What the line is.
+        kind: CurveKind,
+        /// Control points.
+        points: [Point3; 4],
+        /// The length of the line at both ends, between which it changes linearly.
+        widths: [f32; 2],
+        /// The texture coordinate u at both ends.
+        range: [f32; 2],
+        /// Of a ribbon the unit normals at both ends; else zero.
+        normals: [Normal3; 2],
+        /// Whether the outside is not on the side of the ray.
+        flips: bool,
+    },
+}
+
+/// The lines across curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// It faces the ray.
+    Flat,
+    /// It faces the ray, with the normals of a tube.
+    Cylinder,
+    /// It is perpendicular to normals.
+    Ribbon,
 }
 
 /// The kinds of surfaces around an axis, with their numbers.

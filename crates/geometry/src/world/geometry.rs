@@ -1,7 +1,7 @@
 //! Geometries: the objects that a scene gives materials, lights and names.
 
 use crate::curve::Curves;
-use crate::shape::{Shape, TriangleMesh};
+use crate::shape::{PlainShape, Shape, TriangleMesh};
 use crate::sphere_set::SphereSet;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -87,6 +87,14 @@ impl Geometry {
             Self::Shapes(shapes) => Some(Cow::Borrowed(&shapes[primitive as usize])),
             Self::Spheres(set) => Some(Cow::Owned(set.sphere(primitive as usize).into())),
             Self::Curves(_) => None,
+        }
+    }
+
+    /// One primitive at rest as plain data; `None` where it has none.
+    pub fn plain(&self, primitive: u32) -> Option<PlainShape> {
+        match self {
+            Self::Curves(curves) => curves.plain(primitive),
+            Self::Mesh(_) | Self::Shapes(_) | Self::Spheres(_) => self.shape(primitive)?.plain(),
         }
     }
 }

@@ -100,6 +100,17 @@ fn Directions_transmission(this_: u32) -> bool {
     return !(this_ == Directions_Reflection);
 }
 
+// Whether a BxDF with `flags` scatters to some of these directions.
+fn Directions_meet(this_: u32, flags: u32) -> bool {
+    if (this_ == Directions_All) {
+        return BxdfFlags_intersects(flags, BxdfFlags_REFLECTION | BxdfFlags_TRANSMISSION);
+    } else if (this_ == Directions_Reflection) {
+        return BxdfFlags_is_reflective(flags);
+    } else {
+        return BxdfFlags_is_transmissive(flags);
+    }
+}
+
 // The probability of reflection, where reflection has the weight `r` and transmission `t`, and
 // lobes that are not requested the weight 0; and where there is one: not where all weights are
 // 0.

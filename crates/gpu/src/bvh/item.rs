@@ -4,12 +4,13 @@
 //! |---|---|
 //! | instance | the rows of the matrix that takes rays inside; the references of its triangles and of its items, the size of its group, its id |
 //! | patch | its corner, its sides and its twist |
+//! | curve | its control points, with the widths and the u of its ends |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
 //! turned over, 2 where it is cut out.
 
-use geometry::{GeometryId, InstanceId, PlainShape, RevolvedKind, World};
+use geometry::{CurveKind, GeometryId, InstanceId, PlainShape, RevolvedKind, World};
 use math::{DVec3, Vec3};
 
 use super::{BvhError, Group, Words};
@@ -24,6 +25,9 @@ const SPHERE: u32 = 2;
 const CYLINDER: u32 = 3;
 const DISK: u32 = 4;
 const PLANE: u32 = 5;
+const FLAT_CURVE: u32 = 6;
+const TUBE: u32 = 7;
+const RIBBON: u32 = 8;
 
 /// An instance of a group.
 pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Words; QUADRUPLES], BvhError> {
@@ -51,7 +55,7 @@ pub fn shape(
     primitive: u32,
     is_cut_out: bool,
 ) -> Result<[Words; QUADRUPLES], BvhError> {
-    let shape = world.geometry(geometry).shape(primitive).and_then(|shape| shape.plain());
+    let shape = world.geometry(geometry).plain(primitive);
     let cut_out = u32::from(is_cut_out) << 1;
     let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips) | cut_out];
     match shape.ok_or(BvhError::Shape(geometry))? {
@@ -73,6 +77,16 @@ pub fn shape(
                 [vector.x, vector.y, vector.z, origin[i]].map(|x| (x as f32).to_bits())
             };
             Ok([row(0), row(1), row(2), numbers.map(f32::to_bits), ids(kind, flips)])
+        }
+        PlainShape::Curve { kind, points: [a, b, c, d], widths, range, normals: _, flips } => {
+            let kind = match kind {
+                CurveKind::Flat => FLAT_CURVE,
+                CurveKind::Cylinder => TUBE,
+                CurveKind::Ribbon => RIBBON,
+            };
+            let row = |p: Vec3, number: f32| [p.x, p.y, p.z, number].map(f32::to_bits);
+            let [[first, last], [begin, end]] = [widths, range];
+            Ok([row(a, first), row(b, last), row(c, begin), row(d, end), ids(kind, flips)])
         }
     }
 }

@@ -3,9 +3,10 @@
 //! texture of its alpha or 0.
 //!
 //! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
-//! triangle what it has at its three corners, in this order.
+//! triangle what it has at its three corners, in this order. Those of ribbons are the normals at
+//! both ends of each primitive.
 
-use geometry::{Geometry, GeometryId, Triangle, TriangleMesh};
+use geometry::{CurveKind, Curves, Geometry, GeometryId, PlainShape, Triangle, TriangleMesh};
 
 use super::Flattener;
 
@@ -25,7 +26,10 @@ impl Flattener<'_> {
                     flips = mesh.triangle(0).flips;
                 }
                 Geometry::Mesh(_) | Geometry::Spheres(_) | Geometry::Shapes(_) => {}
-                Geometry::Curves(_) => self.refuse("curves", entry.span),
+                Geometry::Curves(curves) => {
+                    attributes = self.normals(curves);
+                    self.parts.curves = true;
+                }
             }
             let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
             self.parts.holes |= entry.alpha.is_some();
@@ -33,6 +37,19 @@ impl Flattener<'_> {
             rows.extend([entry.material.0, light, attributes, flips.into(), alpha]);
         }
         self.slab.add(rows)
+    }
+
+    /// The normals of ribbons; their offset, or 0 of other curves.
+    fn normals(&mut self, curves: &Curves) -> u32 {
+        let normals = |primitive| match curves.plain(primitive) {
+            Some(PlainShape::Curve { kind: CurveKind::Ribbon, normals, .. }) => Some(normals),
+            _ => None,
+        };
+        if curves.is_empty() || normals(0).is_none() {
+            return 0;
+        }
+        let all = (0..curves.len() as u32).filter_map(normals).flatten();
+        self.slab.add_numbers(all.flat_map(|n| n.to_array()))
     }
 
     /// The attributes of a mesh's vertices; their offset, or 0 where there are none.

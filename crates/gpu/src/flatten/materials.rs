@@ -11,6 +11,7 @@
 //! | 5 mix | the two materials | the probability of the second |
 //! | 8 principled | offset of its record | numbers and colours |
 //! | 9 interface | | |
+//! | 10 hair | what absorption is given by: 0 its coefficient, 1 colour, 2 pigments, and then the colour space | longitudinal and azimuthal roughness, η, angle of the scales, that of the absorption or both pigments |
 //! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
@@ -18,9 +19,10 @@
 use description::Span;
 use image::WrapMode;
 use scene::material::{
-    Coat, ConductorIndex, ConductorMaterial, Material, MaterialEntry, MaterialId, Roughness,
+    Coat, ConductorIndex, ConductorMaterial, HairAbsorption, HairMaterial, Material, MaterialEntry,
+    MaterialId, Roughness,
 };
-use spectrum::Spectrum;
+use spectrum::{RgbColorSpace, Spectrum};
 
 use super::Flattener;
 
@@ -34,6 +36,7 @@ const COATED_DIFFUSE: u32 = 6;
 const COATED_CONDUCTOR: u32 = 7;
 const PRINCIPLED: u32 = 8;
 const INTERFACE: u32 = 9;
+const HAIR: u32 = 10;
 
 /// The kind, the words and the textures of a material.
 type Record = (u32, [u32; 8], Vec<u32>);
@@ -115,12 +118,33 @@ impl Flattener<'_> {
                 return (PRINCIPLED, words([record]), textures);
             }
             Material::Interface => return (INTERFACE, [0; 8], Vec::new()),
-            Material::Hair(_) => "hair",
+            Material::Hair(m) => return self.hair(m, span),
             Material::Measured(_) => "measured",
             Material::Subsurface(_) => "subsurface",
         };
         self.refuse(format!("material `{name}`"), span);
         (DIFFUSE, [0; 8], Vec::new())
+    }
+
+    fn hair(&mut self, hair: &HairMaterial, span: Span) -> Record {
+        self.parts.hair = true;
+        let numbers = [hair.beta_m, hair.beta_n, hair.eta, hair.alpha];
+        let mut textures = numbers.map(|id| self.number_texture(id, span)).to_vec();
+        let given = match hair.absorption {
+            HairAbsorption::Coefficient(sigma_a) => {
+                textures.push(self.spectrum_texture(sigma_a, span));
+                [0, 0]
+            }
+            HairAbsorption::Color(color) => {
+                textures.push(self.spectrum_texture(color, span));
+                [1, 0]
+            }
+            HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+                textures.extend([eumelanin, pheomelanin].map(|id| self.number_texture(id, span)));
+                [2, self.color_space(RgbColorSpace::srgb())]
+            }
+        };
+        (HAIR, words(given), textures)
     }
 
     /// A coat over a base, of which two words and the textures are given.

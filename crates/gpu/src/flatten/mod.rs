@@ -287,7 +287,7 @@ impl Flattener<'_> {
     fn name_of_shape(&self, id: GeometryId) -> &'static str {
         let shape = self.scene.world().geometry(id).shape(0);
         match shape.as_deref() {
-            None => "curves",
+            None => "curves whose widths are stretched",
             Some(Shape::Sphere(_)) => "shape `sphere`",
             Some(Shape::Cylinder(_)) => "shape `cylinder`",
             Some(Shape::Cone(_)) => "shape `cone`",

@@ -68,6 +68,12 @@ fn layered<B>(base: B, x: &Row) -> Layered<B> {
     }
 }
 
+/// A fibre, seen at any offset from its middle.
+fn hair(x: &Row) -> Hair {
+    let roughness = [0.1 + 0.9 * x[10], 0.1 + 0.9 * x[11]];
+    Hair::new(2.0 * x[8] - 1.0, 1.3 + 0.5 * x[9], spectrum(x, 2.0), roughness, 5.0 * x[7])
+}
+
 /// A matte surface under a smooth clear coat.
 fn varnished(x: &Row) -> Layered<Diffuse> {
     let interface = Dielectric { eta: 1.2 + x[11], distribution: TrowbridgeReitz::new(0.0, 0.0) };
@@ -142,7 +148,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 47] = [
+pub const LAWS: [Law; 49] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -458,6 +464,12 @@ pub const LAWS: [Law; 47] = [
         sampled!("Dielectric", "Dielectric(0.5 + 2.0 * x[11], TrowbridgeReitz_new(0.0, 0.0))")),
     law!("ThinDielectric" 1e-5 1e-4, x => sampled(&ThinDielectric { eta: 0.5 + 2.0 * x[11] }, x),
         sampled!("ThinDielectric", "ThinDielectric(0.5 + 2.0 * x[11])")),
+    law!("Hair" 1e-4 1e-4, x => value(&hair(x), x),
+        value!("Hair", "Hair_new(2.0 * x[8] - 1.0, 1.3 + 0.5 * x[9], vec4f(x[6], x[7], x[8], x[9]) * 2.0,
+            0.1 + 0.9 * vec2f(x[10], x[11]), 5.0 * x[7])")),
+    law!("Hair, sampled" 3e-3 1e-3, x => sampled(&hair(x), x),
+        sampled!("Hair", "Hair_new(2.0 * x[8] - 1.0, 1.3 + 0.5 * x[9], vec4f(x[6], x[7], x[8], x[9]) * 2.0,
+            0.1 + 0.9 * vec2f(x[10], x[11]), 5.0 * x[7])")),
     law!("Layered, closed form" 1e-4 1e-4, x => value(&varnished(x), x),
         value!("Layered_Diffuse", "Layered_Diffuse(Diffuse(vec4f(x[6], x[7], x[8], x[9]) * 0.9),
             Dielectric(1.2 + x[11], TrowbridgeReitz_new(0.0, 0.0)), 0.5 * x[8], vec4f(),

@@ -21,7 +21,7 @@ use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{HOLES, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{HAIR, HOLES, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -396,9 +396,13 @@ fn a_wavefront_has_the_picture_of_the_megakernel() {
 fn what_kernels_do_not_draw_is_refused_with_its_place() {
     let begin = "Camera \"perspective\"\nFilm \"rgb\"\nWorldBegin\n";
     let cases = [
-        ("Material \"hair\"\nShape \"sphere\"", "material `hair`", "Material \"hair\""),
+        ("Material \"subsurface\"\nShape \"sphere\"", "material `subsurface`", "Material \"subsurface\""),
         ("Shape \"cone\"", "shape `cone`", "Shape \"cone\""),
-        ("Shape \"curve\" \"point3 P\" [ 0 0 0 0 1 0 0 1 1 1 1 1 ]", "curves", "Shape \"curve\""),
+        (
+            "Scale 1 2 3\nShape \"curve\" \"point3 P\" [ 0 0 0 0 1 0 0 1 1 1 1 1 ]",
+            "curves whose widths are stretched",
+            "Shape \"curve\"",
+        ),
         (
             "LightSource \"infinite\" \"point3 portal\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
             "infinite lights with portals",
@@ -514,6 +518,15 @@ Shape "disk" "float radius" 3 "float height" -0.7
     let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
     assert_eq!(Case::of_text(text).compare("varnish", &path), None);
     assert_mean(&Case::named("coats"), &path);
+}
+
+/// Curves of all profiles, and strands whose absorption is given in all ways. Each strand multiplies
+/// rounding by the distance over its radius, so that paths are short.
+#[test]
+fn curves_and_hair_have_the_picture_of_the_cpu() {
+    let path = Algorithm::Path(PathDesc { max_depth: 2, ..PathDesc::default() });
+    assert_eq!(Case::named("curves").compare("curves", &path), None);
+    assert_eq!(Case::of_text(HAIR).compare("hair", &path), None);
 }
 
 #[test]

@@ -169,3 +169,29 @@ Shape "spheres" "float radius" 0.5 "point3 P" [ -0.7 -0.6 0.5  0.9 1.6 0.5 ]
 Material "dielectric"
 Shape "spheres" "float radius" 0.4 "point3 P" [ 0.7 -0.8 0.6 ]
 "#;
+
+/// Strands of three kinds of hair.
+pub const HAIR: &str = r#"
+LookAt 0 -3 0.4  0 0 0.4  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.5 0.6 0.7 ]
+LightSource "point" "point3 from" [ 2 -2 3 ] "float scale" 30
+ObjectBegin "strands"
+    Shape "curve" "string type" "cylinder" "float width0" 0.12 "float width1" 0.06
+        "point3 P" [ -0.15 0 -0.4  -0.3 0 0.4  0.1 -0.2 0.6  0 0.1 1.2 ]
+    Shape "curve" "string type" "cylinder" "float width" 0.1 "integer splitdepth" 1
+        "point3 P" [ 0.15 0 -0.4  0.1 0.3 0.4  0.35 -0.2 0.6  0.2 0.1 1.1 ]
+ObjectEnd
+Material "hair" "float eumelanin" 1.3 "float pheomelanin" 0.2
+Shape "curve" "string type" "flat" "float width" 0.2 "point3 P" [ -1 0 -0.4  -0.9 0 0.4  -1.1 -0.2 0.6  -0.9 0.1 1.2 ]
+Translate -0.5 0 0
+ObjectInstance "strands"
+Material "hair" "rgb reflectance" [ 0.7 0.4 0.2 ] "float beta_m" 0.2 "float beta_n" 0.5
+Shape "curve" "string type" "cylinder" "float width" 0.15
+    "point3 P" [ 0.5 0 -0.4  0.4 0 0.4  0.6 -0.2 0.6  0.5 0.1 1.2 ]
+Material "hair" "rgb sigma_a" [ 0.2 0.4 0.9 ] "float alpha" 4 "float eta" 1.4
+Shape "curve" "string type" "cylinder" "float width" 0.15
+    "point3 P" [ 0.9 0 -0.4  0.8 0 0.4  1 -0.2 0.6  0.9 0.1 1.2 ]
+"#;

@@ -13,6 +13,8 @@ use testkit::Random;
 /// those that `trace.wgsl` needs.
 pub const KERNEL: &str = "
     fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
+    const HAS_CURVES = true;
+    fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
@@ -273,6 +275,33 @@ fn shapes_are_met() {
     // Rays that graze an edge may miss it on one side.
     let found = compare(tracer, &builder.build(), &random_rays(20_000, 6.0));
     assert!(found.hits > 5000 && found.other <= 20 && found.distance < 1e-3, "{found:?}");
+}
+
+/// Curves that bend, of both profiles that face the ray, whole and in parts.
+#[test]
+fn curves_are_met() {
+    let Some(tracer) = tracer() else { return };
+    let mut random = Random::new(11);
+    let mut point = |scale: f32| {
+        let [a, b] = random.get_2d();
+        (Vec3::new(a, b, random.get_1d()) - Vec3::splat(0.5)) * scale
+    };
+    let segments: Vec<CurveSegment> = (0..60)
+        .map(|i| {
+            let start = point(3.0);
+            let points = [start, start + point(1.0), start + point(1.5), start + point(2.0)];
+            CurveSegment { points, width: [0.05 + 0.002 * i as f32, 0.1] }
+        })
+        .collect();
+    let mut builder = World::builder();
+    for (profile, split, angle) in [(CurveProfile::Flat, 0, 50.0), (CurveProfile::Cylinder, 2, 140.0)] {
+        let scale = Transform::scale(Vec3::splat(0.8));
+        let turn = Transform::rotate(angle, Vec3::new(1.0, 2.0, 3.0)).after(&scale);
+        builder.add_geometry(GroupId::TOP, Curves::new(segments.clone(), profile, split, &turn, false));
+    }
+    // Where a curve recedes from the ray, hits are known to within its width.
+    let found = compare(tracer, &builder.build(), &random_rays(20_000, 5.0));
+    assert!(found.hits > 1000 && found.other <= 4 && found.distance < 0.1, "{found:?}");
 }
 
 #[test]

@@ -44,11 +44,11 @@ pub struct Hair<R = f32> {
     /// Absorption per radius of the fibre.
     sigma_a: SampledSpectrum<R>,
     /// Variance of each longitudinal lobe.
-    v: [R; P_MAX + 1],
+    v: [R; 4],
     /// Scale of the azimuthal lobes.
     s: R,
     /// Sine and cosine of α, 2α and 4α.
-    tilts: [(R, R); P_MAX],
+    tilts: [(R, R); 3],
 }
 
 impl<R: Real> Hair<R> {
@@ -108,8 +108,11 @@ impl<R: Real> Hair<R> {
         let twice = once * again;
         let rest = (twice * again).safe_div(SampledSpectrum::splat(R::one()) - again);
         let attenuations = [SampledSpectrum::splat(fresnel), once, twice, rest];
+        let [a, b, c, d] = [fresnel, once.average(), twice.average(), rest.average()];
+        let sum = a + b + c + d;
+        let probabilities = [a / sum, b / sum, c / sum, d / sum];
         let phi = atan2(wo.z, wo.y);
-        Outgoing { sin_theta, cos_theta, phi, gamma_o, gamma_t, attenuations }
+        Outgoing { sin_theta, cos_theta, phi, gamma_o, gamma_t, attenuations, probabilities }
     }
 
     /// Sine and cosine of θo turned by the scales, as lobe `p` meets them.
@@ -145,7 +148,9 @@ struct Outgoing<R: Real> {
     gamma_o: R,
     gamma_t: R,
     /// A_p.
-    attenuations: [SampledSpectrum<R>; P_MAX + 1],
+    attenuations: [SampledSpectrum<R>; 4],
+    /// The probability of each lobe.
+    probabilities: [R; 4],
 }
 
 impl<R: Real> Outgoing<R> {
@@ -154,15 +159,6 @@ impl<R: Real> Outgoing<R> {
     fn center(&self, p: usize) -> R {
         let p = R::splat(p as f32);
         R::splat(2.0) * (p * self.gamma_t - self.gamma_o) + p * R::splat(PI)
-    }
-
-    /// The probability of each lobe.
-    #[inline(always)]
-    fn probabilities(&self) -> [R; P_MAX + 1] {
-        let [a, b, c, d] = self.attenuations;
-        let [a, b, c, d] = [a.average(), b.average(), c.average(), d.average()];
-        let sum = a + b + c + d;
-        [a / sum, b / sum, c / sum, d / sum]
     }
 }
 
@@ -263,12 +259,11 @@ impl<R: Real> Scatter<R> for Hair<R> {
     ) -> BsdfSample<R> {
         let o = self.outgoing(wo);
         // The lobe, and what is left of `uc`.
-        let probabilities = o.probabilities();
         let (mut sin_o, mut cos_o) = self.tilted(&o, 0);
-        let (mut v, mut center, mut left) = (self.v[0], o.center(0), uc / probabilities[0]);
-        let (mut below, mut is_last) = (probabilities[0], R::Mask::splat(false));
-        for (p, &probability) in probabilities.iter().enumerate().skip(1) {
-            let here = uc.ge(below);
+        let (mut v, mut center, mut left) = (self.v[0], o.center(0), uc / o.probabilities[0]);
+        let (mut below, mut is_last) = (o.probabilities[0], R::Mask::splat(false));
+        for p in 1..=P_MAX {
+            let (here, probability) = (uc.ge(below), o.probabilities[p]);
             let (sin, cos) = self.tilted(&o, p);
             sin_o = R::select(here, sin, sin_o);
             cos_o = R::select(here, cos, cos_o);
@@ -301,10 +296,9 @@ impl<R: Real> Scatter<R> for Hair<R> {
         let lobe: BxdfFlags<R> = BxdfFlags::choose(reflects, BxdfFlags::REFLECTION, BxdfFlags::TRANSMISSION);
         let o = self.outgoing(wo);
         let phi = atan2(wi.z, wi.y) - o.phi;
-        let probabilities = o.probabilities();
         let mut pdf = R::zero();
-        for (p, &probability) in probabilities.iter().enumerate() {
-            pdf += probability * self.lobe(&o, p, wi, phi);
+        for p in 0..=P_MAX {
+            pdf += o.probabilities[p] * self.lobe(&o, p, wi, phi);
         }
         R::select(directions.meet(lobe), pdf, R::zero())
     }
