@@ -1,7 +1,7 @@
 //! A grid of cells in space, in which spheres near a point are found.
 //!
-//! Columns of cells are hashed into a table, where their cells follow each other; so the spheres of a
-//! range of cells of a column lie side by side in memory, in the order of cells and numbers.
+//! Columns of cells are hashed into a table, where their cells follow each other; so the spheres of
+//! a range of cells of a column lie side by side in memory, in the order of cells and numbers.
 
 use math::{Point3, Vec3};
 

@@ -520,8 +520,8 @@ Shape "disk" "float radius" 3 "float height" -0.7
     assert_mean(&Case::named("coats"), &path);
 }
 
-/// Curves of all profiles, and strands whose absorption is given in all ways. Each strand multiplies
-/// rounding by the distance over its radius, so that paths are short.
+/// Curves of all profiles, and strands whose absorption is given in all ways. Each strand
+/// multiplies rounding by the distance over its radius, so that paths are short.
 #[test]
 fn curves_and_hair_have_the_picture_of_the_cpu() {
     let path = Algorithm::Path(PathDesc { max_depth: 2, ..PathDesc::default() });
