@@ -107,45 +107,6 @@ fn image_direction_density(at: u32, w: vec3f) -> f32 {
     return select(0, density * factor, on_slide.z == 1);
 }
 
-// A point of the surface of a light, with its density per area.
-fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
-    switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            var uv = u;
-            if (flat_shape.is_triangle) {
-                uv = sample_uniform_triangle(u).yz;
-            }
-            return ShapeSample(FlatShape_point(flat_shape, uv), flat_shape.n, uv, surface_density(at));
-        }
-        case SPHERE_LIGHT: {
-            let center = vector(at + 4);
-            let radius = number(at + 7);
-            let outward = outward_by_area(at, u);
-            let error = POINT_ERROR * (abs(center) + vec3f(radius));
-            let p = Point3Error(center + outward * radius, error);
-            return ShapeSample(p, outward * number(at + 8), vec2f(), surface_density(at));
-        }
-        default: { return revolved_by_area(at, u); }
-    }
-}
-
-// The density of these points.
-fn surface_density(at: u32) -> f32 {
-    switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
-            return select(1.0, 2.0, flat_shape.is_triangle) / area;
-        }
-        case SPHERE_LIGHT: {
-            let radius = number(at + 7);
-            return 1 / (4 * 3.1415927 * radius * radius);
-        }
-        default: { return 1 / number(at + 21); }
-    }
-}
-
 // The density of a direction from a surface.
 fn surface_direction_density(at: u32, n: vec3f, w: vec3f) -> f32 {
     let cosine = dot(n, w);
@@ -257,7 +218,7 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
         case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
         case IMAGE_LIGHT: { pdf = disk_density(from_, wi) * sky_density(at, sky_position(at, wi), false); }
         default: {
-            pdf = surface_density(at) * surface_direction_density(at, point.n, -wi);
+            pdf = surface_density(at, point.uv) * surface_direction_density(at, point.n, -wi);
             cosine = abs(dot(point.n, wi));
         }
     }

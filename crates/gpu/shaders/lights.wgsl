@@ -12,6 +12,7 @@ const DISK_LIGHT = 8u;
 const CYLINDER_LIGHT = 9u;
 const GONIOMETRIC_LIGHT = 10u;
 const PROJECTION_LIGHT = 11u;
+const PATCH_LIGHT = 12u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -34,7 +35,8 @@ fn light_record(light: u32) -> u32 {
 }
 
 fn is_delta(at: u32) -> bool {
-    return tables[at] <= DISTANT_LIGHT || tables[at] >= GONIOMETRIC_LIGHT;
+    let kind = tables[at];
+    return kind <= DISTANT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
 }
 
 // The spectrum of a light times its scale.
@@ -183,7 +185,10 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f) -> LightSample
             is_valid = found.v1;
         }
         case SPHERE_LIGHT: { point = sample_sphere(at, context, u); }
-        default: { point = sample_revolved(at, context, u); }
+        default: {
+            point = point_by_area(at, u);
+            point.pdf *= ShapeSampleContext_area_per_solid_angle(context, point.p.p, point.n);
+        }
     }
     if (tables[at] >= SPHERE_LIGHT) {
         is_valid = point.pdf > 0 && point.pdf < infinity();
@@ -248,29 +253,87 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
     let p = center + outward * radius;
     let n = outward * number(at + 8);
     if (cone.sine == 0) {
-        pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) / (4 * 3.1415927 * radius * radius);
+        pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, vec2f());
     }
     return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
 }
 
-// A point of a disk or a cylinder, by area, but with its density per solid angle.
-fn sample_revolved(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
-    var point = revolved_by_area(at, u);
-    point.pdf *= ShapeSampleContext_area_per_solid_angle(context, point.p.p, point.n);
-    return point;
+// A point of the surface of a light, with its density per area.
+fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let flat_shape = flat_light(at);
+            var uv = u;
+            if (flat_shape.is_triangle) {
+                uv = sample_uniform_triangle(u).yz;
+            }
+            return ShapeSample(FlatShape_point(flat_shape, uv), flat_shape.n, uv, surface_density(at, uv));
+        }
+        case SPHERE_LIGHT: {
+            let center = vector(at + 4);
+            let radius = number(at + 7);
+            let outward = outward_by_area(at, u);
+            let error = POINT_ERROR * (abs(center) + vec3f(radius));
+            let p = Point3Error(center + outward * radius, error);
+            return ShapeSample(p, outward * number(at + 8), vec2f(), surface_density(at, vec2f()));
+        }
+        case PATCH_LIGHT: { return patch_by_area(at, u); }
+        default: { return revolved_by_area(at, u); }
+    }
 }
 
-// The same, with its density per area.
+// The normal of a patch, as long as its area element.
+fn patch_normal(at: u32, uv: vec2f) -> vec3f {
+    let twist = vector(at + 13);
+    return cross(vector(at + 7) + twist * uv.y, vector(at + 10) + twist * uv.x);
+}
+
+// The area elements at the corners of a patch.
+fn patch_weights(at: u32) -> vec4f {
+    return vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
+}
+
+fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
+    let uv = sample_bilinear(u, patch_weights(at));
+    let sides = vector(at + 7) * uv.x + vector(at + 10) * uv.y + vector(at + 13) * (uv.x * uv.y);
+    let p = Point3Error(vector(at + 4) + sides, POINT_ERROR * (abs(vector(at + 4)) + abs(sides)));
+    let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 20);
+    return ShapeSample(p, n, uv, surface_density(at, uv));
+}
+
+// The density per area of points of a surface, sampled by area.
+fn surface_density(at: u32, uv: vec2f) -> f32 {
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            let flat_shape = flat_light(at);
+            let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
+            return select(1.0, 2.0, flat_shape.is_triangle) / area;
+        }
+        case SPHERE_LIGHT: {
+            let radius = number(at + 7);
+            return 1 / (4 * 3.1415927 * radius * radius);
+        }
+        case PATCH_LIGHT: { return bilinear_pdf(uv, patch_weights(at)) / length(patch_normal(at, uv)); }
+        default: { return 1 / number(at + 21); }
+    }
+}
+
+// A point of a disk or a cylinder.
 fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
     let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
     let translation = vec3f(number(at + 7), number(at + 11), number(at + 15));
     let first = number(at + 16);
     var p: vec3f;
     var n = vec3f(0, 0, 1);
+    let phi = sin_cos(u.y * number(at + 19));
     if (tables[at] == DISK_LIGHT) {
-        p = vec3f(sample_uniform_disk_concentric(u) * number(at + 17), first);
+        let radius = number(at + 17);
+        let hole = number(at + 18);
+        let distance = sqrt(hole * hole + (radius * radius - hole * hole) * u.x);
+        let is_whole = hole == 0 && number(at + 19) > 6.28318;
+        let ring = vec2f(phi.v1, phi.v0) * distance;
+        p = vec3f(select(ring, sample_uniform_disk_concentric(u) * radius, is_whole), first);
     } else {
-        let phi = sin_cos(u.y * number(at + 19));
         let low = number(at + 17);
         n = vec3f(phi.v1, phi.v0, 0);
         p = n * first + vec3f(0, 0, low + (number(at + 18) - low) * u.x);
@@ -289,18 +352,16 @@ fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f
 // The same, for a point of the surface and its normal.
 fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv: vec2f) -> f32 {
     let at = light_record(light);
-    if (tables[at] == DISK_LIGHT || tables[at] == CYLINDER_LIGHT) {
-        return ShapeSampleContext_area_per_solid_angle(context, p, n) / number(at + 21);
-    }
-    if (tables[at] != SPHERE_LIGHT) {
-        return FlatShape_pdf_from(flat_light(at), context, uv);
+    switch (tables[at]) {
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: { return FlatShape_pdf_from(flat_light(at), context, uv); }
+        case SPHERE_LIGHT: {}
+        default: { return ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, uv); }
     }
     let cone = cone_of(at, context);
     if (cone.sine > 0) {
         return 1 / (6.2831855 * cone.one_minus_cos);
     }
-    let radius = number(at + 7);
-    return ShapeSampleContext_area_per_solid_angle(context, p, n) / (4 * 3.1415927 * radius * radius);
+    return ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, uv);
 }
 
 // The radiance of an infinite light along a ray that leaves the scene, and the density with which

@@ -12,6 +12,7 @@
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
 //! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
+//! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
 //! spectrum.
@@ -41,6 +42,7 @@ const DISK: u32 = 8;
 const CYLINDER: u32 = 9;
 const GONIOMETRIC: u32 = 10;
 const PROJECTION: u32 = 11;
+const PATCH: u32 = 12;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -176,8 +178,8 @@ impl Flattener<'_> {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
             (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
-        } else if let Some(revolved) = shape.and_then(|shape| revolved(&shape.plain()?, shape.area())) {
-            revolved
+        } else if let Some(numbers) = shape.and_then(|shape| surface(&shape.plain()?, shape.area())) {
+            numbers
         } else {
             return self.no_light("area lights of this shape", span);
         };
@@ -201,10 +203,22 @@ fn placement(motion: &AnimatedTransform) -> [f32; 21] {
     numbers
 }
 
-/// The kind and the numbers of a whole sphere, disk or cylinder of an area, placed without
+/// The kind and the numbers of a patch, whole sphere, disk or cylinder of an area, placed without
 /// distortion; `None` of other shapes.
-fn revolved(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
-    let &PlainShape::Revolved { kind, render_from_object, flips, numbers } = shape else { return None };
+fn surface(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
+    let (kind, render_from_object, flips, numbers) = match *shape {
+        PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
+            let element = |u: f32, v: f32| (right + twist * v).cross(up + twist * u).length();
+            let elements = [element(0.0, 0.0), element(1.0, 0.0), element(0.0, 1.0), element(1.0, 1.0)];
+            let vectors = [corner, right, up, twist].map(|vector| vector.to_array());
+            let side = if flips { -1.0 } else { 1.0 };
+            return Some((PATCH, [vectors.as_flattened(), &elements, &[side]].concat()));
+        }
+        PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
+            (kind, render_from_object, flips, numbers)
+        }
+        PlainShape::Curve { .. } => return None,
+    };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| render_from_object.transform_vector3(axis));
     let scale = axes[0].length();
     let is_similar = (0..3).all(|i| {
@@ -212,7 +226,7 @@ fn revolved(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
             && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
     });
     let [first, second, third, phi] = numbers;
-    if !is_similar || phi < TAU {
+    if !is_similar {
         return None;
     }
     let side = if flips { -1.0 } else { 1.0 };
@@ -221,15 +235,15 @@ fn revolved(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
         [rows.as_flattened(), &numbers, &[side, area]].concat()
     };
     match kind {
-        RevolvedKind::Sphere if second == -first && third == first => {
+        RevolvedKind::Sphere if second == -first && third == first && phi >= TAU => {
             let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
             let rotation =
                 [0, 1, 2].map(|row| (render_from_object.row(row).truncate() / scale).as_vec3().to_array());
             let numbers = [&center.to_array()[..], &[first * scale as f32, side], rotation.as_flattened()];
             Some((SPHERE, numbers.concat()))
         }
-        RevolvedKind::Disk if third == 0.0 => Some((DISK, placed())),
+        RevolvedKind::Disk => Some((DISK, placed())),
         RevolvedKind::Cylinder => Some((CYLINDER, placed())),
-        RevolvedKind::Sphere | RevolvedKind::Disk | RevolvedKind::Plane => None,
+        RevolvedKind::Sphere | RevolvedKind::Plane => None,
     }
 }

@@ -21,7 +21,7 @@ use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{HAIR, HOLES, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{HAIR, HOLES, LAMPS, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -292,6 +292,7 @@ fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
         ("medley", Case::of_text(MEDLEY)),
         ("stretched", Case::of_text(STRETCHED)),
         ("projector", Case::projector()),
+        ("lamps", Case::of_text(LAMPS)),
     ];
     for (name, mut case) in named.chain(others) {
         case.take_sobol();
@@ -409,9 +410,9 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
             "LightSource",
         ),
         (
-            "AreaLightSource \"diffuse\"\nShape \"cylinder\" \"float phimax\" 90",
+            "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float phimax\" 90",
             "area lights of this shape",
-            "Shape \"cylinder\"",
+            "Shape \"sphere\"",
         ),
         (
             "ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\nActiveTransform EndTime\nTranslate 1 0 0\nObjectInstance \"a\"",
@@ -444,6 +445,8 @@ fn lights_surfaces_and_cameras_of_all_kinds_have_the_picture_of_the_cpu() {
     {
         assert_eq!(case.compare("medley", &algorithm), None, "{algorithm:?}");
     }
+    let path = PathDesc { max_depth: 3, ..PathDesc::default() };
+    assert_eq!(Case::of_text(LAMPS).compare("lamps", &Algorithm::Path(path)), None);
 }
 
 /// A picture too large for one strip, and a part of the film alone.

@@ -195,3 +195,30 @@ Material "hair" "rgb sigma_a" [ 0.2 0.4 0.9 ] "float alpha" 4 "float eta" 1.4
 Shape "curve" "string type" "cylinder" "float width" 0.15
     "point3 P" [ 0.9 0 -0.4  0.8 0 0.4  1 -0.2 0.6  0.9 0.1 1.2 ]
 "#;
+
+/// Lamps whose points are sampled by area: parts of a disk and of a cylinder, and a bent patch.
+pub const LAMPS: &str = r#"
+LookAt 0 -4 2  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 50
+Film "rgb"
+WorldBegin
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 4 3 2 ] "bool twosided" true
+    Shape "bilinearmesh" "point3 P" [ -1.6 0.5 0.6  -0.7 0.6 0.8  -1.5 0.7 1.8  -0.8 0.2 1.5 ]
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 2 3 4 ]
+    Translate 0 0.3 1.9
+    Rotate 160 1 0 0
+    Shape "disk" "float radius" 0.5 "float innerradius" 0.2 "float phimax" 250
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 3 2 2 ] "bool twosided" true
+    Translate 1.2 0.4 0.7
+    Shape "cylinder" "float radius" 0.3 "float zmin" -0.4 "float zmax" 0.5 "float phimax" 200
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
+Shape "disk" "float radius" 3
+Translate 0 -0.3 0.5
+Shape "sphere" "float radius" 0.4
+"#;
