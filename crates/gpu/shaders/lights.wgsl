@@ -21,13 +21,15 @@ struct LightSample {
     pdf: f32,
     p: Point3Error,
     n: vec3f,
+    // The parameters of the point on its surface.
+    uv: vec2f,
     // Infinitely far away, where there is no point.
     is_distant: bool,
     valid: bool,
 }
 
 fn no_light() -> LightSample {
-    return LightSample(vec4f(), vec3f(), 0, Point3Error(vec3f(), vec3f()), vec3f(), false, false);
+    return LightSample(vec4f(), vec3f(), 0, Point3Error(vec3f(), vec3f()), vec3f(), vec2f(), false, false);
 }
 
 fn light_record(light: u32) -> u32 {
@@ -203,6 +205,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f) -> LightSample
     sample.pdf = point.pdf;
     sample.p = point.p;
     sample.n = point.n;
+    sample.uv = point.uv;
     sample.valid = emits(at, point.n, -sample.wi);
     return sample;
 }

@@ -248,7 +248,7 @@ fn connection_to_light(
     let pdf = choice.pmf * light.pdf;
     let is_point = !light.is_distant && all(light.n == vec3f());
     let direct = select(pdf, choice.pmf * Vec3_length_squared(light.p.p - v.p.p), is_point);
-    let point = LightPoint(choice.light, light.p.p, light.n, vec2f(), light.is_distant);
+    let point = LightPoint(choice.light, light.p.p, light.n, light.uv, light.is_distant);
     let end = light_end(point, context.p.p, light.wi, direct);
     c.wi = light.wi;
     c.factor = light.l / pdf;
