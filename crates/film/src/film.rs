@@ -277,6 +277,7 @@ impl Film {
             spectrum: self.buckets.map(|buckets| (buckets, spectrum.tile(tile, range.clone()))),
             counts: &mut self.counts[range],
             data,
+            is_touched: true,
         }
     }
 
@@ -310,7 +311,7 @@ impl Film {
                 ids: ids.each_mut().map(Iterator::next),
             });
             let spectrum = buckets.zip(spectrum.next());
-            FilmTile { bounds, exposure, color, counts, data, spectrum }
+            FilmTile { bounds, exposure, color, counts, data, spectrum, is_touched: false }
         }));
         Ok((tiles, Splatter::new(grid, &self.filter, exposure, (buckets, layout), &self.splats)))
     }

@@ -166,6 +166,12 @@ pub(crate) struct TileSums<'film> {
 }
 
 impl TileSums<'_> {
+    /// Writes zeros to all sums, which are zero.
+    pub(crate) fn touch(&mut self) {
+        debug_assert!(self.low.iter().all(|low| *low == [0; 3]) && self.high.is_empty());
+        self.low.fill([0; 3]);
+    }
+
     /// Adds a term that [`can_add`].
     #[inline]
     pub(crate) fn add(&mut self, pixel: usize, component: usize, term: f64) {

@@ -26,6 +26,8 @@ pub struct FilmTile<'film> {
     pub(crate) data: Option<TileData<'film>>,
     /// The buckets of a spectral film, and the sums of each: light and weight.
     pub(crate) spectrum: Option<(Buckets, TileSums<'film>)>,
+    /// Whether its memory is there.
+    pub(crate) is_touched: bool,
 }
 
 impl FilmTile<'_> {
@@ -58,6 +60,7 @@ impl FilmTile<'_> {
     #[inline]
     pub fn add(&mut self, pixel: [i32; 2], sample: &Sample) {
         assert!(self.bounds.contains(pixel), "{pixel:?} is not in the tile");
+        self.touch();
         let index = index_in(&self.bounds, pixel);
         let Some(terms) = self.exposure.terms(sample).filter(|_| self.can_add_to_buckets(sample)) else {
             self.exposure.reject(pixel);
@@ -73,6 +76,18 @@ impl FilmTile<'_> {
         if let Some(data) = &mut self.data {
             data.add(index, sample, terms, self.exposure);
         }
+    }
+
+    /// Makes the operating system allocate the memory of a tile without samples. A page that is read
+    /// before it is written to is one of zeros first, which all pages share; to replace it,
+    /// processors that run other threads are interrupted.
+    fn touch(&mut self) {
+        if std::mem::replace(&mut self.is_touched, true) || self.counts.iter().any(|&count| count > 0) {
+            return;
+        }
+        self.color.touch();
+        self.data.iter_mut().flat_map(|data| &mut data.sums).for_each(TileSums::touch);
+        self.spectrum.iter_mut().for_each(|(_, sums)| sums.touch());
     }
 
     /// Whether the sums of the buckets, if there are any, can take a sample.
@@ -117,6 +132,7 @@ impl FilmTile<'_> {
 
     /// Adds the terms of those of the first `count` lanes that are set in `lanes`.
     fn add_plain(&mut self, first: usize, count: usize, terms: &LaneTerms, lanes: u32) {
+        self.touch();
         let counts = &mut self.counts[first..first + count];
         for (lane, samples) in counts.iter_mut().enumerate() {
             if lanes >> lane & 1 == 0 {

@@ -29,9 +29,11 @@ pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileEr
     Ok(())
 }
 
-/// Appends the sums of a row of tiles: tile by tile, component by component, each as a block, then
+/// The sums of a row of tiles: tile by tile, component by component, each as a block, then
 /// identifiers.
-pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
+pub fn row(film: &Film, row: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let payload = &mut bytes;
     for tile in film.grid.row(row) {
         let range = film.grid.range(tile);
         let pixels = range.len();
@@ -61,9 +63,10 @@ pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
             }
         }
     }
+    bytes
 }
 
-/// Adds what [`put_row`] has written.
+/// Adds what [`row`] has.
 pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), FilmFileError> {
     for tile in film.grid.row(row) {
         let range = film.grid.range(tile);

@@ -37,6 +37,8 @@ mod settings;
 
 use std::io::{Read, Write};
 
+use rayon::prelude::*;
+
 use crate::{Film, PassSet};
 
 pub use error::FilmFileError;
@@ -50,6 +52,9 @@ const FILM: section::Tag = *b"FILM";
 const ROWS: section::Tag = *b"ROWS";
 const STATE: section::Tag = *b"STAT";
 const END: section::Tag = *b"END ";
+
+/// As many rows of tiles are encoded at once.
+const ROWS_AT_ONCE: usize = 16;
 
 /// The most bytes that a header, or the settings of a film, take.
 const MAX_SETTINGS: u64 = 16 << 20;
@@ -177,10 +182,10 @@ impl<W: Write> FilmWriter<W> {
         settings::put(&mut payload, film);
         layers::put_totals(&mut payload, film);
         self.sections.write(FILM, &[&payload])?;
-        for row in 0..film.grid.rows() {
-            payload.clear();
-            layers::put_row(&mut payload, film, row);
-            self.sections.write(ROWS, &[&payload])?;
+        let rows: Vec<usize> = (0..film.grid.rows()).collect();
+        for some in rows.chunks(ROWS_AT_ONCE) {
+            let payloads: Vec<_> = some.par_iter().map(|&row| layers::row(film, row)).collect();
+            payloads.iter().try_for_each(|payload| self.sections.write(ROWS, &[payload]))?;
         }
         Ok(())
     }
