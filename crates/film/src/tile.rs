@@ -78,9 +78,9 @@ impl FilmTile<'_> {
         }
     }
 
-    /// Makes the operating system allocate the memory of a tile without samples. A page that is read
-    /// before it is written to is one of zeros first, which all pages share; to replace it,
-    /// processors that run other threads are interrupted.
+    /// Makes the operating system allocate the memory of a tile without samples. A page that is
+    /// read before it is written to is at first one of zeros, which all such pages share; to
+    /// replace it, processors that run other threads are interrupted.
     fn touch(&mut self) {
         if std::mem::replace(&mut self.is_touched, true) || self.counts.iter().any(|&count| count > 0) {
             return;
