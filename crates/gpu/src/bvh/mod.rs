@@ -81,10 +81,9 @@ impl Bvh {
         for group in (0..world.groups() as u32).rev().map(GroupId) {
             groups[group.0 as usize] = bvh.add_group(world, group, &groups, is_cut_out)?;
         }
-        let inner = groups[1..].iter().map(|group| group.stack).max().unwrap_or(0);
         let Group { roots, unbounded, size, stack } = groups[0];
         bvh.top = Top { roots, unbounded, size };
-        if stack + inner > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
+        if stack > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
     }
 
     /// Adds a group, given those that its instances may place.
@@ -99,8 +98,7 @@ impl Bvh {
         let mut size = largest_coordinate(&tree);
         let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3);
         let root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
-        // The three roots wait together.
-        let mut stack = writer.stack + 3;
+        let of_triangles = writer.stack;
         for triangle in triangles {
             let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
             let corners = triangle.corners.iter().zip(ids);
@@ -114,7 +112,11 @@ impl Bvh {
         let first = self.items.len() / item::QUADRUPLES;
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
         let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
-        stack += writer.stack;
+        // Triangles are done before items. What waits among these does so while a ray is within an
+        // instance, too; and three roots wait together.
+        let instances = if group == GroupId::TOP { &groups[1..] } else { &[] };
+        let inner = instances.iter().map(|group| group.stack).max().unwrap_or(0);
+        let stack = 3 + of_triangles.max(writer.stack + inner);
         self.bounded = first..first + items.len();
         let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
         if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {
