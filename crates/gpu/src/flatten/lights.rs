@@ -203,8 +203,8 @@ fn placement(motion: &AnimatedTransform) -> [f32; 21] {
     numbers
 }
 
-/// The kind and the numbers of a patch, whole sphere, disk or cylinder of an area, placed without
-/// distortion; `None` of other shapes.
+/// The kind and the numbers of a patch, or of a whole sphere, a disk or a cylinder that is placed
+/// without distortion and has this area; `None` of other shapes.
 fn surface(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
     let (kind, render_from_object, flips, numbers) = match *shape {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
