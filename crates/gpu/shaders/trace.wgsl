@@ -386,13 +386,10 @@ fn hit_curve(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<functi
     return found;
 }
 
-// Bytes as numbers.
-fn bytes(words: vec2u) -> array<f32, 8> {
-    let w = words;
-    return array(
-        f32(w.x & 255), f32((w.x >> 8) & 255), f32((w.x >> 16) & 255), f32(w.x >> 24),
-        f32(w.y & 255), f32((w.y >> 8) & 255), f32((w.y >> 16) & 255), f32(w.y >> 24),
-    );
+// A byte of two words as a number. There are no arrays of the bytes, because arrays with indices that
+// vary are in memory.
+fn byte(words: vec2u, i: u32) -> f32 {
+    return f32((select(words.x, words.y, i >= 4) >> (8 * (i & 3))) & 255);
 }
 
 // The id of the instance that is hit; `NO_HIT` outside of instances.
@@ -406,10 +403,13 @@ fn instance_id(hit: Hit) -> u32 {
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false, false);
-    var stack: array<u32, STACK>;
-    stack[0] = world.roots.y;
-    stack[1] = world.roots.x;
-    stack[2] = world.unbounded;
+    // References with the distances where the ray enters their boxes, and the nearest child of the
+    // last node, which has not been there.
+    var stack: array<vec2u, STACK>;
+    var next = LEAF;
+    stack[0] = vec2u(world.roots.y, 0);
+    stack[1] = vec2u(world.roots.x, 0);
+    stack[2] = vec2u(world.unbounded, 0);
     var top = 3;
     // Within an instance the ray is another one; `outside` is the top of the stack there.
     var ray = slabs(o, d, world.size);
@@ -418,16 +418,24 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var inner_d = d;
     var instance = NO_HIT;
     var outside = 0;
-    while (top > 0) {
-        if (instance != NO_HIT && top == outside) {
+    while (top > 0 || next != LEAF) {
+        if (next == LEAF && instance != NO_HIT && top == outside) {
             ray = slabs(o, d, world.size);
             shear = sheared(o, d);
             inner_o = o;
             inner_d = d;
             instance = NO_HIT;
         }
-        top--;
-        let reference = stack[top];
+        var reference = next;
+        next = LEAF;
+        if (reference == LEAF) {
+            top--;
+            let popped = stack[top];
+            if (bitcast<f32>(popped.y) > best.t) {
+                continue;
+            }
+            reference = popped.x;
+        }
         if ((reference & LEAF) != 0) {
             var first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
             var count = reference & ((1u << COUNT_BITS) - 1);
@@ -462,7 +470,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             }
             // The instance that the ray enters; the others wait.
             if (count > 1) {
-                stack[top] = LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1);
+                stack[top] = vec2u(LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1), 0);
                 top++;
             }
             let row = array(
@@ -477,8 +485,8 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             shear = sheared(inner_o, inner_d);
             instance = first;
             outside = top;
-            stack[top] = placed.y;
-            stack[top + 1] = placed.x;
+            stack[top] = vec2u(placed.y, 0);
+            stack[top + 1] = vec2u(placed.x, 0);
             top += 2;
             continue;
         }
@@ -487,40 +495,37 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
         let origin = (bitcast<vec3f>(head.xyz) - ray.o) * ray.inverse;
         let exponents = vec3u(head.w, head.w >> 8, head.w >> 16) & vec3u(255);
         let step = bitcast<vec3f>(exponents << vec3u(23)) * ray.inverse;
-        let q = array(nodes[at + 1], nodes[at + 2], nodes[at + 3]);
-        let low_x = bytes(q[0].xy);
-        let low_y = bytes(q[0].zw);
-        let low_z = bytes(q[1].xy);
-        let high_x = bytes(q[1].zw);
-        let high_y = bytes(q[2].xy);
-        let high_z = bytes(q[2].zw);
-        let children = array(nodes[at + 4], nodes[at + 5]);
-        // Children are sorted as they are pushed, the nearest last.
-        let base = top;
-        var distances: array<f32, 8>;
-        for (var i = 0; i < 8; i++) {
-            let child = children[i >> 2][i & 3];
+        let q0 = nodes[at + 1];
+        let q1 = nodes[at + 2];
+        let q2 = nodes[at + 3];
+        let first_children = nodes[at + 4];
+        let last_children = nodes[at + 5];
+        // The nearest child is next; the others wait in the order of the node.
+        var nearest = vec2u(LEAF, 0x7f800000u);
+        for (var i = 0u; i < 8; i++) {
+            let four = select(first_children, last_children, i >= 4);
+            let two = select(four.xy, four.zw, (i & 2) != 0);
+            let child = select(two.x, two.y, (i & 1) != 0);
             if (child == LEAF) {
                 break;
             }
-            let low = origin + vec3f(low_x[i], low_y[i], low_z[i]) * step;
-            let high = origin + vec3f(high_x[i], high_y[i], high_z[i]) * step;
+            let low = origin + vec3f(byte(q0.xy, i), byte(q0.zw, i), byte(q1.xy, i)) * step;
+            let high = origin + vec3f(byte(q1.zw, i), byte(q2.xy, i), byte(q2.zw, i)) * step;
             let near = min(low, high) - ray.margin;
             let far = max(low, high) + ray.margin;
             let enter = max(max(near.x, near.y), max(near.z, 0));
             let leave = min(min(far.x, far.y), min(far.z, best.t));
             if (enter <= leave) {
-                var place = top;
-                while (place > base && distances[place - base - 1] < enter) {
-                    distances[place - base] = distances[place - base - 1];
-                    stack[place] = stack[place - 1];
-                    place--;
+                let found = vec2u(child, bitcast<u32>(enter));
+                let is_nearer = found.y < nearest.y;
+                if (nearest.x != LEAF) {
+                    stack[top] = select(found, nearest, is_nearer);
+                    top++;
                 }
-                distances[place - base] = enter;
-                stack[place] = child;
-                top++;
+                nearest = select(nearest, found, is_nearer || nearest.x == LEAF);
             }
         }
+        next = nearest.x;
     }
     return best;
 }
