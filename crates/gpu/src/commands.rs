@@ -97,8 +97,12 @@ impl<'a> Commands<'a> {
         self.device.checked(())
     }
 
-    /// The contents of a buffer when all is done, and the time of each stage.
-    pub fn read<T: bytemuck::Pod>(mut self, buffer: &Buffer) -> Result<(Vec<T>, Vec<Duration>), GpuError> {
+    /// What is taken from the bytes of a buffer when all is done, and the time of each stage.
+    pub fn read<T>(
+        mut self,
+        buffer: &Buffer,
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> Result<(T, Vec<Duration>), GpuError> {
         let Self { device, timer, .. } = self;
         if timer.clock.is_none() {
             self.flush();
@@ -125,11 +129,11 @@ impl<'a> Commands<'a> {
                 self.times[*stage] += time;
             }
         }
-        let contents = {
+        let taken = {
             let mapped = timer.copy.get_mapped_range(times..times + size).map_err(|error| lost(&error))?;
-            bytemuck::pod_collect_to_vec(&mapped)
+            take(&mapped)
         };
         timer.copy.unmap();
-        Ok((contents, self.times))
+        Ok((taken, self.times))
     }
 }

@@ -71,6 +71,12 @@ pub struct Kernel {
 #[derive(Debug)]
 pub struct Buffer(pub(crate) wgpu::Buffer);
 
+/// A copy that the host can read when a submission is done.
+pub(crate) struct Copied {
+    pub copy: wgpu::Buffer,
+    pub done: wgpu::SubmissionIndex,
+}
+
 impl Device {
     /// Opens the GPU whose name contains `name`, without regard to case; the fastest kind there is
     /// if that is empty. A software renderer is the last choice.
@@ -303,17 +309,27 @@ impl Device {
         if size == 0 {
             return Ok(Vec::new());
         }
+        self.contents(&self.copy(buffer, byte, size)?)
+    }
+
+    /// Starts a copy of so many bytes of a buffer from a byte on, more than none, as what was
+    /// started before leaves them.
+    pub(crate) fn copy(&self, buffer: &Buffer, byte: u64, size: u64) -> Result<Copied, GpuError> {
         let copy = self.empty("copies", size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&buffer.0, byte, &copy, 0, size);
-        self.queue.submit([encoder.finish()]);
-        self.mapped(&copy)
+        let done = self.queue.submit([encoder.finish()]);
+        self.checked(Copied { copy, done })
     }
 
-    /// The contents of a buffer that can be mapped, when all that was started is done.
-    pub(crate) fn mapped<T: bytemuck::Pod>(&self, copy: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
+    /// The contents of a copy, when it is done.
+    pub(crate) fn contents<T: bytemuck::Pod>(
+        &self,
+        Copied { copy, done }: &Copied,
+    ) -> Result<Vec<T>, GpuError> {
         copy.map_async(wgpu::MapMode::Read, .., |_| ());
-        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let wait = wgpu::PollType::Wait { submission_index: Some(done.clone()), timeout: None };
+        let waited = self.device.poll(wait);
         self.checked(())?;
         waited.map_err(|error| GpuError::Lost(error.to_string()))?;
         let mapped = copy.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;

@@ -16,7 +16,7 @@ use super::pipelines::{COLOR, Pipelines};
 use super::pond::Pond;
 use super::sky::{self, Sky};
 use super::sprites::Sprite;
-use crate::device::{Device, GpuError};
+use crate::device::{Copied, Device, GpuError};
 
 /// The rows of the matrix that moves nothing.
 const AT_REST: [[f32; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
@@ -173,8 +173,8 @@ impl Painted {
             },
             Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        queue.submit([encoder.finish()]);
-        let halves: Vec<u16> = device.mapped(&copy)?;
+        let done = queue.submit([encoder.finish()]);
+        let halves: Vec<u16> = device.contents(&Copied { copy, done })?;
         let row = |row: &[u16]| {
             let pixels = row[..4 * width as usize].chunks_exact(4);
             pixels.map(|p| [p[0], p[1], p[2]].map(|bits| f16::from_bits(bits).to_f32())).collect::<Vec<_>>()

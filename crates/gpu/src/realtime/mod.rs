@@ -24,6 +24,7 @@ use std::time::Duration;
 
 use geometry::{GeometryId, World};
 use math::{Bounds2i, Point3};
+use rayon::prelude::*;
 use sampling::sampler::Independent;
 use scene::View;
 
@@ -43,6 +44,9 @@ pub use reservoirs::Weights;
 
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
+
+/// The fewest pixels that a thread copies at a time.
+const PIXELS_OF_A_THREAD: usize = 1 << 14;
 
 /// A stage of a frame, as an index of times.
 const TRACE: usize = 0;
@@ -365,13 +369,16 @@ impl Realtime {
         let [.., develop] = &self.filters;
         let developed = [&self.parameters, &canvas.film, &canvas.shown, &canvas.seen, smooth];
         commands.run(FILTER, develop, &developed, groups);
-        let (words, times) = commands.read::<u32>(&canvas.shown)?;
-        let (rays, colors) = words.split_at(1);
-        Ok(Picture {
-            pixels: colors.as_chunks().0.iter().map(|color| color.map(f32::from_bits)).collect(),
-            rays: rays.iter().map(|&rays| u64::from(rays)).sum(),
-            stages: Stages { trace: times[TRACE], filter: times[FILTER], build: times[BUILD] },
-        })
+        // The number of rays, and colours: many, so that all threads copy them.
+        let take = |bytes: &[u8]| {
+            let (rays, colors) = bytes.split_at(size_of::<u32>());
+            let colors = colors.par_chunks_exact(size_of::<[f32; 3]>()).with_min_len(PIXELS_OF_A_THREAD);
+            let pixels = colors.map(bytemuck::pod_read_unaligned).collect();
+            (u64::from(bytemuck::pod_read_unaligned::<u32>(rays)), pixels)
+        };
+        let ((rays, pixels), times) = commands.read(&canvas.shown, take)?;
+        let stages = Stages { trace: times[TRACE], filter: times[FILTER], build: times[BUILD] };
+        Ok(Picture { pixels, rays, stages })
     }
 }
 

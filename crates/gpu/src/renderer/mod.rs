@@ -23,7 +23,7 @@ use scene::{ShutterSample, View};
 use spectrum::SampledSpectrum;
 
 use crate::algorithm::Algorithm;
-use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::device::{Buffer, Copied, Device, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::shaders;
 use chains::Chains;
@@ -32,9 +32,10 @@ use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
 use wavefront::Wavefront;
 
-/// The most pixels of a strip, and the most splats of its light paths, unless a row of tiles has
-/// more.
-const MAX_PIXELS: usize = 1 << 18;
+/// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that it
+/// can be cancelled soon. The most splats of its light paths. A row of tiles may have more.
+const MAX_PIXELS: usize = 1 << 20;
+const MAX_PIXELS_OF_SOFTWARE: usize = 1 << 18;
 const MAX_SPLATS: usize = 1 << 20;
 
 /// The splats that a thread adds at a time.
@@ -94,6 +95,18 @@ enum Maker {
     Wavefront(Wavefront),
 }
 
+/// A strip whose samples the device makes.
+struct Started {
+    strip: Bounds2i,
+    samples: Samples,
+}
+
+/// Samples on their way to the host, or there.
+enum Samples {
+    Copied(Copied),
+    Here(Vec<PixelSample>),
+}
+
 /// A scene on a device, ready to be rendered.
 pub struct Renderer {
     scene: SceneBuffers,
@@ -137,7 +150,8 @@ impl Renderer {
                 photons = Some(Photons::new(&scene, (desc, *seed), pixels, flat.radius)?);
             }
         }
-        let count = strips(film.pixel_bounds(), splats).map(|strip| strip.area()).max().unwrap_or(0);
+        let strips = strips(film.pixel_bounds(), splats, most_pixels(scene.device()));
+        let count = strips.map(|strip| strip.area()).max().unwrap_or(0);
         let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
         let maker = if schedule == Schedule::Wavefront && is_path && !flat.parts.media {
             Maker::Wavefront(Wavefront::new(&kernels, flat, count)?)
@@ -200,11 +214,11 @@ impl Renderer {
             let Some(grid) = &grid else { return Ok(None) };
             rays += grid.rays;
         }
-        for strip in strips(bounds, self.splats) {
-            if is_cancelled() {
-                return Ok(None);
-            }
-            let samples = self.strip(index, &strip, grid.as_ref())?;
+        let mut add = |Started { strip, samples }: Started| {
+            let samples = match samples {
+                Samples::Copied(copied) => self.device().contents(&copied)?,
+                Samples::Here(samples) => samples,
+            };
             if let (Some(_), Some(splatter)) = (self.splats, &splatter) {
                 self.add_splats(index, &strip, view, sampler, splatter)?;
             }
@@ -231,7 +245,20 @@ impl Renderer {
                     tile.add_sample(pixel, &SampledSpectrum::new(sample.l), &lambda, weight);
                 }
             });
+            Ok::<_, GpuError>(())
+        };
+        let mut before = None;
+        for strip in strips(bounds, self.splats, most_pixels(self.device())) {
+            if is_cancelled() {
+                return Ok(None);
+            }
+            let started = self.start(index, strip, grid.as_ref())?;
+            // While the device makes a strip, the one before is added, unless it has splats, which
+            // the device would write over.
+            let done = if self.splats.is_some() { Some(started) } else { before.replace(started) };
+            done.map_or(Ok(()), &mut add)?;
         }
+        before.map_or(Ok(()), add)?;
         if let (Some(chains), Some(splatter)) = (&self.chains, &splatter) {
             let Some(more) = chains.run(index, &self.scene, view, splatter, &is_cancelled)? else {
                 return Ok(None);
@@ -241,20 +268,19 @@ impl Renderer {
         Ok(Some(rays))
     }
 
-    /// The samples of a strip, row by row; `grid` has the photons of the pass, if there are any.
-    fn strip(
-        &self,
-        index: u32,
-        strip: &Bounds2i,
-        grid: Option<&PhotonGrid>,
-    ) -> Result<Vec<PixelSample>, GpuError> {
+    /// Starts the samples of a strip, row by row; `grid` has the photons of the pass, if there are
+    /// any.
+    fn start(&self, index: u32, strip: Bounds2i, grid: Option<&PhotonGrid>) -> Result<Started, GpuError> {
         let Self { scene, maker, batch, samples, .. } = self;
         let kernel = match maker {
             Maker::Megakernel(kernel) => kernel,
-            Maker::Wavefront(wavefront) => return wavefront.run(index, strip, scene),
+            Maker::Wavefront(wavefront) => {
+                let samples = Samples::Here(wavefront.run(index, &strip, scene)?);
+                return Ok(Started { strip, samples });
+            }
         };
         if let Some(grid) = grid {
-            grid.gather(scene, kernel, samples, strip)?;
+            grid.gather(scene, kernel, samples, &strip)?;
         } else {
             let size = [strip.width() as u32, strip.height() as u32];
             let low = strip.min.map(|x| x as u32);
@@ -262,7 +288,9 @@ impl Renderer {
             self.device().write(batch, &[head])?;
             scene.run(kernel, [batch, samples], workgroups(size))?;
         }
-        self.device().read(samples)
+        let bytes = (strip.area() * size_of::<PixelSample>()) as u64;
+        let samples = Samples::Copied(self.device().copy(samples, 0, bytes)?);
+        Ok(Started { strip, samples })
     }
 
     /// Adds the splats of a strip, and counts its light paths.
@@ -307,10 +335,16 @@ impl From<GpuError> for PassError {
     }
 }
 
-/// The pixels in strips of whole tiles, given the most splats of a light path.
-fn strips(bounds: Bounds2i, splats: Option<u32>) -> impl Iterator<Item = Bounds2i> {
+/// The most pixels of a strip on a device.
+fn most_pixels(device: &Device) -> usize {
+    if device.is_software() { MAX_PIXELS_OF_SOFTWARE } else { MAX_PIXELS }
+}
+
+/// The pixels in strips of whole tiles, given the most splats of a light path and the most pixels
+/// of a strip.
+fn strips(bounds: Bounds2i, splats: Option<u32>, pixels: usize) -> impl Iterator<Item = Bounds2i> {
     let row_of_tiles = bounds.width() as usize * TILE_SIZE as usize;
-    let most = MAX_PIXELS.min(MAX_SPLATS / splats.unwrap_or(1).max(1) as usize);
+    let most = pixels.min(MAX_SPLATS / splats.unwrap_or(1).max(1) as usize);
     let height = TILE_SIZE * (most / row_of_tiles).max(1) as i32;
     (bounds.min[1]..bounds.max[1])
         .step_by(height as usize)
