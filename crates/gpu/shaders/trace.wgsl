@@ -96,6 +96,9 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
     }
     let inverse = 1 / determinant;
     let t = (e.x * a.z + (e.y * b.z + e.z * c.z)) * inverse;
+    if (!(t > 0 && t <= (*best).t)) {
+        return;
+    }
     // A bound of the error of t ([Pharr 2023 §6.8.7]); what is nearer may be behind.
     let x = max(abs(a.x), max(abs(b.x), abs(c.x)));
     let y = max(abs(a.y), max(abs(b.y), abs(c.y)));

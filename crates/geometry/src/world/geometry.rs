@@ -3,6 +3,7 @@
 use crate::curve::Curves;
 use crate::shape::{PlainShape, Shape, TriangleMesh};
 use crate::sphere_set::SphereSet;
+use math::Bounds3;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -87,6 +88,15 @@ impl Geometry {
             Self::Shapes(shapes) => Some(Cow::Borrowed(&shapes[primitive as usize])),
             Self::Spheres(set) => Some(Cow::Owned(set.sphere(primitive as usize).into())),
             Self::Curves(_) => None,
+        }
+    }
+
+    /// A box around a primitive at rest; `None` where it is unbounded.
+    pub fn bounds(&self, primitive: u32) -> Option<Bounds3> {
+        match self {
+            Self::Curves(curves) => Some(curves.bounds(primitive)),
+            Self::Spheres(set) => Some(set.bounds(primitive as usize)),
+            Self::Mesh(_) | Self::Shapes(_) => self.shape(primitive)?.bounds(),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Wide nodes taken apart: the children of each are joined in pairs, those first whose common box
-//! is smallest.
+//! is smallest; and leaves, which have as many primitives as a processor tests at once, divided.
 
 use std::ops::Range;
 
-use geometry::PlainTree;
+use geometry::{PlainChild, PlainTree};
 use math::Bounds3;
 
 use super::MOST_PRIMITIVES;
@@ -29,31 +29,47 @@ pub enum Below {
 }
 
 impl Binary {
-    /// The tree with the same leaves.
-    pub fn new(tree: &PlainTree) -> Self {
+    /// The tree with leaves of few primitives, which are brought into the order of leaves.
+    /// Primitives whose box is unknown are taken to be as large as their leaf.
+    pub fn new<T: Copy>(
+        tree: &PlainTree,
+        primitives: &mut [T],
+        bounds: impl Fn(&T) -> Option<Bounds3>,
+    ) -> Self {
         let mut binary = Self::default();
         if !tree.nodes.is_empty() {
-            binary.join(tree, 0);
+            binary.join(tree, 0, &mut |binary, leaf| {
+                let part = &mut primitives[leaf.primitives.clone()];
+                // Of what was split by its builder, a leaf has a part.
+                let inside = |primitive: &T| {
+                    let inside = bounds(primitive)?.intersection(leaf.bounds);
+                    (!inside.is_empty()).then_some(inside)
+                };
+                let mut boxed: Vec<(Bounds3, T)> =
+                    part.iter().map(|it| (inside(it).unwrap_or(leaf.bounds), *it)).collect();
+                let root = binary.divide(&mut boxed, leaf.primitives.start);
+                part.iter_mut().zip(boxed).for_each(|(place, (_, primitive))| *place = primitive);
+                root
+            });
         }
         binary
     }
 
     /// This tree and another one together, whose primitives come after the first `primitives` ones.
-    pub fn and(mut self, tree: &PlainTree, primitives: usize) -> Self {
-        let first = self.root();
-        if tree.nodes.is_empty() {
-            return self;
-        }
-        let joined = self.nodes.len();
-        let second = self.join(tree, 0);
-        for node in &mut self.nodes[joined..] {
-            if let Below::Primitives(range) = &mut node.below {
-                *range = range.start + primitives..range.end + primitives;
-            }
-        }
-        if let Some(first) = first {
-            let bounds = self.nodes[first].bounds.union(self.nodes[second].bounds);
-            self.push(bounds, Below::Nodes([first, second]));
+    pub fn and(mut self, other: Self, primitives: usize) -> Self {
+        let roots = [self.root(), other.root()];
+        let count = self.nodes.len();
+        self.nodes.extend(other.nodes.into_iter().map(|node| {
+            let below = match node.below {
+                Below::Nodes(halves) => Below::Nodes(halves.map(|half| half + count)),
+                Below::Primitives(range) => {
+                    Below::Primitives(range.start + primitives..range.end + primitives)
+                }
+            };
+            BinaryNode { below, ..node }
+        }));
+        if let [Some(first), Some(second)] = roots {
+            self.pair(first, second + count);
         }
         self
     }
@@ -72,23 +88,22 @@ impl Binary {
         self.nodes.len() - 1
     }
 
-    /// Adds a leaf, in halves where a reference cannot have that many primitives: so many are at
-    /// one place. Its index.
-    fn add_leaf(&mut self, bounds: Bounds3, primitives: Range<usize>) -> usize {
-        if primitives.len() <= MOST_PRIMITIVES {
-            return self.push(bounds, Below::Primitives(primitives));
-        }
-        let middle = primitives.start + primitives.len() / 2;
-        let halves = [primitives.start..middle, middle..primitives.end];
-        let halves = halves.map(|half| self.add_leaf(bounds, half));
-        self.push(bounds, Below::Nodes(halves))
+    /// Adds a node of two; its index.
+    fn pair(&mut self, first: usize, second: usize) -> usize {
+        let bounds = self.nodes[first].bounds.union(self.nodes[second].bounds);
+        self.push(bounds, Below::Nodes([first, second]))
     }
 
-    /// Adds what is below a wide node; its index.
-    fn join(&mut self, tree: &PlainTree, node: usize) -> usize {
+    /// Adds what is below a wide node, and its leaves by `add_leaf`; its index.
+    fn join(
+        &mut self,
+        tree: &PlainTree,
+        node: usize,
+        add_leaf: &mut impl FnMut(&mut Self, &PlainChild) -> usize,
+    ) -> usize {
         let children = tree.nodes[node].iter().map(|child| match child.node {
-            Some(node) => self.join(tree, node),
-            None => self.add_leaf(child.bounds, child.primitives.clone()),
+            Some(node) => self.join(tree, node, add_leaf),
+            None => add_leaf(self, child),
         });
         let mut open: Vec<usize> = children.collect();
         while open.len() > 1 {
@@ -100,9 +115,51 @@ impl Binary {
             let least = pairs.map(|(i, j)| area(i, j)).min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, i, j)) = least else { break };
             let (second, first) = (open.swap_remove(j), open[i]);
-            let bounds = self.nodes[first].bounds.union(self.nodes[second].bounds);
-            open[i] = self.push(bounds, Below::Nodes([first, second]));
+            open[i] = self.pair(first, second);
         }
         open[0]
     }
+
+    /// Adds primitives with their boxes, divided until leaves have few; the index of their root.
+    /// `first` is the index of the first of them.
+    fn divide<T: Copy>(&mut self, boxed: &mut [(Bounds3, T)], first: usize) -> usize {
+        if boxed.len() <= MOST_PRIMITIVES {
+            let bounds = boxed.iter().fold(Bounds3::EMPTY, |all, (bounds, _)| all.union(*bounds));
+            return self.push(bounds, Below::Primitives(first..first + boxed.len()));
+        }
+        let before = cut(boxed);
+        let (left, right) = boxed.split_at_mut(before);
+        let middle = first + left.len();
+        let halves = [self.divide(left, first), self.divide(right, middle)];
+        self.pair(halves[0], halves[1])
+    }
+}
+
+/// Sorts boxes along the axis where they are cut best, by the surface area heuristic, and says how
+/// many are before the cut.
+fn cut<T: Copy>(boxed: &mut [(Bounds3, T)]) -> usize {
+    let sort = |boxed: &mut [(Bounds3, T)], axis: usize| {
+        boxed.sort_by(|a, b| a.0.centroid()[axis].total_cmp(&b.0.centroid()[axis]));
+    };
+    let count = boxed.len();
+    let mut costs = vec![0.0; count];
+    let (mut least, mut best) = (f32::INFINITY, (0, count / 2));
+    for axis in 0..3 {
+        sort(boxed, axis);
+        let mut right = Bounds3::EMPTY;
+        for i in (1..count).rev() {
+            right = right.union(boxed[i].0);
+            costs[i] = right.surface_area() * (count - i) as f32;
+        }
+        let mut left = Bounds3::EMPTY;
+        for i in 1..count {
+            left = left.union(boxed[i - 1].0);
+            let cost = left.surface_area() * i as f32 + costs[i];
+            if cost < least {
+                (least, best) = (cost, (axis, i));
+            }
+        }
+    }
+    sort(boxed, best.0);
+    best.1
 }

@@ -21,9 +21,11 @@ use node::Writer;
 /// The entries of the stack of `shaders/trace.wgsl`.
 pub(crate) const STACK: usize = 128;
 
-/// How many bits of a leaf's reference are the number of its primitives, and the most of these.
+/// How many bits of a leaf's reference are the number of its primitives.
 const COUNT_BITS: u32 = 5;
-const MOST_PRIMITIVES: usize = (1 << COUNT_BITS) - 1;
+
+/// The most primitives of a leaf, which a ray tests one after another.
+const MOST_PRIMITIVES: usize = 4;
 
 /// Four words of a buffer.
 pub type Words = [u32; 4];
@@ -94,10 +96,11 @@ impl Bvh {
         groups: &[Group],
         is_cut_out: &dyn Fn(GeometryId) -> bool,
     ) -> Result<Group, BvhError> {
-        let (tree, triangles) = world.triangle_tree(group);
+        let (tree, mut triangles) = world.triangle_tree(group);
         let mut size = largest_coordinate(&tree);
         let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3);
-        let root = writer.root(&Binary::new(&tree)).ok_or(BvhError::TooLarge)?;
+        let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
+        let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         let of_triangles = writer.stack;
         for triangle in triangles {
             let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
@@ -105,9 +108,14 @@ impl Bvh {
             self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
         }
         let (tree, mut items, unbounded) = world.item_tree(group);
-        let (spheres, more) = world.sphere_tree(group);
+        let (spheres, mut more) = world.sphere_tree(group);
         size = size.max(largest_coordinate(&tree)).max(largest_coordinate(&spheres));
-        let tree = Binary::new(&tree).and(&spheres, items.len());
+        let bounds = |item: &PlainItem| match *item {
+            PlainItem::Shape(geometry, primitive) => world.geometry(geometry).bounds(primitive),
+            PlainItem::Instance(_) => None,
+        };
+        let tree = Binary::new(&tree, &mut items, bounds);
+        let tree = tree.and(Binary::new(&spheres, &mut more, bounds), items.len());
         items.extend(more);
         let first = self.items.len() / item::QUADRUPLES;
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);

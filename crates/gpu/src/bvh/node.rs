@@ -13,7 +13,7 @@
 use math::Bounds3;
 
 use super::binary::{Below, Binary};
-use super::{COUNT_BITS, MOST_PRIMITIVES, Words};
+use super::{COUNT_BITS, Words};
 
 /// Children of a node.
 const WIDTH: usize = 8;
@@ -29,7 +29,7 @@ const EMPTY: u32 = TRIANGLES;
 /// The reference of a leaf; `None` where it has too many primitives, or those before it are too
 /// many.
 pub fn leaf(bits: u32, first: usize, count: usize) -> Option<u32> {
-    let fits = first < 1 << (30 - COUNT_BITS) && count <= MOST_PRIMITIVES;
+    let fits = first < 1 << (30 - COUNT_BITS) && count < 1 << COUNT_BITS;
     fits.then_some(bits | (first as u32) << COUNT_BITS | count as u32)
 }
 
