@@ -80,10 +80,23 @@ fn hashed(a: vec3f, b: vec3f, word: u32) -> f32 {
     return unit_interval(mix_quadruple(array(v.x, v.y, v.z, mixed[3]))[0]);
 }
 
+// The hit of the camera ray, where a kernel before has found it.
+var<private> camera_hit: Hit;
+var<private> has_camera_hit: bool;
+
+// The first ray of a path, or any other.
+fn traced(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
+    rays++;
+    if (has_camera_hit) {
+        has_camera_hit = false;
+        return camera_hit;
+    }
+    return trace(o, d, t_max, is_any);
+}
+
 // The nearest hit of a ray.
 fn nearest(ray: Ray) -> Hit {
-    rays++;
-    return trace(ray.o, ray.d, infinity(), false);
+    return traced(ray.o, ray.d, infinity(), false);
 }
 
 // Whether anything is at 0 < t < `t_max`.

@@ -268,8 +268,11 @@ fn hit_round(o: vec3f, d: vec3f, is_sphere: bool, numbers: vec4f, after: f32, t_
 
 // Whether the angle of a point around the z axis is at most `limit`.
 fn is_swept(p: vec3f, limit: f32) -> bool {
+    if (limit > 6.28318) {
+        return true;
+    }
     let phi = atan2(p.y, p.x);
-    return limit > 6.28318 || select(phi, phi + 6.2831855, phi < 0) <= limit;
+    return select(phi, phi + 6.2831855, phi < 0) <= limit;
 }
 
 // The control points of a curve.

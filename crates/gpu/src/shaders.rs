@@ -45,6 +45,9 @@ const PLUMBING: [&str; 14] = plumbing! {
 /// What kernels of real-time frames share.
 const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 
+/// What is found of camera rays once, by the kernel of surfaces for that of light.
+const CAMERA_HIT: &str = include_str!("../shaders/realtime/camera_hit.wgsl");
+
 /// From light to colours.
 const SENSOR: &str = include_str!("../shaders/sensor.wgsl");
 
@@ -152,7 +155,8 @@ fn subpaths(has_camera_paths: bool, are_connected: bool, most_vertices: u32) -> 
 pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> String {
     let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
     let light = include_str!("../shaders/realtime/light.wgsl");
-    traced(parts, &[RANDOM_NUMBERS, reservoirs, radiance(algorithm, parts), FRAME, SENSOR, light])
+    let radiance = radiance(algorithm, parts);
+    traced(parts, &[RANDOM_NUMBERS, reservoirs, radiance, FRAME, CAMERA_HIT, SENSOR, light])
 }
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
@@ -177,7 +181,7 @@ pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
         "const IS_REFLECTED = true;\n"
     };
     let surfaces = include_str!("../shaders/realtime/surfaces.wgsl");
-    traced(parts, &[RANDOM_NUMBERS, is_reflected, FRAME, surfaces])
+    traced(parts, &[RANDOM_NUMBERS, is_reflected, FRAME, CAMERA_HIT, surfaces])
 }
 
 /// The kernels that make a picture of the light of a real-time frame, in the order in which they

@@ -61,7 +61,7 @@ const FULL: Size = Size {
     rays: 1920,
     repeats: 20,
     spheres: 1_000_000,
-    reference: 500,
+    reference: 100,
     passes: [16, 2],
 };
 

@@ -2,6 +2,7 @@
 
 @group(0) @binding(5) var<uniform> frame: FrameParameters;
 @group(0) @binding(6) var<storage, read_write> seen: array<Seen>;
+@group(0) @binding(8) var<storage, read_write> film: Film;
 
 // One wavelength for each colour: guides need not be exact, but without noise.
 const GUIDES = vec4f(610, 550, 460, 550);
@@ -54,5 +55,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let largest = max(found.guide.x, max(found.guide.y, found.guide.z));
     found.guide = select(vec3f(1), max(found.guide, vec3f(LEAST_GUIDE * largest)), largest > 1e-6);
-    seen[frame.half * frame.size.x * frame.size.y + id.y * frame.size.x + id.x] = found;
+    let at = id.y * frame.size.x + id.x;
+    seen[frame.half * frame.size.x * frame.size.y + at] = found;
+    keep_hit(at, hit);
 }

@@ -135,6 +135,12 @@ impl Binary {
     }
 }
 
+/// The part of primitives that is before a cut at least, and behind it: a limit for the tree's depth.
+const LEAST_PART: usize = 8;
+
+/// A cut in the middle is as good as one that saves less than this part.
+const LEAST_GAIN: f32 = 1e-3;
+
 /// Sorts boxes along the axis where they are cut best, by the surface area heuristic, and says how
 /// many are before the cut.
 fn cut<T: Copy>(boxed: &mut [(Bounds3, T)]) -> usize {
@@ -142,20 +148,22 @@ fn cut<T: Copy>(boxed: &mut [(Bounds3, T)]) -> usize {
         boxed.sort_by(|a, b| a.0.centroid()[axis].total_cmp(&b.0.centroid()[axis]));
     };
     let count = boxed.len();
+    let few = (count / LEAST_PART).max(1);
+    let whole = boxed.iter().fold(Bounds3::EMPTY, |all, (bounds, _)| all.union(*bounds)).surface_area();
+    let (mut least, mut best) = ((1.0 - LEAST_GAIN) * whole * count as f32, (0, count / 2));
     let mut costs = vec![0.0; count];
-    let (mut least, mut best) = (f32::INFINITY, (0, count / 2));
     for axis in 0..3 {
         sort(boxed, axis);
         let mut right = Bounds3::EMPTY;
-        for i in (1..count).rev() {
+        for i in (few..count).rev() {
             right = right.union(boxed[i].0);
             costs[i] = right.surface_area() * (count - i) as f32;
         }
         let mut left = Bounds3::EMPTY;
-        for i in 1..count {
+        for i in 1..=count - few {
             left = left.union(boxed[i - 1].0);
             let cost = left.surface_area() * i as f32 + costs[i];
-            if cost < least {
+            if i >= few && cost < least {
                 (least, best) = (cost, (axis, i));
             }
         }

@@ -72,7 +72,8 @@ impl<'a> Writer<'a> {
             }
             Below::Nodes(halves) => halves,
         };
-        // The largest child is opened until there are enough.
+        // The largest child is opened until there are enough; of those that are as large, that which
+        // has waited longest, so that the tree is not deep.
         let mut children = halves.to_vec();
         while children.len() < WIDTH {
             let inner =
@@ -80,9 +81,10 @@ impl<'a> Writer<'a> {
                     Below::Nodes(halves) => Some((place, *halves, tree.node(child).bounds.surface_area())),
                     Below::Primitives(_) => None,
                 });
-            let Some((place, [a, b], _)) = inner.max_by(|a, b| a.2.total_cmp(&b.2)) else { break };
-            children[place] = a;
-            children.push(b);
+            let largest = inner.rev().max_by(|a, b| a.2.total_cmp(&b.2));
+            let Some((place, halves, _)) = largest else { break };
+            children.remove(place);
+            children.extend(halves);
         }
         let node = self.nodes.len() / 6;
         self.nodes.resize(6 * (node + 1), [0; 4]);

@@ -276,7 +276,7 @@ impl Realtime {
         let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
         let parameters = &self.parameters;
         let [temporal, variance, wavelet, _] = &self.filters;
-        let looked = [world, nodes, triangles, items, tables, parameters, seen, texels];
+        let looked = [world, nodes, triangles, items, tables, parameters, seen, texels, film];
         commands.run(TRACE, &self.surfaces, &looked, groups);
         self.trace(&mut commands, canvas, groups, self.reservoirs.as_ref());
         commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
