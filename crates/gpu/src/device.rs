@@ -309,7 +309,7 @@ impl Device {
         if size == 0 {
             return Ok(Vec::new());
         }
-        self.contents(&self.copy(buffer, byte, size)?)
+        self.contents(&self.copy(buffer, byte, size)?, bytemuck::pod_collect_to_vec)
     }
 
     /// Starts a copy of so many bytes of a buffer from a byte on, more than none, as what was
@@ -322,18 +322,19 @@ impl Device {
         self.checked(Copied { copy, done })
     }
 
-    /// The contents of a copy, when it is done.
-    pub(crate) fn contents<T: bytemuck::Pod>(
+    /// What is taken from the bytes of a copy, which are aligned to eight, when it is done.
+    pub(crate) fn contents<T>(
         &self,
         Copied { copy, done }: &Copied,
-    ) -> Result<Vec<T>, GpuError> {
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
         copy.map_async(wgpu::MapMode::Read, .., |_| ());
         let wait = wgpu::PollType::Wait { submission_index: Some(done.clone()), timeout: None };
         let waited = self.device.poll(wait);
         self.checked(())?;
         waited.map_err(|error| GpuError::Lost(error.to_string()))?;
         let mapped = copy.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
-        Ok(bytemuck::pod_collect_to_vec(&mapped))
+        Ok(take(&mapped))
     }
 
     /// The device and the queue of the library.

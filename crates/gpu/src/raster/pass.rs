@@ -174,7 +174,8 @@ impl Painted {
             Extent3d { width, height, depth_or_array_layers: 1 },
         );
         let done = queue.submit([encoder.finish()]);
-        let halves: Vec<u16> = device.contents(&Copied { copy, done })?;
+        let take = bytemuck::pod_collect_to_vec::<u8, u16>;
+        let halves = device.contents(&Copied { copy, done }, take)?;
         let row = |row: &[u16]| {
             let pixels = row[..4 * width as usize].chunks_exact(4);
             pixels.map(|p| [p[0], p[1], p[2]].map(|bits| f16::from_bits(bits).to_f32())).collect::<Vec<_>>()

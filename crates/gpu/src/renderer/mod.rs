@@ -214,11 +214,7 @@ impl Renderer {
             let Some(grid) = &grid else { return Ok(None) };
             rays += grid.rays;
         }
-        let mut add = |Started { strip, samples }: Started| {
-            let samples = match samples {
-                Samples::Copied(copied) => self.device().contents(&copied)?,
-                Samples::Here(samples) => samples,
-            };
+        let mut add = |strip: Bounds2i, samples: &[PixelSample]| {
             if let (Some(_), Some(splatter)) = (self.splats, &splatter) {
                 self.add_splats(index, &strip, view, sampler, splatter)?;
             }
@@ -247,6 +243,12 @@ impl Renderer {
             });
             Ok::<_, GpuError>(())
         };
+        let mut finish = |Started { strip, samples }: Started| match samples {
+            Samples::Here(samples) => add(strip, &samples),
+            Samples::Copied(copied) => {
+                self.device().contents(&copied, |bytes| add(strip, bytemuck::cast_slice(bytes)))?
+            }
+        };
         let mut before = None;
         for strip in strips(bounds, self.splats, most_pixels(self.device())) {
             if is_cancelled() {
@@ -256,9 +258,9 @@ impl Renderer {
             // While the device makes a strip, the one before is added, unless it has splats, which
             // the device would write over.
             let done = if self.splats.is_some() { Some(started) } else { before.replace(started) };
-            done.map_or(Ok(()), &mut add)?;
+            done.map_or(Ok(()), &mut finish)?;
         }
-        before.map_or(Ok(()), add)?;
+        before.map_or(Ok(()), finish)?;
         if let (Some(chains), Some(splatter)) = (&self.chains, &splatter) {
             let Some(more) = chains.run(index, &self.scene, view, splatter, &is_cancelled)? else {
                 return Ok(None);
