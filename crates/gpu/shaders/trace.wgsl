@@ -392,10 +392,33 @@ fn hit_curve(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<functi
     return found;
 }
 
-// A byte of two words as a number. There are no arrays of the bytes, because arrays with indices that
-// vary are in memory.
-fn byte(words: vec2u, i: u32) -> f32 {
-    return f32((select(words.x, words.y, i >= 4) >> (8 * (i & 3))) & 255);
+// The distances of four planes, whose numbers of steps are bytes. Children are tested four at a time
+// by vectors, because what is in arrays with indices that vary is in memory, and loops are not
+// unrolled.
+fn planes(bytes: u32, origin: f32, step: f32) -> vec4f {
+    return vec4f(unpack4xU8(bytes)) * step + origin;
+}
+
+// Takes a child that is hit: the nearest one of the node is next, and the others wait on the stack.
+// Both are a reference with the distance where the ray enters its box.
+fn take(
+    child: u32, distance: f32, is_hit: bool,
+    next: ptr<function, vec2u>, stack: ptr<function, array<vec2u, STACK>>, top: ptr<function, i32>,
+) {
+    if (!is_hit || child == LEAF) {
+        return;
+    }
+    // Distances are not negative, so that their bits have their order.
+    let taken = vec2u(child, bitcast<u32>(distance));
+    let before = *next;
+    if (before.x == LEAF) {
+        *next = taken;
+        return;
+    }
+    let is_nearer = taken.y < before.y;
+    *next = select(before, taken, is_nearer);
+    (*stack)[*top] = select(taken, before, is_nearer);
+    (*top)++;
 }
 
 // The id of the instance that is hit; `NO_HIT` outside of instances.
@@ -409,10 +432,9 @@ fn instance_id(hit: Hit) -> u32 {
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false, false);
-    // References with the distances where the ray enters their boxes, and the nearest child of the
-    // last node, which has not been there.
+    // What is next, if anything, and what waits.
+    var next = vec2u(LEAF, 0);
     var stack: array<vec2u, STACK>;
-    var next = LEAF;
     stack[0] = vec2u(world.roots.y, 0);
     stack[1] = vec2u(world.roots.x, 0);
     stack[2] = vec2u(world.unbounded, 0);
@@ -424,23 +446,26 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var inner_d = d;
     var instance = NO_HIT;
     var outside = 0;
-    while (top > 0 || next != LEAF) {
-        if (next == LEAF && instance != NO_HIT && top == outside) {
-            ray = slabs(o, d, world.size);
-            shear = sheared(o, d);
-            inner_o = o;
-            inner_d = d;
-            instance = NO_HIT;
-        }
-        var reference = next;
-        next = LEAF;
-        if (reference == LEAF) {
-            top--;
-            let popped = stack[top];
-            if (bitcast<f32>(popped.y) > best.t) {
-                continue;
+    loop {
+        if (next.x == LEAF) {
+            if (top == 0) {
+                break;
             }
-            reference = popped.x;
+            if (instance != NO_HIT && top == outside) {
+                ray = slabs(o, d, world.size);
+                shear = sheared(o, d);
+                inner_o = o;
+                inner_d = d;
+                instance = NO_HIT;
+            }
+            top--;
+            next = stack[top];
+        }
+        let reference = next.x;
+        let is_beyond = bitcast<f32>(next.y) > best.t;
+        next.x = LEAF;
+        if (is_beyond) {
+            continue;
         }
         if ((reference & LEAF) != 0) {
             var first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
@@ -476,7 +501,8 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             }
             // The instance that the ray enters; the others wait.
             if (count > 1) {
-                stack[top] = vec2u(LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1), 0);
+                let rest = LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1);
+                stack[top] = vec2u(rest, 0);
                 top++;
             }
             let row = array(
@@ -491,8 +517,8 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             shear = sheared(inner_o, inner_d);
             instance = first;
             outside = top;
-            stack[top] = vec2u(placed.y, 0);
-            stack[top + 1] = vec2u(placed.x, 0);
+            stack[outside] = vec2u(placed.y, 0);
+            stack[outside + 1] = vec2u(placed.x, 0);
             top += 2;
             continue;
         }
@@ -501,37 +527,29 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
         let origin = (bitcast<vec3f>(head.xyz) - ray.o) * ray.inverse;
         let exponents = vec3u(head.w, head.w >> 8, head.w >> 16) & vec3u(255);
         let step = bitcast<vec3f>(exponents << vec3u(23)) * ray.inverse;
-        let q0 = nodes[at + 1];
-        let q1 = nodes[at + 2];
-        let q2 = nodes[at + 3];
-        let first_children = nodes[at + 4];
-        let last_children = nodes[at + 5];
-        // The nearest child is next; the others wait in the order of the node.
-        var nearest = vec2u(LEAF, 0x7f800000u);
-        for (var i = 0u; i < 8; i++) {
-            let four = select(first_children, last_children, i >= 4);
-            let two = select(four.xy, four.zw, (i & 2) != 0);
-            let child = select(two.x, two.y, (i & 1) != 0);
-            if (child == LEAF) {
+        let q = array(nodes[at + 1], nodes[at + 2], nodes[at + 3]);
+        for (var half = 0u; half < 2; half++) {
+            let children = nodes[at + 4 + half];
+            if (children.x == LEAF) {
                 break;
             }
-            let low = origin + vec3f(byte(q0.xy, i), byte(q0.zw, i), byte(q1.xy, i)) * step;
-            let high = origin + vec3f(byte(q1.zw, i), byte(q2.xy, i), byte(q2.zw, i)) * step;
-            let near = min(low, high) - ray.margin;
-            let far = max(low, high) + ray.margin;
-            let enter = max(max(near.x, near.y), max(near.z, 0));
-            let leave = min(min(far.x, far.y), min(far.z, best.t));
-            if (enter <= leave) {
-                let found = vec2u(child, bitcast<u32>(enter));
-                let is_nearer = found.y < nearest.y;
-                if (nearest.x != LEAF) {
-                    stack[top] = select(found, nearest, is_nearer);
-                    top++;
-                }
-                nearest = select(nearest, found, is_nearer || nearest.x == LEAF);
-            }
+            let is_last = half == 1;
+            let low_x = planes(select(q[0].x, q[0].y, is_last), origin.x, step.x);
+            let low_y = planes(select(q[0].z, q[0].w, is_last), origin.y, step.y);
+            let low_z = planes(select(q[1].x, q[1].y, is_last), origin.z, step.z);
+            let high_x = planes(select(q[1].z, q[1].w, is_last), origin.x, step.x);
+            let high_y = planes(select(q[2].x, q[2].y, is_last), origin.y, step.y);
+            let high_z = planes(select(q[2].z, q[2].w, is_last), origin.z, step.z);
+            let near_xy = max(min(low_x, high_x) - ray.margin.x, min(low_y, high_y) - ray.margin.y);
+            let far_xy = min(max(low_x, high_x) + ray.margin.x, max(low_y, high_y) + ray.margin.y);
+            let enter = max(max(near_xy, min(low_z, high_z) - ray.margin.z), vec4f());
+            let leave = min(min(far_xy, max(low_z, high_z) + ray.margin.z), vec4f(best.t));
+            let are_hit = enter <= leave;
+            take(children.x, enter.x, are_hit.x, &next, &stack, &top);
+            take(children.y, enter.y, are_hit.y, &next, &stack, &top);
+            take(children.z, enter.z, are_hit.z, &next, &stack, &top);
+            take(children.w, enter.w, are_hit.w, &next, &stack, &top);
         }
-        next = nearest.x;
     }
     return best;
 }

@@ -25,6 +25,7 @@ struct Frame {
 
 /// Errors and times of frames by both.
 pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
+    let size = &Size { resolution: size.resolution.map(|side| side / 2), ..*size };
     let Compiled { scene, desc } = compile(&lights(), MemoryAssets::default(), size)?;
     let engine = |shared| {
         let realtime = Realtime::new(&scene, &desc, kernels, shared);
@@ -48,7 +49,7 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
     }
     let measured = |realtime: &mut Realtime| {
         let (mut errors, mut seconds) = (Vec::new(), Vec::new());
-        for index in 0..size.frames.max(12) {
+        for index in 0..(size.frames / 2).max(12) {
             let Frame { light, seconds: time } = frame(realtime, 1)?;
             // Frames before share their samples.
             if index >= 8 {

@@ -1,7 +1,8 @@
 //! The trees of a world as buffers for kernels.
 //!
-//! [`binary`] takes the sixteen-wide nodes of the CPU's trees apart into binary ones, [`node`]
-//! collapses these into nodes of eight children, whose boxes are quantised to eight bits a plane.
+//! [`binary`] takes the sixteen-wide nodes of the CPU's trees apart into binary ones and divides
+//! their leaves, [`node`] collapses these into nodes of eight children, whose boxes are quantised to
+//! eight bits a plane.
 //! Quantised boxes contain the exact ones. A group has a tree of triangles and one of items, which
 //! are instances and single shapes ([`item`]). `shaders/trace.wgsl` traverses them.
 //!
@@ -25,7 +26,7 @@ pub(crate) const STACK: usize = 128;
 const COUNT_BITS: u32 = 5;
 
 /// The most primitives of a leaf, which a ray tests one after another.
-const MOST_PRIMITIVES: usize = 4;
+const MOST_PRIMITIVES: usize = 2;
 
 /// Four words of a buffer.
 pub type Words = [u32; 4];
