@@ -135,7 +135,8 @@ impl Binary {
     }
 }
 
-/// The part of primitives that is before a cut at least, and behind it: a limit for the tree's depth.
+/// The part of primitives that is before a cut at least, and behind it, which limits the depth of
+/// trees.
 const LEAST_PART: usize = 8;
 
 /// A cut in the middle is as good as one that saves less than this part.

@@ -1,10 +1,10 @@
 //! The trees of a world as buffers for kernels.
 //!
 //! [`binary`] takes the sixteen-wide nodes of the CPU's trees apart into binary ones and divides
-//! their leaves, [`node`] collapses these into nodes of eight children, whose boxes are quantised to
-//! eight bits a plane.
-//! Quantised boxes contain the exact ones. A group has a tree of triangles and one of items, which
-//! are instances and single shapes ([`item`]). `shaders/trace.wgsl` traverses them.
+//! their leaves, [`node`] collapses these into nodes of eight children, whose boxes are quantised
+//! to eight bits a plane. Quantised boxes contain the exact ones. A group has a tree of triangles
+//! and one of items, which are instances and single shapes ([`item`]). `shaders/trace.wgsl`
+//! traverses them.
 //!
 //! A reference to a child or root is a node's index, or a leaf: a range of triangles or items.
 

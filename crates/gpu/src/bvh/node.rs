@@ -72,8 +72,8 @@ impl<'a> Writer<'a> {
             }
             Below::Nodes(halves) => halves,
         };
-        // The largest child is opened until there are enough; of those that are as large, that which
-        // has waited longest, so that the tree is not deep.
+        // The largest child is opened until there are enough; of those that are as large, the one
+        // that has waited longest, so that the tree is not deep.
         let mut children = halves.to_vec();
         while children.len() < WIDTH {
             let inner =

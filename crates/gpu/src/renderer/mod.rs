@@ -32,8 +32,8 @@ use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
 use wavefront::Wavefront;
 
-/// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that it
-/// can be cancelled soon. The most splats of its light paths. A row of tiles may have more.
+/// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that
+/// it can be cancelled soon. The most splats of its light paths. A row of tiles may have more.
 const MAX_PIXELS: usize = 1 << 20;
 const MAX_PIXELS_OF_SOFTWARE: usize = 1 << 18;
 const MAX_SPLATS: usize = 1 << 20;
