@@ -61,6 +61,7 @@ impl Report {
             shared: renderer.shared(),
             stages: Vec::new(),
         };
+        renderer.wait_for_device()?;
         let mut last = None;
         for frame in 0..frames {
             flight.orbit(TAU / f64::from(frames), 0.0);

@@ -1,11 +1,16 @@
 //! Pictures by a GPU: in motion, and at rest.
+//!
+//! A driver may take many seconds to compile the kernels of a scene. A thread waits for that, while
+//! the CPU renders.
 
 use std::sync::Arc;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use alhazen::description::Diagnostic;
 use alhazen::device::Kernels;
 use alhazen::realtime::{Aim, GpuError, Picture, Realtime, Weights};
+use alhazen::scene::Scene;
 
 use crate::frame::Stages;
 use crate::step::{SHORTEST, StepError};
@@ -17,12 +22,38 @@ pub struct OnDevice {
     kernels: Arc<Kernels>,
     /// How samples of direct light count, if pixels and frames in motion share them.
     shared: Option<Weights>,
-    /// The scene by the algorithm of this name; without it where kernels do not draw it.
-    shown: Option<(String, Option<Realtime>)>,
-    /// Why the CPU renders.
-    refusals: Vec<Diagnostic>,
+    shown: Option<Shown>,
     /// When the last picture was shown.
     last: Instant,
+}
+
+/// A scene by the algorithm of a name.
+struct Shown {
+    integrator: String,
+    scene: Arc<Scene>,
+    made: Made,
+}
+
+/// What shows a scene on the device.
+enum Made {
+    /// A thread makes it.
+    Soon(JoinHandle<Result<Realtime, Vec<Diagnostic>>>),
+    /// It is there.
+    Here(Box<Realtime>),
+    /// The CPU renders, because kernels do not draw this.
+    Not(Vec<Diagnostic>),
+}
+
+impl Made {
+    /// What a thread has made.
+    fn of(thread: JoinHandle<Result<Realtime, Vec<Diagnostic>>>) -> Self {
+        match thread.join() {
+            Ok(Ok(realtime)) => Self::Here(Box::new(realtime)),
+            Ok(Err(refusals)) => Self::Not(refusals),
+            // A panic of the thread has been reported by it.
+            Err(_) => Self::Not(Vec::new()),
+        }
+    }
 }
 
 impl From<GpuError> for StepError {
@@ -34,7 +65,7 @@ impl From<GpuError> for StepError {
 impl OnDevice {
     /// Nothing is shown yet.
     pub fn new(kernels: Arc<Kernels>, shared: Option<Weights>) -> Self {
-        Self { kernels, shared, shown: None, refusals: Vec::new(), last: Instant::now() }
+        Self { kernels, shared, shown: None, last: Instant::now() }
     }
 
     /// The device.
@@ -49,17 +80,60 @@ impl OnDevice {
 
     /// The name of the device, if it draws what is shown.
     pub fn name(&self) -> Option<&str> {
-        Some(self.shown.as_ref()?.1.as_ref()?.device())
+        Some(self.realtime()?.device())
     }
 
     /// What kernels do not draw of what is shown.
     pub fn refusals(&self) -> &[Diagnostic] {
-        &self.refusals
+        match &self.shown {
+            Some(Shown { made: Made::Not(refusals), .. }) => refusals,
+            _ => &[],
+        }
     }
 
     /// The samples of each pixel of the picture at rest.
     pub fn rested(&self) -> Option<u32> {
-        Some(self.shown.as_ref()?.1.as_ref()?.progress().0).filter(|&rested| rested > 0)
+        Some(self.realtime()?.progress().0).filter(|&rested| rested > 0)
+    }
+
+    fn realtime(&self) -> Option<&Realtime> {
+        match &self.shown {
+            Some(Shown { made: Made::Here(realtime), .. }) => Some(realtime),
+            _ => None,
+        }
+    }
+
+    /// Whether kernels that were awaited are compiled now.
+    pub fn is_ready(&self) -> bool {
+        matches!(&self.shown, Some(Shown { made: Made::Soon(thread), .. }) if thread.is_finished())
+    }
+
+    /// Waits until the kernels for a shot are compiled.
+    pub fn wait(&mut self, world: &World, shot: &Shot) -> Result<(), StepError> {
+        if !self.shows(world, shot) {
+            self.show(world, shot)?;
+        }
+        self.shown = self.shown.take().map(|shown| match shown.made {
+            Made::Soon(thread) => Shown { made: Made::of(thread), ..shown },
+            _ => shown,
+        });
+        Ok(())
+    }
+
+    /// Whether this is what the device shows, or will.
+    fn shows(&self, world: &World, shot: &Shot) -> bool {
+        self.shown.as_ref().is_some_and(|shown| {
+            shown.integrator == shot.integrator && Arc::ptr_eq(&shown.scene, world.scene())
+        })
+    }
+
+    /// Lets a thread take a scene to the device.
+    fn show(&mut self, world: &World, shot: &Shot) -> Result<(), StepError> {
+        let (desc, scene) = (world.settings(shot)?, world.scene().clone());
+        let (kernels, shared, of) = (self.kernels.clone(), self.shared, scene.clone());
+        let made = Made::Soon(thread::spawn(move || Realtime::new(&of, &desc, &kernels, shared)));
+        self.shown = Some(Shown { integrator: shot.integrator.clone(), scene, made });
+        Ok(())
     }
 
     /// Looks at a shot, in pixels `n` times as wide and high; `None` if the CPU has to do that.
@@ -67,17 +141,13 @@ impl OnDevice {
         if shot.layer.is_some() {
             return Ok(None);
         }
-        let desc = world.settings(shot)?;
-        let is_shown = self.shown.as_ref().is_some_and(|(name, realtime)| {
-            *name == shot.integrator && realtime.as_ref().is_none_or(|realtime| realtime.is_of(world.scene()))
-        });
-        if !is_shown {
-            let made = Realtime::new(world.scene(), &desc, &self.kernels, self.shared);
-            self.refusals = made.as_ref().err().cloned().unwrap_or_default();
-            self.shown = Some((shot.integrator.clone(), made.ok()));
+        if !self.shows(world, shot) {
+            self.show(world, shot)?;
+        } else if self.is_ready() {
+            self.wait(world, shot)?;
         }
-        let Some((_, Some(realtime))) = &mut self.shown else { return Ok(None) };
-        match realtime.aim(&desc, n) {
+        let Some(Shown { made: Made::Here(realtime), .. }) = &mut self.shown else { return Ok(None) };
+        match realtime.aim(&world.settings(shot)?, n) {
             Ok(aim) => Ok(Some((realtime, aim))),
             Err(refusals) => Err(StepError::Problem(messages(&refusals))),
         }
@@ -102,7 +172,7 @@ impl OnDevice {
     /// whether it is done.
     pub fn add(&mut self, world: &World, shot: &Shot) -> Result<(Option<Frame>, bool), StepError> {
         let desc = world.settings(shot)?;
-        let Some((_, Some(realtime))) = &mut self.shown else { return Ok((None, true)) };
+        let Some(Shown { made: Made::Here(realtime), .. }) = &mut self.shown else { return Ok((None, true)) };
         let (done, planned) = realtime.progress();
         let is_last = done + shot.samples >= planned;
         let is_shown = done == 0 || is_last || self.last.elapsed() >= SHORTEST;

@@ -78,12 +78,22 @@ impl Renderer {
         }
     }
 
-    /// Renders by a GPU what kernels draw. With `shared`, pixels and frames share samples of direct
+    /// Renders by a GPU what kernels draw, as soon as its driver has compiled them. With `shared`, pixels and frames share samples of direct
     /// light while the camera moves.
     #[cfg(feature = "gpu")]
     pub fn move_to(&mut self, kernels: Arc<Kernels>, shared: Option<Weights>) {
         self.device = Some(OnDevice::new(kernels, shared));
         self.stage = Stage::Draft;
+    }
+
+    /// Waits for the driver, so that the next picture is one by the GPU, if there is one that draws
+    /// it.
+    pub fn wait_for_device(&mut self) -> Result<(), StepError> {
+        #[cfg(feature = "gpu")]
+        if let Some(device) = &mut self.device {
+            device.wait(&self.world, &self.shot)?;
+        }
+        Ok(())
     }
 
     /// The GPU that renders what is shown; `None` if that is the CPU.
@@ -173,6 +183,10 @@ impl Renderer {
     }
 
     fn try_step(&mut self, control: &Control) -> Result<Option<Frame>, StepError> {
+        #[cfg(feature = "gpu")]
+        if matches!(self.stage, Stage::Samples(_)) && self.device_takes_over()? {
+            self.stage = Stage::Draft;
+        }
         match &mut self.stage {
             Stage::Draft => {
                 let n = self.pace.n();
@@ -218,6 +232,14 @@ impl Renderer {
             }
             Stage::Rest(_) => Ok(None),
         }
+    }
+
+    /// Whether the device can render from now on what the CPU renders.
+    #[cfg(feature = "gpu")]
+    fn device_takes_over(&mut self) -> Result<bool, StepError> {
+        let Some(device) = self.device.as_mut().filter(|device| device.is_ready()) else { return Ok(false) };
+        device.wait(&self.world, &self.shot)?;
+        Ok(device.name().is_some())
     }
 
     /// Begins the picture itself on the device, if that draws it.

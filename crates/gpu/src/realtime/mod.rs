@@ -153,8 +153,17 @@ impl Realtime {
             device.buffer("texels of the scene", &flat.texels)?,
         ];
         let parameters = device.parameters(&Frame::default())?;
-        let light = kernels.get("light", shaders::light(algorithm, flat.parts, false))?;
-        let surfaces = kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts))?;
+        // Drivers take seconds to compile each of these.
+        let ((light, surfaces), reservoirs) = rayon::join(
+            || {
+                rayon::join(
+                    || kernels.get("light", shaders::light(algorithm, flat.parts, false)),
+                    || kernels.get("surfaces", shaders::surfaces(algorithm, flat.parts)),
+                )
+            },
+            || shared.map(|weights| Reservoirs::new(&kernels, algorithm, flat.parts, weights)).transpose(),
+        );
+        let (light, surfaces, reservoirs) = (light?, surfaces?, reservoirs?);
         let [temporal, variance, wavelet, develop] = shaders::filters();
         let filters = [
             kernels.get("temporal", temporal)?,
@@ -164,8 +173,6 @@ impl Realtime {
         ];
         let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
         let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
-        let reservoirs =
-            shared.map(|weights| Reservoirs::new(&kernels, algorithm, flat.parts, weights)).transpose()?;
         Ok(Self {
             reservoirs,
             surfaces,

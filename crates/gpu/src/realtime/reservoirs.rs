@@ -65,12 +65,16 @@ impl Reservoirs {
         weights: Weights,
     ) -> Result<Self, GpuError> {
         let [candidates, reuse] = shaders::reservoirs(parts);
+        let (light, (candidates, reuse)) = rayon::join(
+            || kernels.get("light", shaders::light(algorithm, parts, true)),
+            || rayon::join(|| kernels.get("candidates", candidates), || kernels.get("reuse", reuse)),
+        );
         let step = || kernels.device().parameters(&Reuse { source: 0, target: 0, neighbours: 0, flags: 0 });
         Ok(Self {
             weights,
-            light: kernels.get("light", shaders::light(algorithm, parts, true))?,
-            candidates: kernels.get("candidates", candidates)?,
-            reuse: kernels.get("reuse", reuse)?,
+            light: light?,
+            candidates: candidates?,
+            reuse: reuse?,
             steps: [step()?, step()?, step()?],
             half: 0,
             before: None,

@@ -106,6 +106,33 @@ fn a_step_is_cancelled_promptly_and_nothing_is_lost() {
     assert!(renderer.step(&control).unwrap().is_some());
 }
 
+#[cfg(feature = "gpu")]
+#[test]
+fn the_cpu_renders_until_kernels_are_compiled() {
+    use alhazen::device::{Device, Kernels};
+    use std::io::Write;
+
+    let device = match Device::open("") {
+        Ok(device) => device,
+        Err(error) => {
+            // Not by a macro, whose output the harness keeps to itself.
+            let _ = writeln!(std::io::stderr(), "SKIPPED, not tested: {error}");
+            return;
+        }
+    };
+    let mut renderer = Renderer::new(Arc::new(world(1 << 24)), TARGET);
+    let name = device.name().to_owned();
+    renderer.move_to(Arc::new(Kernels::new(device)), None);
+    let control = Control::default();
+    let first = renderer.step(&control).unwrap().expect("a draft");
+    assert!(first.stages.is_none() && renderer.device().is_none(), "the first picture does not wait");
+    let begin = Instant::now();
+    while renderer.step(&control).unwrap().is_none_or(|frame| frame.stages.is_none()) {
+        assert!(begin.elapsed() < Duration::from_secs(300), "the device renders when it can");
+    }
+    assert_eq!(renderer.device(), Some(&*name));
+}
+
 #[test]
 fn what_cannot_be_rendered_is_said() {
     let mut renderer = Renderer::new(Arc::new(world(1)), TARGET);
