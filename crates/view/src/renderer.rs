@@ -78,8 +78,8 @@ impl Renderer {
         }
     }
 
-    /// Renders by a GPU what kernels draw, as soon as its driver has compiled them. With `shared`, pixels and frames share samples of direct
-    /// light while the camera moves.
+    /// Renders by a GPU what kernels draw, as soon as its driver has compiled them. With `shared`,
+    /// pixels and frames share samples of direct light while the camera moves.
     #[cfg(feature = "gpu")]
     pub fn move_to(&mut self, kernels: Arc<Kernels>, shared: Option<Weights>) {
         self.device = Some(OnDevice::new(kernels, shared));
