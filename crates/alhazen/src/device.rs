@@ -106,7 +106,7 @@ impl Integrator for OnDevice {
         control: &Control,
     ) -> Result<RayStats, PassError> {
         let is_cancelled = || control.cancel.load(Ordering::Relaxed);
-        match self.renderer.pass(pass, view, &self.sampler, film, is_cancelled) {
+        match self.renderer.pass(pass, view, film, is_cancelled) {
             Ok(Some(rays)) => Ok(RayStats { rays, ..RayStats::default() }),
             Ok(None) => Err(PassError::Cancelled),
             Err(gpu::PassError::OutOfMemory(problem)) => Err(PassError::OutOfMemory(problem)),

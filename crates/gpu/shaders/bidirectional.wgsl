@@ -24,14 +24,6 @@ struct Batch {
     splats: array<Splat>,
 }
 
-// What is found for a pixel: radiance and the number of rays.
-struct Sample {
-    l: vec4f,
-    rays: u32,
-    is_terminated: u32,
-    unused: vec2u,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
 
@@ -139,5 +131,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let path = id.y * batch.size.x + id.x;
     rays = 0;
     let l = light_of(camera, path);
-    samples[path] = Sample(l, rays, 0, vec2u());
+    samples[path] = Sample(l, rays, 0, camera.wavelength, camera.weight);
 }

@@ -91,7 +91,19 @@ struct CameraSample {
     ray: Ray,
     near: Differentials,
     lambda: SampledWavelengths,
+    // The random number of the wavelengths.
+    wavelength: f32,
     position: vec2f,
+    weight: f32,
+}
+
+// What kernels find for a pixel: radiance, the number of rays, 1 where only the first wavelength is
+// left, the random number of the wavelengths, and the weight in the pixel.
+struct Sample {
+    l: vec4f,
+    rays: u32,
+    is_terminated: u32,
+    wavelength: f32,
     weight: f32,
 }
 
@@ -112,6 +124,7 @@ fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
         camera.ray,
         camera.near,
         SampledWavelengths_sample_visible(wavelength),
+        wavelength,
         position,
         drawn.z,
     );

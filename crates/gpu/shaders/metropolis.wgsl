@@ -155,7 +155,7 @@ fn camera_end() -> CameraSample {
     let camera = camera_ray(position, u[3]);
     let wavelength = select(u[0].x, 0.5, world.has_one_wavelength == 1);
     let lambda = SampledWavelengths_sample_visible(wavelength);
-    return CameraSample(camera.ray, camera.near, lambda, position, 1);
+    return CameraSample(camera.ray, camera.near, lambda, wavelength, position, 1);
 }
 
 // The light of the path that the strategy of s vertices from the light and t from the camera makes,

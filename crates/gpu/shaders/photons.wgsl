@@ -37,14 +37,6 @@ struct Batch {
     words: array<vec4u>,
 }
 
-// What is found for a pixel: radiance and the number of rays.
-struct Sample {
-    l: vec4f,
-    rays: u32,
-    is_terminated: u32,
-    unused: vec2u,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
 
@@ -199,6 +191,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (is_light_path) {
         atomicAdd(&batch.rays, rays);
     } else {
-        samples[index] = Sample(l, rays, 0, vec2u());
+        samples[index] = Sample(l, rays, 0, camera.wavelength, camera.weight);
     }
 }

@@ -7,15 +7,6 @@ struct Batch {
     index: u32,
 }
 
-// What is found for a pixel: radiance, the number of rays, and 1 where only the first wavelength is
-// left.
-struct Sample {
-    l: vec4f,
-    rays: u32,
-    is_terminated: u32,
-    unused: vec2u,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
 
@@ -29,5 +20,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     rays = 0;
     let l = radiance(camera.ray, camera.near, &lambda);
     let is_terminated = u32(SampledWavelengths_secondary_terminated(lambda));
-    samples[id.y * batch.size.x + id.x] = Sample(l, rays, is_terminated, vec2u());
+    samples[id.y * batch.size.x + id.x] = Sample(l, rays, is_terminated, camera.wavelength, camera.weight);
 }

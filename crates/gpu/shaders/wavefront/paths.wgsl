@@ -4,7 +4,8 @@
 // order they are in a queue depends on threads, what they find does not.
 //
 // What a path keeps is a column of a table, four words in each row, so that threads beside each
-// other read words beside each other.
+// other read words beside each other; but for the first two rows, which are a `Sample` of
+// `cameras.wgsl` of each path: light, and counts with what the film needs.
 
 const L = 0u;
 const COUNTS = 1u;
@@ -53,8 +54,12 @@ struct Batch {
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> table: array<vec4u>;
 
+fn place_of(at: u32, path: u32) -> u32 {
+    return select(at * batch.count + path, 2 * path + at, at <= COUNTS);
+}
+
 fn row(at: u32, path: u32) -> vec4u {
-    return table[at * batch.count + path];
+    return table[place_of(at, path)];
 }
 
 fn numbers(at: u32, path: u32) -> vec4f {
@@ -62,7 +67,7 @@ fn numbers(at: u32, path: u32) -> vec4f {
 }
 
 fn keep(at: u32, path: u32, words: vec4u) {
-    table[at * batch.count + path] = words;
+    table[place_of(at, path)] = words;
 }
 
 fn keep_numbers(at: u32, path: u32, x: vec4f) {
@@ -116,14 +121,14 @@ fn keep_path(index: u32, path: Path, lambda: SampledWavelengths, l: vec4f) {
     bits |= select(0u, ROUGH_BEFORE, path.rough_before);
     bits |= select(0u, ARE_KNOWN, path.near.are_known);
     keep_numbers(L, index, l);
-    keep(COUNTS, index, vec4u(rays, bits, place.dimension, 0));
+    keep(COUNTS, index, vec4u(rays, bits, row(COUNTS, index).zw));
     keep_numbers(LAMBDA, index, lambda.lambda);
     keep_numbers(LAMBDA_PDF, index, lambda.pdf);
     keep_numbers(BETA, index, path.beta);
     keep_numbers(RAY_O, index, vec4f(path.ray.o, path.ray.time));
     keep_numbers(RAY_D, index, vec4f(path.ray.d, path.pdf));
     keep_numbers(P, index, vec4f(path.origin.p.p, path.eta_scale));
-    keep_numbers(P_ERROR, index, vec4f(path.origin.p.error, 0));
+    keep(P_ERROR, index, vec4u(bitcast<vec3u>(path.origin.p.error), place.dimension));
     keep_numbers(N, index, vec4f(path.origin.n, 0));
     keep_numbers(NS, index, vec4f(path.origin.ns, 0));
     if (path.near.are_known) {
@@ -142,7 +147,8 @@ fn kept_wavelengths(index: u32) -> SampledWavelengths {
 fn kept_path(index: u32) -> Path {
     let counts = row(COUNTS, index);
     let pixel = pixel_of(index);
-    place = Address(array(pixel.x, pixel.y), batch.index, counts.z);
+    let error_and_dimension = row(P_ERROR, index);
+    place = Address(array(pixel.x, pixel.y), batch.index, error_and_dimension.w);
     rays = counts.x;
     var path: Path;
     path.depth = counts.y >> 4;
@@ -155,7 +161,7 @@ fn kept_path(index: u32) -> Path {
     path.pdf = d.w;
     let p = numbers(P, index);
     path.eta_scale = p.w;
-    let error = Point3Error(p.xyz, numbers(P_ERROR, index).xyz);
+    let error = Point3Error(p.xyz, bitcast<vec3f>(error_and_dimension.xyz));
     path.origin = ShapeSampleContext(error, numbers(N, index).xyz, numbers(NS, index).xyz, o.w);
     path.near = no_differentials();
     if ((counts.y & ARE_KNOWN) != 0) {

@@ -1,9 +1,9 @@
 //! Pictures of a scene, sample by sample.
 //!
 //! A pass renders one sample of each pixel, in strips of the film's tiles, so that the results of a
-//! strip need little memory however large the picture is. The CPU adds them to the film, with the
-//! wavelengths and weights that it computes from the same random numbers. So it adds the splats of
-//! light paths, a list with room for the most that those of a strip have.
+//! strip need little memory however large the picture is. The CPU adds them to the film while the
+//! device makes those of the next strip. So it adds the splats of light paths, a list with room for
+//! the most that those of a strip have.
 //!
 //! Metropolis light transport has [`Chains`] beside, and photon mapping [`Photons`] before.
 
@@ -11,25 +11,27 @@ mod chains;
 mod kernels;
 mod photons;
 mod scene_buffers;
+mod strip;
 mod wavefront;
 
 use std::sync::Arc;
 
 use film::{Film, FilmTile, Splatter, TILE_SIZE};
+use lanes::InstructionSet;
 use math::{Bounds2i, Vec2};
 use rayon::prelude::*;
-use sampling::Sampler;
-use scene::{ShutterSample, View};
+use scene::View;
 use spectrum::SampledSpectrum;
 
 use crate::algorithm::Algorithm;
-use crate::device::{Buffer, Copied, Device, GpuError, Kernel};
+use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::shaders;
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
+use strip::{AddToTile, PixelSample, Started};
 use wavefront::Wavefront;
 
 /// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that
@@ -68,16 +70,6 @@ struct Splat {
     l: [f32; 4],
 }
 
-/// What is found for a pixel: `Sample` of `shaders/pixels.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct PixelSample {
-    l: [f32; 4],
-    rays: u32,
-    is_terminated: u32,
-    unused: [u32; 2],
-}
-
 /// How the work of `path` is cut into kernels. Other algorithms, and `vol-path` in media, have
 /// a megakernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -93,18 +85,6 @@ pub enum Schedule {
 enum Maker {
     Megakernel(Arc<Kernel>),
     Wavefront(Wavefront),
-}
-
-/// A strip whose samples the device makes.
-struct Started {
-    strip: Bounds2i,
-    samples: Samples,
-}
-
-/// Samples on their way to the host, or there.
-enum Samples {
-    Copied(Copied),
-    Here(Vec<PixelSample>),
 }
 
 /// A scene on a device, ready to be rendered.
@@ -160,10 +140,9 @@ impl Renderer {
         };
         let most = count.saturating_mul(splats.unwrap_or(0) as usize);
         let batch_bytes = size_of::<Splat>().saturating_mul(most.max(1)).saturating_add(size_of::<Batch>());
-        let none = PixelSample { l: [0.0; 4], rays: 0, is_terminated: 0, unused: [0; 2] };
         let device = scene.device();
         let batch = device.zeros("splats of a strip", batch_bytes as u64)?;
-        let samples = device.buffer("samples of a strip", &vec![none; count])?;
+        let samples = device.zeros("samples of a strip", (count.max(1) * size_of::<PixelSample>()) as u64)?;
         let of_paths = match &maker {
             Maker::Megakernel(_) => 0,
             Maker::Wavefront(wavefront) => wavefront.bytes(),
@@ -185,8 +164,8 @@ impl Renderer {
     }
 
     /// Adds the sample of an index of each pixel to the film, strip by strip, until `is_cancelled`.
-    /// View and sampler are those that were flattened. Returns the number of rays, or `None` if
-    /// strips are missing.
+    /// The view is the one that was flattened. Returns the number of rays, or `None` if strips are
+    /// missing.
     ///
     /// # Errors
     /// Those of the device. The film has all strips that were done before.
@@ -194,11 +173,10 @@ impl Renderer {
         &self,
         index: u32,
         view: &View,
-        sampler: &Sampler,
         film: &mut Film,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<u64>, PassError> {
-        let filter = film.filter().clone();
+        let lanes = InstructionSet::detect();
         let bounds = film.pixel_bounds();
         let opened = if self.splats.is_none() && self.chains.is_none() {
             film.tiles_mut().map(|tiles| (tiles, None))
@@ -216,38 +194,21 @@ impl Renderer {
         }
         let mut add = |strip: Bounds2i, samples: &[PixelSample]| {
             if let (Some(_), Some(splatter)) = (self.splats, &splatter) {
-                self.add_splats(index, &strip, view, sampler, splatter)?;
+                self.add_splats(&strip, samples, view, splatter)?;
             }
             rays += samples.iter().map(|sample| u64::from(sample.rays)).sum::<u64>();
             let is_in_strip = |tile: &FilmTile| tile.bounds().min[1] < strip.max[1];
             let count = tiles.iter().take_while(|tile| is_in_strip(tile)).count();
             let rest = tiles.split_off(count);
+            let lambda = grid.as_ref().map(|grid| &grid.shutter.lambda);
             std::mem::replace(&mut tiles, rest).into_par_iter().for_each(|mut tile| {
-                let mut sampler = sampler.clone();
-                let Bounds2i { min, max } = tile.bounds();
-                for pixel in (min[1]..max[1]).flat_map(|y| (min[0]..max[0]).map(move |x| [x, y])) {
-                    let place = (pixel[1] - strip.min[1]) * strip.width() + pixel[0] - strip.min[0];
-                    let sample = &samples[place as usize];
-                    sampler.start_pixel_sample(pixel, index, 0);
-                    let (wavelength, place) = (sampler.get_1d(), sampler.get_pixel_2d());
-                    let mut lambda = match &grid {
-                        Some(grid) => grid.shutter.lambda,
-                        None => ShutterSample::wavelengths(view, wavelength),
-                    };
-                    if sample.is_terminated == 1 {
-                        lambda.terminate_secondary();
-                    }
-                    let weight = weight(view, &filter, place);
-                    tile.add_sample(pixel, &SampledSpectrum::new(sample.l), &lambda, weight);
-                }
+                let tile = &mut tile;
+                lanes.dispatch_large(AddToTile { view, strip, samples, lambda, tile });
             });
             Ok::<_, GpuError>(())
         };
-        let mut finish = |Started { strip, samples }: Started| match samples {
-            Samples::Here(samples) => add(strip, &samples),
-            Samples::Copied(copied) => {
-                self.device().contents(&copied, |bytes| add(strip, bytemuck::cast_slice(bytes)))?
-            }
+        let mut finish = |Started { strip, samples }: Started| {
+            self.device().contents(&samples, |bytes| add(strip, bytemuck::cast_slice(bytes)))?
         };
         let mut before = None;
         for strip in strips(bounds, self.splats, most_pixels(self.device())) {
@@ -277,8 +238,7 @@ impl Renderer {
         let kernel = match maker {
             Maker::Megakernel(kernel) => kernel,
             Maker::Wavefront(wavefront) => {
-                let samples = Samples::Here(wavefront.run(index, &strip, scene)?);
-                return Ok(Started { strip, samples });
+                return Ok(Started { strip, samples: wavefront.run(index, &strip, scene)? });
             }
         };
         if let Some(grid) = grid {
@@ -291,17 +251,15 @@ impl Renderer {
             scene.run(kernel, [batch, samples], workgroups(size))?;
         }
         let bytes = (strip.area() * size_of::<PixelSample>()) as u64;
-        let samples = Samples::Copied(self.device().copy(samples, 0, bytes)?);
-        Ok(Started { strip, samples })
+        Ok(Started { strip, samples: self.device().copy(samples, 0, bytes)? })
     }
 
     /// Adds the splats of a strip, and counts its light paths.
     fn add_splats(
         &self,
-        index: u32,
         strip: &Bounds2i,
+        samples: &[PixelSample],
         view: &View,
-        sampler: &Sampler,
         splatter: &Splatter,
     ) -> Result<(), GpuError> {
         let (device, buffer) = (self.device(), &self.batch);
@@ -309,11 +267,9 @@ impl Renderer {
         let count = head.iter().map(|batch| batch.count as usize).sum::<usize>().min(self.most);
         let splats: Vec<Splat> = device.read_part(buffer, size_of::<Batch>() as u64, count)?;
         splats.par_chunks(SPLATS_OF_A_THREAD).for_each(|splats| {
-            let mut sampler = sampler.clone();
             for splat in splats {
-                let [x, y] = [splat.path as i32 % strip.width(), splat.path as i32 / strip.width()];
-                sampler.start_pixel_sample([strip.min[0] + x, strip.min[1] + y], index, 0);
-                let lambda = ShutterSample::wavelengths(view, sampler.get_1d());
+                let Some(sample) = samples.get(splat.path as usize) else { continue };
+                let lambda = sample.wavelengths(view);
                 splatter.add(Vec2::from_array(splat.film), &SampledSpectrum::new(splat.l), &lambda);
             }
         });
@@ -356,8 +312,4 @@ fn strips(bounds: Bounds2i, splats: Option<u32>, pixels: usize) -> impl Iterator
 /// The workgroups for a rectangle.
 fn workgroups(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| side.div_ceil(WORKGROUP))
-}
-
-fn weight(view: &View, filter: &film::Filter, place: Vec2) -> f32 {
-    if view.options.disable_pixel_jitter { 1.0 } else { filter.sample(place).weight }
 }

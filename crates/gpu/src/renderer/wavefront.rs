@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use math::Bounds2i;
 
-use super::PixelSample;
 use super::kernels::Kernels;
 use super::scene_buffers::SceneBuffers;
-use crate::device::{Buffer, GpuError, Kernel};
+use super::strip::PixelSample;
+use crate::device::{Buffer, Copied, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::shaders;
 
@@ -72,13 +72,8 @@ impl Wavefront {
         self.bytes
     }
 
-    /// The samples of an index of a strip, row by row.
-    pub fn run(
-        &self,
-        index: u32,
-        strip: &Bounds2i,
-        scene: &SceneBuffers,
-    ) -> Result<Vec<PixelSample>, GpuError> {
+    /// Makes the samples of an index of a strip, row by row, and starts to copy them.
+    pub fn run(&self, index: u32, strip: &Bounds2i, scene: &SceneBuffers) -> Result<Copied, GpuError> {
         let [begin, extend, shade, connect] = &self.stages;
         let (device, count) = (scene.device(), strip.area() as u32);
         let mut batch = Batch {
@@ -110,14 +105,6 @@ impl Wavefront {
             device.write(&self.batch, &[batch])?;
         }
         // The first two rows.
-        let light: Vec<[f32; 4]> = device.read_part(&self.table, 0, count as usize)?;
-        let counts: Vec<[u32; 4]> = device.read_part(&self.table, 16 * u64::from(count), count as usize)?;
-        let sample = |(l, [rays, bits, ..]): ([f32; 4], [u32; 4])| PixelSample {
-            l,
-            rays,
-            is_terminated: bits & 1,
-            unused: [0; 2],
-        };
-        Ok(light.into_iter().zip(counts).map(sample).collect())
+        device.copy(&self.table, 0, u64::from(count) * size_of::<PixelSample>() as u64)
     }
 }

@@ -135,7 +135,7 @@ impl Case {
     fn drawn(&self, renderer: &Renderer) -> Image {
         let mut film = self.film();
         for index in 0..SAMPLES {
-            let rays = renderer.pass(index, &self.view, &self.sampler, &mut film, || false).expect("a pass");
+            let rays = renderer.pass(index, &self.view, &mut film, || false).expect("a pass");
             let [width, height] = self.desc.film.resolution;
             assert!(rays >= Some((width * height / 4) as u64), "{rays:?}");
         }
