@@ -166,6 +166,11 @@ pub(crate) struct TileSums<'film> {
 }
 
 impl TileSums<'_> {
+    /// The number of sums per pixel.
+    pub(crate) fn components(&self) -> usize {
+        self.components
+    }
+
     /// Writes zeros to all sums, which are zero.
     pub(crate) fn touch(&mut self) {
         debug_assert!(self.low.iter().all(|low| *low == [0; 3]) && self.high.is_empty());

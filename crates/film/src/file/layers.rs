@@ -3,6 +3,7 @@
 use super::FilmFileError;
 use super::section::Fields;
 use crate::grid::Grid;
+use crate::sum::TileSums;
 use crate::{Film, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
 
 /// Appends the totals of a film: paths of splats and refused samples.
@@ -70,32 +71,27 @@ pub fn row(film: &Film, row: usize) -> Vec<u8> {
 pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), FilmFileError> {
     for tile in film.grid.row(row) {
         let range = film.grid.range(tile);
-        for c in 0..film.color.components() {
-            let sums = block(fields, range.len())?;
-            let mut tile = film.color.tile(tile, range.clone());
-            sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+        let (mut has_light, mut samples) = (false, 0);
+        if film.color.components() > 0 {
+            has_light = add_sums(fields, range.len(), film.color.tile(tile, range.clone()))?;
         }
         if !film.counts.is_empty() {
             let counts = block(fields, range.len())?;
             for (sum, count) in film.counts[range.clone()].iter_mut().zip(counts) {
                 let count = u32::try_from(count).map_err(|_| fields.wrong(&format!("{count} samples")))?;
                 *sum = sum.saturating_add(count);
+                samples |= count;
             }
         }
-        for own in [&mut film.data, &mut film.spectrum] {
-            for c in 0..own.components() {
-                let sums = block(fields, range.len())?;
-                let mut tile = own.tile(tile, range.clone());
-                sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
-            }
+        for own in [&mut film.data, &mut film.spectrum].into_iter().filter(|sums| sums.components() > 0) {
+            has_light |= add_sums(fields, range.len(), own.tile(tile, range.clone()))?;
+        }
+        // A tile without samples is taken to be empty.
+        if has_light && samples == 0 {
+            return Err(fields.wrong("light without samples"));
         }
         if !film.splats.is_empty() {
-            let mut own = film.splats.tile(tile);
-            for c in 0..own.components() {
-                let sums = block(fields, range.len())?;
-                let mut tile = own.open();
-                sums.enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
-            }
+            add_sums(fields, range.len(), film.splats.tile(tile).open())?;
         }
         for ids in film.ids.iter_mut().filter_map(|ids| ids.get_mut(tile)) {
             for _ in 0..fields.u32()? {
@@ -109,6 +105,19 @@ pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), F
         }
     }
     Ok(())
+}
+
+/// Adds the blocks of all components to the sums of a tile of so many pixels; whether there are any
+/// but zeros.
+fn add_sums(fields: &mut Fields, pixels: usize, mut sums: TileSums) -> Result<bool, FilmFileError> {
+    let mut all = 0;
+    for c in 0..sums.components() {
+        for (pixel, units) in block(fields, pixels)?.enumerate() {
+            sums.add_units(pixel, c, units);
+            all |= units;
+        }
+    }
+    Ok(all != 0)
 }
 
 /// The most bytes that a row of tiles takes; any number that fits in `limit` where there are
@@ -182,6 +191,22 @@ fn block<'a>(
 mod tests {
     use super::super::section::Section;
     use super::*;
+    use crate::compile;
+    use description::SceneDesc;
+
+    #[test]
+    fn light_without_samples_is_damage() {
+        let empty = || compile(&SceneDesc::default()).unwrap().film;
+        for (has_light, counts, is_damaged) in [(false, 0, false), (true, 1, false), (true, 0, true)] {
+            let mut film = empty();
+            let range = film.grid.range(0);
+            film.color.tile(0, range).add_units(3, 1, has_light.into());
+            film.counts[5] = counts;
+            let section = Section { tag: *b"ROWS", payload: row(&film, 0) };
+            let added = add_row(&mut section.fields(), &mut empty(), 0);
+            assert_eq!(added.is_err(), is_damaged, "{added:?}");
+        }
+    }
 
     #[test]
     fn numbers_of_any_length_survive() {
