@@ -1,6 +1,6 @@
 // The first samples of a frame: of each pixel one of some candidates, by what they find.
 
-const CANDIDATES = 16u;
+const CANDIDATES = 8u;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

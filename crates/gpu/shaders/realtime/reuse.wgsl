@@ -10,6 +10,10 @@ const MOST = 5u;
 // As many samples the frame before stands for at most.
 const MOST_BEFORE = 20.0;
 
+// The light of the chosen sample is found for as many sets of wavelengths, evenly spaced: of a frame
+// they make more noise than anything else, and need no rays.
+const SETS = 4u;
+
 // Neighbours are within this part of the picture's longer side [Bitterli 2020 §5], but not so near
 // that most are the pixel itself.
 const RADIUS = 30.0 / 1920.0;
@@ -85,23 +89,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var all_aims = 0.0;
     var own_aim = 0.0;
     var is_lit = false;
-    var l = vec4f();
+    // The light of the chosen sample, which counts for all samples of the pixel.
+    let weight_in_pixel = film.pixels[at].now.w;
+    var seen = vec3f();
     var receiver: Receiver;
     // One place of the program for all that is found, because it is long: what the samples find
     // here, what the chosen one finds for their receivers, and its light at the path's wavelengths.
     let others = select(count, 1, (reuse.flags & IS_BIASED) != 0);
-    let steps = select(count + others, count + others + 1, is_last);
-    var lambda = common_wavelengths();
+    let sets = select(0u, select(SETS, 1u, world.has_one_wavelength == 1), is_last);
+    let steps = count + others + sets;
     for (var step = 0u; step < steps; step++) {
         let is_choice = step < count;
-        let is_shading = step == count + others;
+        let is_shading = step >= count + others;
         let i = select(select(step - count, step, is_choice), 0, is_shading);
         let other = reservoirs[inputs[i]];
         let samples = min(other.count, MOST_BEFORE);
+        var lambda = common_wavelengths();
         if (is_shading) {
-            lambda = camera.lambda;
-        } else {
-            lambda = common_wavelengths();
+            let offset = f32(step - count - others) / f32(4 * SETS);
+            lambda = SampledWavelengths_sample_visible(fract(camera.wavelength + offset));
         }
         if (step == 0 || !is_choice) {
             var near = camera.near;
@@ -132,7 +138,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 chosen = i;
             }
         } else if (is_shading) {
-            l = found.l * next.weight;
+            seen += exposed(found.l * next.weight, lambda, weight_in_pixel / f32(sets)).xyz;
         } else if (value > 0 && is_visible(receiver, found.light)) {
             all_aims += samples * value;
             own_aim = select(own_aim, value, i == chosen);
@@ -146,9 +152,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     reservoirs[part(reuse.target_part) + at] = next;
-    if (is_last) {
-        let weight = film.pixels[at].now.w;
-        film.pixels[at].now += vec4f(exposed(l, lambda, weight).xyz, 0);
-    }
+    film.pixels[at].now += vec4f(seen, 0);
     atomicAdd(&film.rays, rays);
 }
