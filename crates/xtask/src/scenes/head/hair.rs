@@ -242,19 +242,10 @@ pub fn curves(hairs: &[Hair]) -> String {
     text
 }
 
-/// Every so many hairs as a mesh of thin prisms, wider by a factor.
-pub fn prisms(hairs: &[Hair], every: usize, wider: f32) -> Mesh {
-    let mut mesh = Mesh::default();
-    for hair in hairs.iter().step_by(every) {
-        let points = &hair.points[1..hair.points.len() - 1];
-        let line: Vec<(Vec3, f32)> = points
-            .iter()
-            .enumerate()
-            .map(|(k, p)| (*p, 0.5 * wider * hair.width * lerp(k as f32 / points.len() as f32, 1.0, 0.35)))
-            .collect();
-        mesh.tube(&line, 3);
-    }
-    mesh
+/// Every so many hairs, wider by a factor.
+pub fn thinned(hairs: &[Hair], every: usize, wider: f32) -> Vec<Hair> {
+    let hairs = hairs.iter().step_by(every);
+    hairs.map(|hair| Hair { points: hair.points.clone(), width: wider * hair.width }).collect()
 }
 
 #[cfg(test)]

@@ -62,14 +62,7 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
     let (brows, lashes) = (hair::brows(&solid), hair::lashes());
     fs::write(folder.join("hair.pbrt"), hair::curves(&hairs))?;
     fs::write(folder.join("brows.pbrt"), hair::curves(&brows) + &hair::curves(&lashes))?;
-    // A fifth of the hairs, twice as wide, for engines that draw triangles.
-    let mut prisms = hair::prisms(&hairs, 5, 2.4);
-    let add = |mesh: &mut crate::scenes::mesh::Mesh, hairs: &[hair::Hair]| {
-        mesh.add(&hair::prisms(hairs, 1, 1.0), |p| p, |n| n);
-    };
-    add(&mut prisms, &brows);
-    add(&mut prisms, &lashes);
-    prisms.write(&folder.join("hair.ply"))?;
+    fs::write(folder.join("hair-realtime.pbrt"), hair::curves(&hair::thinned(&hairs, 5, 2.4)))?;
     studio::write(folder)
 }
 

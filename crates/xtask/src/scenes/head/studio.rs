@@ -53,14 +53,16 @@ MakeNamedMaterial "skin" "string type" "subsurface" "string method" "diffusion" 
     "rgb mfp" [ 1.5 0.63 0.36 ] "float eta" 1.4 "float roughness" 0.22
 "#;
 
-/// No light under the skin; no cornea; a fifth of the hairs, as triangles.
+/// No light under the skin; no cornea; a fifth of the hairs, twice as wide.
 const REALTIME: &str = r#"
 MakeNamedMaterial "skin" "string type" "coateddiffuse" "texture reflectance" "skin colour" "float roughness" 0.25 "float eta" 1.4
 MakeNamedMaterial "white" "string type" "coateddiffuse" "texture reflectance" "eye colour" "float roughness" 0.01
-MakeNamedMaterial "hairs" "string type" "coateddiffuse" "rgb reflectance" [ 0.045 0.024 0.014 ] "float roughness" 0.3
+MakeNamedMaterial "hairs" "string type" "hair" "float eumelanin" 2.2 "float pheomelanin" 0.5 "float beta_m" 0.28 "float beta_n" 0.3
+MakeNamedMaterial "lashes" "string type" "hair" "float eumelanin" 5
 NamedMaterial "skin" Shape "plymesh" "string filename" "skin.ply"
 NamedMaterial "white" Shape "plymesh" "string filename" "eyes.ply"
-NamedMaterial "hairs" Shape "plymesh" "string filename" "hair.ply"
+NamedMaterial "lashes" Include "brows.pbrt"
+NamedMaterial "hairs" Include "hair-realtime.pbrt"
 "#;
 
 /// Eyes that refract, and all hairs.
