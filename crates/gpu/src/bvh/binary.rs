@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use geometry::{PlainChild, PlainTree};
 use math::Bounds3;
+use rayon::prelude::*;
 
 use super::MOST_PRIMITIVES;
 
@@ -31,47 +32,74 @@ pub enum Below {
 impl Binary {
     /// The tree with leaves of few primitives, which are brought into the order of leaves.
     /// Primitives whose box is unknown are taken to be as large as their leaf.
-    pub fn new<T: Copy>(
+    pub fn new<T: Copy + Send + Sync>(
         tree: &PlainTree,
-        primitives: &mut [T],
-        bounds: impl Fn(&T) -> Option<Bounds3>,
+        mut primitives: &mut [T],
+        bounds: impl Fn(&T) -> Option<Bounds3> + Sync,
     ) -> Self {
+        let mut leaves: Vec<&PlainChild> =
+            tree.nodes.iter().flatten().filter(|it| it.node.is_none()).collect();
+        leaves.sort_unstable_by_key(|leaf| leaf.primitives.start);
+        let all: usize = leaves.iter().map(|leaf| leaf.primitives.len()).sum();
+        debug_assert_eq!(all, primitives.len(), "each primitive is in one leaf");
+        let parts: Vec<&mut [T]> = leaves
+            .iter()
+            .map(|leaf| primitives.split_off_mut(..leaf.primitives.len()).unwrap_or_default())
+            .collect();
+        let divided = leaves.par_iter().zip(parts).map(|(leaf, part)| Self::of_leaf(leaf, part, &bounds));
+        let divided: Vec<Self> = divided.collect();
         let mut binary = Self::default();
         if !tree.nodes.is_empty() {
-            binary.join(tree, 0, &mut |binary, leaf| {
-                let part = &mut primitives[leaf.primitives.clone()];
-                // Of what was split by its builder, a leaf has a part.
-                let inside = |primitive: &T| {
-                    let inside = bounds(primitive)?.intersection(leaf.bounds);
-                    (!inside.is_empty()).then_some(inside)
-                };
-                let mut boxed: Vec<(Bounds3, T)> =
-                    part.iter().map(|it| (inside(it).unwrap_or(leaf.bounds), *it)).collect();
-                let root = binary.divide(&mut boxed, leaf.primitives.start);
-                part.iter_mut().zip(boxed).for_each(|(place, (_, primitive))| *place = primitive);
-                root
+            binary.join(tree, 0, &|leaf| {
+                let place = leaves.partition_point(|it| it.primitives.start < leaf.primitives.start);
+                &divided[place]
             });
         }
         binary
     }
 
+    /// A leaf divided.
+    fn of_leaf<T: Copy>(
+        leaf: &PlainChild,
+        primitives: &mut [T],
+        bounds: impl Fn(&T) -> Option<Bounds3>,
+    ) -> Self {
+        // Of what was split by its builder, a leaf has a part.
+        let inside = |primitive: &T| {
+            let inside = bounds(primitive)?.intersection(leaf.bounds);
+            (!inside.is_empty()).then_some(inside)
+        };
+        let boxed = primitives.iter().map(|it| (inside(it).unwrap_or(leaf.bounds), *it));
+        let (mut binary, mut boxed) = (Self::default(), boxed.collect::<Vec<_>>());
+        binary.divide(&mut boxed, leaf.primitives.start);
+        primitives.iter_mut().zip(boxed).for_each(|(place, (_, primitive))| *place = primitive);
+        binary
+    }
+
     /// This tree and another one together, whose primitives come after the first `primitives` ones.
-    pub fn and(mut self, other: Self, primitives: usize) -> Self {
-        let roots = [self.root(), other.root()];
+    pub fn and(mut self, other: &Self, primitives: usize) -> Self {
+        let first = self.root();
+        let second = self.append(other, primitives);
+        if let (Some(first), Some(second)) = (first, second) {
+            self.pair(first, second);
+        }
+        self
+    }
+
+    /// Adds the nodes of a tree whose primitives come after the first `primitives` ones; the index
+    /// of its root.
+    fn append(&mut self, other: &Self, primitives: usize) -> Option<usize> {
         let count = self.nodes.len();
-        self.nodes.extend(other.nodes.into_iter().map(|node| {
-            let below = match node.below {
+        self.nodes.extend(other.nodes.iter().map(|node| {
+            let below = match &node.below {
                 Below::Nodes(halves) => Below::Nodes(halves.map(|half| half + count)),
                 Below::Primitives(range) => {
                     Below::Primitives(range.start + primitives..range.end + primitives)
                 }
             };
-            BinaryNode { below, ..node }
+            BinaryNode { bounds: node.bounds, below }
         }));
-        if let [Some(first), Some(second)] = roots {
-            self.pair(first, second + count);
-        }
-        self
+        other.root().map(|root| root + count)
     }
 
     /// The root, which comes last, if there is anything.
@@ -94,16 +122,16 @@ impl Binary {
         self.push(bounds, Below::Nodes([first, second]))
     }
 
-    /// Adds what is below a wide node, and its leaves by `add_leaf`; its index.
-    fn join(
+    /// Adds what is below a wide node, with the trees of its leaves; its index.
+    fn join<'a>(
         &mut self,
         tree: &PlainTree,
         node: usize,
-        add_leaf: &mut impl FnMut(&mut Self, &PlainChild) -> usize,
+        of_leaf: &impl Fn(&PlainChild) -> &'a Self,
     ) -> usize {
-        let children = tree.nodes[node].iter().map(|child| match child.node {
-            Some(node) => self.join(tree, node, add_leaf),
-            None => add_leaf(self, child),
+        let children = tree.nodes[node].iter().filter_map(|child| match child.node {
+            Some(node) => Some(self.join(tree, node, of_leaf)),
+            None => self.append(of_leaf(child), 0),
         });
         let mut open: Vec<usize> = children.collect();
         while open.len() > 1 {

@@ -116,7 +116,7 @@ impl Bvh {
             PlainItem::Instance(_) => None,
         };
         let tree = Binary::new(&tree, &mut items, bounds);
-        let tree = tree.and(Binary::new(&spheres, &mut more, bounds), items.len());
+        let tree = tree.and(&Binary::new(&spheres, &mut more, bounds), items.len());
         items.extend(more);
         let first = self.items.len() / item::QUADRUPLES;
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
