@@ -1,7 +1,7 @@
 //! Spherical coordinates, θ from +z and φ from +x towards +y, and the trigonometry of local shading
 //! frames.
 
-use crate::{Vec3, Vector3, safe_acos, safe_sqrt, sin_cos};
+use crate::{Vec3, Vector3, safe_sqrt, sin_cos};
 use lanes::Real;
 use std::f32::consts::TAU;
 
@@ -13,9 +13,9 @@ pub fn spherical_direction<R: Real>(sin_theta: R, cos_theta: R, phi: R) -> Vecto
 }
 
 /// θ ∈ [0, π] of a unit vector.
-#[inline]
-pub fn spherical_theta(v: Vector3) -> f32 {
-    safe_acos(v.z)
+#[inline(always)]
+pub fn spherical_theta<R: Real>(v: Vector3<R>) -> R {
+    lanes::acos(v.z.clamp(-R::one(), R::one()))
 }
 
 /// φ ∈ [0, 2π) of a vector.

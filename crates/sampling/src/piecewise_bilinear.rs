@@ -6,6 +6,7 @@
 //! of layers: its integrals are the weighted means of theirs.
 
 use crate::warp::{invert_linear, sample_linear};
+use lanes::{Int, Real};
 use math::{Point2, Vec2, lerp};
 
 /// Layers of densities over a grid.
@@ -21,15 +22,15 @@ pub struct PiecewiseBilinear2d {
     columns: Vec<f32>,
 }
 
-/// Layers with their weights, of the sum 1.
-pub type LayerWeights<'a> = &'a [(usize, f32)];
+/// Layers with their weights, of the sum 1, for each lane.
+pub type LayerWeights<'a, R = f32> = &'a [(<R as Real>::Int, R)];
 
 /// A cell of the grid and a position in it.
-struct Cell {
-    column: usize,
-    row: usize,
-    x: f32,
-    y: f32,
+struct Cell<R: Real> {
+    column: R::Int,
+    row: R::Int,
+    x: R,
+    y: R,
 }
 
 impl PiecewiseBilinear2d {
@@ -81,96 +82,156 @@ impl PiecewiseBilinear2d {
     }
 
     /// A point of the square for `u` in [0, 1)², and its density per area.
-    pub fn sample(&self, u: Vec2, layers: LayerWeights) -> (Point2, f32) {
-        let row = last(self.height - 1, |row| self.below(row, layers) <= u.y);
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, u: Vec2<R>, layers: LayerWeights<R>) -> (Point2<R>, R) {
+        // Binary searches for the last row and the last column that begin before the number.
+        let (mut row, mut step) = (R::Int::splat(0), half(self.height - 1));
+        while step > 0 {
+            let next = row.wrapping_add(R::Int::splat(step));
+            let is_cell = next.lt(R::Int::splat(self.height as u32 - 1));
+            let next = R::Int::select(is_cell, next, row);
+            row = R::Int::select(self.below(next, layers).le(u.y), next, row);
+            step /= 2;
+        }
         let y = {
             let [a, b] = self.ends(row, layers);
             let left = u.y - self.below(row, layers);
-            sample_linear(fraction(left, 0.5 * (a + b)), a, b)
+            sample_linear(fraction(left, R::splat(0.5) * (a + b)), a, b)
         };
-        let left_of = |column| lerp(y, self.row(row, column, layers), self.row(row + 1, column, layers));
-        let wanted = u.x * left_of(self.width - 1);
-        let column = last(self.width - 1, |column| left_of(column) <= wanted);
+        let [first, last] = self.ends(row, layers);
+        let wanted = u.x * lerp(y, first, last);
+        let (mut column, mut step) = (R::Int::splat(0), half(self.width - 1));
+        while step > 0 {
+            let next = column.wrapping_add(R::Int::splat(step));
+            let is_cell = next.lt(R::Int::splat(self.width as u32 - 1));
+            let next = R::Int::select(is_cell, next, column);
+            column = R::Int::select(self.left_of(next, row, y, layers).le(wanted), next, column);
+            step /= 2;
+        }
         let [a, b] = self.across(column, row, y, layers);
-        let x = sample_linear(fraction(wanted - left_of(column), 0.5 * (a + b)), a, b);
-        let p = Vec2::new(column as f32 + x, row as f32 + y) / self.cells();
-        (p, lerp(x, a, b) * self.density_per_cell())
+        let left = wanted - self.left_of(column, row, y, layers);
+        let x = sample_linear(fraction(left, R::splat(0.5) * (a + b)), a, b);
+        let [columns, rows] = self.cells();
+        let p = Vec2::new((column.to_real() + x) / columns, (row.to_real() + y) / rows);
+        (p, lerp(x, a, b) * (columns * rows))
     }
 
     /// The density of a point of the square per area.
-    pub fn pdf(&self, p: Point2, layers: LayerWeights) -> f32 {
+    #[inline(always)]
+    pub fn pdf<R: Real>(&self, p: Point2<R>, layers: LayerWeights<R>) -> R {
         let Cell { column, row, x, y } = self.cell(p);
         let [a, b] = self.across(column, row, y, layers);
-        lerp(x, a, b) * self.density_per_cell()
+        let [columns, rows] = self.cells::<R>();
+        lerp(x, a, b) * (columns * rows)
     }
 
     /// The `u` that [`sample`](Self::sample) sends to a point of the square, and its density.
-    pub fn invert(&self, p: Point2, layers: LayerWeights) -> (Vec2, f32) {
+    #[inline(always)]
+    pub fn invert<R: Real>(&self, p: Point2<R>, layers: LayerWeights<R>) -> (Vec2<R>, R) {
         let Cell { column, row, x, y } = self.cell(p);
         let [a, b] = self.across(column, row, y, layers);
         let [first, last] = self.ends(row, layers);
-        let left_of = lerp(y, self.row(row, column, layers), self.row(row + 1, column, layers));
-        let u = Vec2::new(
-            fraction(left_of + 0.5 * (a + b) * invert_linear(x, a, b), lerp(y, first, last)),
-            self.below(row, layers) + 0.5 * (first + last) * invert_linear(y, first, last),
-        );
-        (u.clamp(Vec2::splat(0.0), Vec2::splat(1.0)), lerp(x, a, b) * self.density_per_cell())
+        let half = R::splat(0.5);
+        let left = self.left_of(column, row, y, layers) + half * (a + b) * invert_linear(x, a, b);
+        let below = self.below(row, layers) + half * (first + last) * invert_linear(y, first, last);
+        let u = Vec2::new(fraction(left, lerp(y, first, last)), below.clamp(R::zero(), R::one()));
+        let [columns, rows]: [R; 2] = self.cells();
+        (u, lerp(x, a, b) * (columns * rows))
     }
 
     /// The number of cells along x and y.
-    fn cells(&self) -> Vec2 {
-        Vec2::new((self.width - 1) as f32, (self.height - 1) as f32)
+    #[inline(always)]
+    fn cells<R: Real>(&self) -> [R; 2] {
+        [R::splat((self.width - 1) as f32), R::splat((self.height - 1) as f32)]
     }
 
-    fn density_per_cell(&self) -> f32 {
-        self.cells().x * self.cells().y
-    }
-
-    fn cell(&self, p: Point2) -> Cell {
-        let at = p * self.cells();
-        let (column, row) = ((at.x as usize).min(self.width - 2), (at.y as usize).min(self.height - 2));
-        Cell { column, row, x: at.x - column as f32, y: at.y - row as f32 }
+    #[inline(always)]
+    fn cell<R: Real>(&self, p: Point2<R>) -> Cell<R> {
+        let [columns, rows] = self.cells();
+        let (x, y) = (p.x * columns, p.y * rows);
+        let column = x.floor().clamp(R::zero(), columns - R::one());
+        let row = y.floor().clamp(R::zero(), rows - R::one());
+        Cell { column: column.to_int(), row: row.to_int(), x: x - column, y: y - row }
     }
 
     /// The integral over all rows below one.
-    fn below(&self, row: usize, layers: LayerWeights) -> f32 {
-        layers.iter().map(|&(layer, weight)| weight * self.columns[layer * self.height + row]).sum()
+    #[inline(always)]
+    fn below<R: Real>(&self, row: R::Int, layers: LayerWeights<R>) -> R {
+        let height = R::Int::splat(self.height as u32);
+        let mut sum = R::zero();
+        for &(layer, weight) in layers {
+            sum += weight * R::gather(&self.columns, layer.wrapping_mul(height).wrapping_add(row));
+        }
+        sum
     }
 
-    /// The integral over a row left of a column.
-    fn row(&self, row: usize, column: usize, layers: LayerWeights) -> f32 {
-        let index = |layer: usize| (layer * self.height + row) * self.width + column;
-        layers.iter().map(|&(layer, weight)| weight * self.rows[index(layer)]).sum()
+    /// The integral left of a column over the line at `y` between two rows.
+    #[inline(always)]
+    fn left_of<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: LayerWeights<R>) -> R {
+        let [low, high] = self.pair(&self.rows, column, row, layers);
+        lerp(y, low, high)
     }
 
     /// The integrals over the rows at both sides of a cell.
-    fn ends(&self, row: usize, layers: LayerWeights) -> [f32; 2] {
-        [row, row + 1].map(|row| self.row(row, self.width - 1, layers))
+    #[inline(always)]
+    fn ends<R: Real>(&self, row: R::Int, layers: LayerWeights<R>) -> [R; 2] {
+        self.pair(&self.rows, R::Int::splat(self.width as u32 - 1), row, layers)
+    }
+
+    /// Numbers of a column in a row and in the next one.
+    #[inline(always)]
+    fn pair<R: Real>(
+        &self,
+        numbers: &[f32],
+        column: R::Int,
+        row: R::Int,
+        layers: LayerWeights<R>,
+    ) -> [R; 2] {
+        let width = R::Int::splat(self.width as u32);
+        let (mut low, mut high) = (R::zero(), R::zero());
+        for &(layer, weight) in layers {
+            let index = self.index(layer, row).wrapping_add(column);
+            low += weight * R::gather(numbers, index);
+            high += weight * R::gather(numbers, index.wrapping_add(width));
+        }
+        [low, high]
     }
 
     /// The density at both sides of a cell, between its rows.
-    fn across(&self, column: usize, row: usize, y: f32, layers: LayerWeights) -> [f32; 2] {
-        let value = |row: usize, column: usize| -> f32 {
-            let index = |layer: usize| (layer * self.height + row) * self.width + column;
-            layers.iter().map(|&(layer, weight)| weight * self.values[index(layer)]).sum()
-        };
-        [column, column + 1].map(|column| lerp(y, value(row, column), value(row + 1, column)))
+    #[inline(always)]
+    fn across<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: LayerWeights<R>) -> [R; 2] {
+        let width = R::Int::splat(self.width as u32);
+        let mut sums = [[R::zero(); 2]; 2];
+        for &(layer, weight) in layers {
+            let index = self.index(layer, row).wrapping_add(column);
+            let low = R::gather_rows::<2>(&self.values, index);
+            let high = R::gather_rows::<2>(&self.values, index.wrapping_add(width));
+            for side in 0..2 {
+                sums[0][side] += weight * low[side];
+                sums[1][side] += weight * high[side];
+            }
+        }
+        [lerp(y, sums[0][0], sums[1][0]), lerp(y, sums[0][1], sums[1][1])]
+    }
+
+    /// Where a row of a layer begins.
+    #[inline(always)]
+    fn index<I: Int>(&self, layer: I, row: I) -> I {
+        let [width, height] = [self.width, self.height].map(|size| I::splat(size as u32));
+        layer.wrapping_mul(height).wrapping_add(row).wrapping_mul(width)
     }
 }
 
-/// The last index below `count` for which an ascending property holds; 0 if there is none.
-fn last(count: usize, holds: impl Fn(usize) -> bool) -> usize {
-    let (mut low, mut high) = (0, count);
-    while high - low > 1 {
-        let middle = low.midpoint(high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    low
+/// The first step of a binary search among so many: the largest power of two below, or 0.
+fn half(count: usize) -> u32 {
+    (count as u32).next_power_of_two() / 2
 }
 
 /// A part of a whole, in [0, 1]; 0 of nothing.
-fn fraction(part: f32, whole: f32) -> f32 {
-    if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { 0.0 }
+#[inline(always)]
+fn fraction<R: Real>(part: R, whole: R) -> R {
+    let part = (part / whole).clamp(R::zero(), R::one());
+    R::select(whole.gt(R::zero()), part, R::zero())
 }
 
 #[cfg(test)]

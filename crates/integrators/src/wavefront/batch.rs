@@ -201,7 +201,8 @@ impl<'a> Batch<'a> {
                 }
                 Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
                 Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Measured(_) | Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
+                Material::Measured(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
             }

@@ -51,13 +51,11 @@ impl LaneMaterials {
                 | Material::CoatedDiffuse(_)
                 | Material::CoatedConductor(_)
                 | Material::Hair(_) => (true, false),
+                Material::Measured(_) => (true, true),
                 Material::OpenPbr(surface) => {
                     (!(surface.may_be_a_body(textures) || surface.has_coat_normals()), false)
                 }
-                // Lookups in large tables are not in lanes.
-                Material::Measured(_) | Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
-                    (false, false)
-                }
+                Material::Subsurface(_) | Material::Mix(_) | Material::Interface => (false, false),
             };
             let may_be_specular = entry.material.may_be_specular(textures);
             let shading = match (is_plain && is_in_lanes, with_footprints && !is_constant) {

@@ -26,9 +26,10 @@ pub fn linear_pdf<R: Real>(x: R, a: R, b: R) -> R {
 }
 
 /// Inverse of [`sample_linear`].
-#[inline]
-pub fn invert_linear(x: f32, a: f32, b: f32) -> f32 {
-    if a + b <= 0.0 { x } else { x * (a * (2.0 - x) + b * x) / (a + b) }
+#[inline(always)]
+pub fn invert_linear<R: Real>(x: R, a: R, b: R) -> R {
+    let u = x * (a * (R::splat(2.0) - x) + b * x) / (a + b);
+    R::select((a + b).le(R::zero()), x, u)
 }
 
 /// A number in [−r, r] with a density that falls linearly from 0 to both ends.

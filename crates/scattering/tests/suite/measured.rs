@@ -3,11 +3,12 @@
 use alhazen_scattering::{
     Directions, Measured, MeasuredData, MeasuredGrid, MeasuredTable, Scatter, TransportMode,
 };
+use lanes::Real;
 use math::{Vec2, Vec3, Vector3, spherical_direction};
-use sampling::warp::sample_uniform_hemisphere;
+use sampling::warp::{sample_uniform_hemisphere, sample_uniform_sphere};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
-use testkit::{Chi2, Random};
+use testkit::{Chi2, LaneFunction, Random, lanes_agree};
 
 use TransportMode::{Importance, Radiance};
 
@@ -195,6 +196,32 @@ fn degenerate_directions_give_finite_values() {
                 assert!(!sample.valid || sample.pdf.is_finite() && sample.wi.is_finite(), "{wo} {sample:?}");
             }
         }
+    }
+}
+
+struct Lanes(MeasuredTable);
+
+impl LaneFunction for Lanes {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let wo = sample_uniform_sphere(Vec2::new(u[0], u[1]));
+        let wi = sample_uniform_sphere(Vec2::new(u[2], u[3]));
+        let nanometre = |u: R| R::splat(380.0) + u * R::splat(450.0);
+        let lambda = [u[4], u[5], u[6], u[7]].map(nanometre);
+        let measured = Measured::new(&self.0, &SampledWavelengths::new(lambda, [R::one(); 4]));
+        let sample = measured.sample_f(wo, R::zero(), Vec2::new(u[3], u[4]), Radiance, Directions::All);
+        let mut results = measured.f(wo, wi, Radiance).0.to_vec();
+        results.push(measured.pdf(wo, wi, Radiance, Directions::All));
+        let valid = |x: R| R::select(sample.valid, x, R::zero());
+        results.extend([sample.f[0], sample.wi.x, sample.wi.y, sample.wi.z, sample.pdf].map(valid));
+        results
+    }
+}
+
+#[test]
+fn lanes_have_the_bits_of_single_floats() {
+    for table in tables() {
+        lanes_agree(&Lanes(table), 8, 100);
     }
 }
 

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use super::MaterialModel;
+use crate::texture::{TextureContext, Textures};
+use lanes::Real;
 use scattering::{Measured, MeasuredTable};
 use spectrum::SampledWavelengths;
 
@@ -12,10 +15,16 @@ pub struct MeasuredMaterial {
     pub table: Arc<MeasuredTable>,
 }
 
-impl MeasuredMaterial {
-    /// Its BxDF.
-    #[inline]
-    pub fn bxdf(&self, lambda: &SampledWavelengths) -> Measured<'_> {
+impl MaterialModel for MeasuredMaterial {
+    type Bxdf<'a, R: Real> = Measured<'a, R>;
+
+    #[inline(always)]
+    fn bxdf<'a, R: Real>(
+        &'a self,
+        _: &Textures,
+        _: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Measured<'a, R> {
         Measured::new(&self.table, lambda)
     }
 }

@@ -115,7 +115,7 @@ impl Material {
             Self::CoatedDiffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::CoatedConductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Hair(m) => Some(m.bxdf(textures, context, lambda).into()),
-            Self::Measured(m) => Some(m.bxdf(lambda).into()),
+            Self::Measured(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Subsurface(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::OpenPbr(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,

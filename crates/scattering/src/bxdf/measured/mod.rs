@@ -22,6 +22,7 @@ pub use table::{MeasuredData, MeasuredGrid, MeasuredTable};
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, reflect};
+use lanes::{Real, atan2, hypot, sin_cos};
 use math::{Point2, Vec2, Vector3, same_hemisphere, spherical_direction, spherical_theta, sqr};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -29,118 +30,129 @@ use table::Between;
 
 /// Scattering by a measured surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured<'a> {
+pub struct Measured<'a, R = f32> {
     table: &'a MeasuredTable,
-    lambda: SampledWavelengths,
+    lambda: SampledWavelengths<R>,
 }
 
-impl<'a> Measured<'a> {
+impl<'a, R: Real> Measured<'a, R> {
     /// The material of a table at four wavelengths.
-    #[inline]
-    pub fn new(table: &'a MeasuredTable, lambda: &SampledWavelengths) -> Self {
+    #[inline(always)]
+    pub fn new(table: &'a MeasuredTable, lambda: &SampledWavelengths<R>) -> Self {
         Self { table, lambda: *lambda }
     }
 
-    /// The side of `wo` as the upper one; `None` on the horizon.
-    fn outgoing(&self, wo: Vector3) -> Option<Outgoing> {
-        let w = if wo.z < 0.0 { -wo } else { wo };
-        let theta = spherical_theta(w);
-        let phi = lanes::atan2(w.y, w.x);
-        (w.z > 0.0).then(|| Outgoing {
-            w,
-            at: square(theta, phi),
-            turn: if self.table.is_isotropic() { phi } else { 0.0 },
-            between: self.table.between(phi, theta),
-        })
+    /// The side of `wo` as the upper one.
+    #[inline(always)]
+    fn outgoing(&self, wo: Vector3<R>) -> Outgoing<R> {
+        let w = Vector3::select(wo.z.lt(R::zero()), -wo, wo);
+        let (theta, phi) = (spherical_theta(w), atan2(w.y, w.x));
+        let turn = if self.table.is_isotropic() { phi } else { R::zero() };
+        Outgoing { w, at: square(theta, phi), turn, between: self.table.between(phi, theta) }
     }
 
-    /// The normal of microfacets that turn `wo` into `wi`, on the side of `wo`; `None` if there is
-    /// none.
-    fn facet(&self, wo: Vector3, wi: Vector3) -> Option<Facet> {
-        if !same_hemisphere(wo, wi) {
-            return None;
-        }
-        let outgoing = self.outgoing(wo)?;
-        let wm = (wo + wi).try_normalize()?;
-        let wm = if wm.z < 0.0 { -wm } else { wm };
-        let theta = spherical_theta(wm);
-        let at = square(theta, lanes::atan2(wm.y, wm.x) - outgoing.turn);
+    /// The normal of microfacets that turn a direction into `wi`, on its side.
+    #[inline(always)]
+    fn facet(&self, outgoing: &Outgoing<R>, wo: Vector3<R>, wi: Vector3<R>) -> Facet<R> {
+        let (wm, is_some) = (wo + wi).normalize_masked();
+        let wm = Vector3::select(wm.z.lt(R::zero()), -wm, wm);
+        let at = square(spherical_theta(wm), atan2(wm.y, wm.x) - outgoing.turn);
         let at = Vec2::new(at.x, at.y - at.y.floor());
-        Some(Facet { cosine: outgoing.w.dot(wm), sin_theta: wm.x.hypot(wm.y), outgoing, at })
+        let exists = is_some & same_hemisphere(wo, wi);
+        Facet { at, cosine: outgoing.w.dot(wm), sin_theta: hypot(wm.x, wm.y), exists }
     }
 }
 
 /// The direction of light that leaves.
-struct Outgoing {
-    w: Vector3,
+struct Outgoing<R: Real> {
+    w: Vector3<R>,
     /// Its point of the square.
-    at: Point2,
+    at: Point2<R>,
     /// The azimuth that normals are measured from.
-    turn: f32,
-    between: Between,
+    turn: R,
+    between: Between<R>,
 }
 
 /// A microfacet normal.
-struct Facet {
-    outgoing: Outgoing,
+struct Facet<R: Real> {
     /// Its point of the square.
-    at: Point2,
+    at: Point2<R>,
     /// To the outgoing direction.
-    cosine: f32,
-    sin_theta: f32,
+    cosine: R,
+    sin_theta: R,
+    exists: R::Mask,
 }
 
 /// The point of the square of a direction.
-fn square(theta: f32, phi: f32) -> Point2 {
-    Vec2::new((theta / FRAC_PI_2).sqrt().min(1.0), phi / TAU + 0.5)
+#[inline(always)]
+fn square<R: Real>(theta: R, phi: R) -> Point2<R> {
+    let x = (theta * R::splat(1.0 / FRAC_PI_2)).sqrt().min(R::one());
+    Vec2::new(x, phi * R::splat(1.0 / TAU) + R::splat(0.5))
 }
 
-impl Scatter for Measured<'_> {
-    fn flags(&self) -> BxdfFlags {
-        BxdfFlags::GLOSSY_REFLECTION
+impl<R: Real> Scatter<R> for Measured<'_, R> {
+    const CHOOSES: bool = false;
+
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::splat(BxdfFlags::GLOSSY_REFLECTION)
     }
 
-    fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> SampledSpectrum<R> {
         let (wo, wi) = match mode {
             TransportMode::Radiance => (wo, wi),
             TransportMode::Importance => (wi, wo),
         };
-        let Some(Facet { outgoing, at, .. }) = self.facet(wo, wi) else { return SampledSpectrum::ZERO };
-        let (u, _) = self.table.normals.invert(at, outgoing.between.layers());
-        let facets = self.table.ndf(at) / (4.0 * self.table.sigma(outgoing.at) * wi.z.abs());
-        self.table.values(u, &outgoing.between, &self.lambda) * facets
+        let outgoing = self.outgoing(wo);
+        let facet = self.facet(&outgoing, wo, wi);
+        let (u, _) = self.table.normals.invert(facet.at, outgoing.between.layers());
+        let area = R::splat(4.0) * self.table.sigma(outgoing.at) * wi.z.abs();
+        let f = self.table.values(u, &outgoing.between, &self.lambda) * (self.table.ndf(facet.at) / area);
+        SampledSpectrum::select(facet.exists, f, SampledSpectrum::zero())
     }
 
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        _: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        _: R,
+        u: Vec2<R>,
         mode: TransportMode,
         directions: Directions,
-    ) -> BsdfSample {
-        let Some(outgoing) = self.outgoing(wo).filter(|_| directions.reflection()) else {
+    ) -> BsdfSample<R> {
+        if !directions.reflection() {
             return BsdfSample::invalid();
-        };
+        }
+        let outgoing = self.outgoing(wo);
         let layers = outgoing.between.layers();
         let (u, _) = self.table.luminance.sample(u, layers);
         let (at, _) = self.table.normals.sample(u, layers);
-        let (theta, phi) = (sqr(at.x) * FRAC_PI_2, (at.y - 0.5) * TAU + outgoing.turn);
-        let (sin_theta, cos_theta) = lanes::sin_cos(theta);
+        let theta = sqr(at.x) * R::splat(FRAC_PI_2);
+        let phi = (at.y - R::splat(0.5)) * R::splat(TAU) + outgoing.turn;
+        let (sin_theta, cos_theta) = sin_cos(theta);
         let wi = reflect(outgoing.w, spherical_direction(sin_theta, cos_theta, phi));
-        let wi = if wo.z < 0.0 { -wi } else { wi };
+        let wi = Vector3::select(wo.z.lt(R::zero()), -wi, wi);
         let pdf = self.pdf(wo, wi, mode, directions);
-        let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, BxdfFlags::GLOSSY_REFLECTION);
-        BsdfSample { valid: pdf > 0.0, ..sample }
+        let lobe = BxdfFlags::splat(BxdfFlags::GLOSSY_REFLECTION);
+        let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, lobe);
+        BsdfSample { valid: pdf.gt(R::zero()), ..sample }
     }
 
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        let Some(facet) = self.facet(wo, wi).filter(|_| directions.reflection()) else { return 0.0 };
-        let layers = facet.outgoing.between.layers();
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        if !directions.reflection() {
+            return R::zero();
+        }
+        let outgoing = self.outgoing(wo);
+        let facet = self.facet(&outgoing, wo, wi);
+        let layers = outgoing.between.layers();
         let (u, density) = self.table.normals.invert(facet.at, layers);
         // From area of the square to solid angle of the normal, which has a limit at the pole, then
         // to that of its reflection.
-        let solid_angle = (2.0 * sqr(PI) * facet.at.x * facet.sin_theta).max(1e-6);
-        density * self.table.luminance.pdf(u, layers) / (4.0 * facet.cosine * solid_angle)
+        let solid_angle = R::splat(2.0 * PI * PI) * facet.at.x * facet.sin_theta;
+        let solid_angle = R::splat(4.0) * facet.cosine * solid_angle.max(R::splat(1e-6));
+        let pdf = density * self.table.luminance.pdf(u, layers) / solid_angle;
+        R::select(facet.exists, pdf, R::zero())
     }
 }

@@ -1,5 +1,6 @@
 //! The tables of measured BRDFs.
 
+use lanes::{Each, Int, Mask, Real};
 use math::{Point2, lerp};
 use sampling::{LayerWeights, PiecewiseBilinear2d};
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledSpectrum, SampledWavelengths};
@@ -53,14 +54,15 @@ impl fmt::Debug for MeasuredTable {
 }
 
 /// The place of an outgoing direction between those of a table.
-pub(super) struct Between {
-    layers: [(usize, f32); 4],
+pub(super) struct Between<R: Real> {
+    layers: [(R::Int, R); 4],
     count: usize,
 }
 
-impl Between {
+impl<R: Real> Between<R> {
     /// The directions around it, with their weights.
-    pub fn layers(&self) -> LayerWeights<'_> {
+    #[inline(always)]
+    pub fn layers(&self) -> LayerWeights<'_, R> {
         &self.layers[..self.count]
     }
 }
@@ -102,54 +104,87 @@ impl MeasuredTable {
     }
 
     /// The place of an outgoing direction.
-    pub(super) fn between(&self, phi: f32, theta: f32) -> Between {
-        let ((i, s), (j, t)) = (place(&self.data.phi, phi), place(&self.data.theta, theta));
-        let next = (j + 1).min(self.data.theta.len() - 1);
-        let layer = |i: usize, j: usize| i * self.data.theta.len() + j;
-        let after = if s > 0.0 { i + 1 } else { i };
+    #[inline(always)]
+    pub(super) fn between<R: Real>(&self, phi: R, theta: R) -> Between<R> {
+        let (i, s) = place(&self.data.phi, phi);
+        let (j, t) = place(&self.data.theta, theta);
+        let is_between = s.gt(R::zero());
+        let step = R::Int::splat(self.data.theta.len() as u32);
+        let low = i.wrapping_mul(step);
+        let high = R::Int::select(is_between, low.wrapping_add(step), low);
+        let next = R::Int::select(t.gt(R::zero()), j.wrapping_add(R::Int::splat(1)), j);
         let layers = [
-            (layer(i, j), (1.0 - s) * (1.0 - t)),
-            (layer(i, next), (1.0 - s) * t),
-            (layer(after, j), s * (1.0 - t)),
-            (layer(after, next), s * t),
+            (low.wrapping_add(j), (R::one() - s) * (R::one() - t)),
+            (low.wrapping_add(next), (R::one() - s) * t),
+            (high.wrapping_add(j), s * (R::one() - t)),
+            (high.wrapping_add(next), s * t),
         ];
-        Between { layers, count: if s > 0.0 { 4 } else { 2 } }
+        Between { layers, count: if is_between.any() { 4 } else { 2 } }
     }
 
     /// The density of microfacet normals at a point of the square.
-    pub(super) fn ndf(&self, p: Point2) -> f32 {
-        self.data.ndf.at(0, p).max(0.0)
+    #[inline(always)]
+    pub(super) fn ndf<R: Real>(&self, p: Point2<R>) -> R {
+        let cell = self.data.ndf.cell(p);
+        self.data.ndf.at(R::Int::splat(0), &cell).max(R::zero())
     }
 
     /// The projected area of microfacets towards a point of the square.
-    pub(super) fn sigma(&self, p: Point2) -> f32 {
-        self.data.sigma.at(0, p)
+    #[inline(always)]
+    pub(super) fn sigma<R: Real>(&self, p: Point2<R>) -> R {
+        let cell = self.data.sigma.cell(p);
+        self.data.sigma.at(R::Int::splat(0), &cell)
     }
 
     /// The reflectances at a point of the square; beyond the wavelengths measured, those at their
     /// ends.
-    pub(super) fn values(
+    #[inline(always)]
+    pub(super) fn values<R: Real>(
         &self,
-        u: Point2,
-        between: &Between,
-        lambda: &SampledWavelengths,
-    ) -> SampledSpectrum {
-        let channels = self.data.wavelengths.as_ref().map_or(3, Vec::len);
-        let channel = |channel: usize| -> f32 {
-            let value =
-                |&(layer, weight): &(usize, f32)| weight * self.data.values.at(layer * channels + channel, u);
-            between.layers().iter().map(value).sum()
-        };
+        u: Point2<R>,
+        between: &Between<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> SampledSpectrum<R> {
+        let cell = self.data.values.cell(u);
+        let mut sampled = SampledSpectrum::zero();
         let Some(wavelengths) = &self.data.wavelengths else {
-            let rgb = RgbUnboundedSpectrum::new(RgbColorSpace::srgb(), [0, 1, 2].map(channel));
-            return SampledSpectrum::new(lambda.lambda().map(|lambda| rgb.at(lambda)));
+            let mut channels = [R::zero(); 3];
+            for (i, channel) in channels.iter_mut().enumerate() {
+                *channel = self.channel(R::Int::splat(i as u32), 3, &cell, between);
+            }
+            let rgb = RgbUnboundedSpectrum::new(RgbColorSpace::srgb(), channels);
+            for (value, &lambda) in sampled.0.iter_mut().zip(lambda.lambda()) {
+                *value = rgb.at(lambda);
+            }
+            return sampled;
         };
-        SampledSpectrum::new(lambda.lambda().map(|lambda| {
+        let count = wavelengths.len() as u32;
+        for (value, &lambda) in sampled.0.iter_mut().zip(lambda.lambda()) {
             let (i, t) = place(wavelengths, lambda);
-            let value = if t > 0.0 { lerp(t, channel(i), channel(i + 1)) } else { channel(i) };
-            value.max(0.0)
-        }))
+            let next = R::Int::select(t.gt(R::zero()), i.wrapping_add(R::Int::splat(1)), i);
+            let [a, b] = [i, next].each(|i| self.channel(i, count, &cell, between));
+            *value = lerp(t, a, b).max(R::zero());
+        }
+        sampled
     }
+
+    /// The reflectance of one of so many channels in a cell of the square.
+    #[inline(always)]
+    fn channel<R: Real>(&self, channel: R::Int, channels: u32, cell: &Cell<R>, between: &Between<R>) -> R {
+        let mut sum = R::zero();
+        for &(layer, weight) in between.layers() {
+            let layer = layer.wrapping_mul(R::Int::splat(channels)).wrapping_add(channel);
+            sum += weight * self.data.values.at(layer, cell);
+        }
+        sum
+    }
+}
+
+/// A cell of a grid, by the index of its first point in a layer, and the position in it.
+struct Cell<R: Real> {
+    first: R::Int,
+    x: R,
+    y: R,
 }
 
 impl MeasuredGrid {
@@ -169,15 +204,25 @@ impl MeasuredGrid {
         Ok(())
     }
 
-    /// The interpolated value of a layer at a point of the unit square.
-    fn at(&self, layer: usize, p: Point2) -> f32 {
-        let [width, height] = self.size;
-        let (x, y) = (p.x * (width - 1) as f32, p.y * (height - 1) as f32);
-        let (column, row) = ((x as usize).min(width - 2), (y as usize).min(height - 2));
-        let first = (layer * height + row) * width + column;
-        let (x, y) = (x - column as f32, y - row as f32);
-        let row = |first: usize| lerp(x, self.values[first], self.values[first + 1]);
-        lerp(y, row(first), row(first + width))
+    /// The cell of a point of the unit square.
+    #[inline(always)]
+    fn cell<R: Real>(&self, p: Point2<R>) -> Cell<R> {
+        let [columns, rows] = self.size.map(|size| R::splat((size - 1) as f32));
+        let (x, y) = (p.x * columns, p.y * rows);
+        let column = x.floor().clamp(R::zero(), columns - R::one());
+        let row = y.floor().clamp(R::zero(), rows - R::one());
+        let first = row.to_int().wrapping_mul(R::Int::splat(self.size[0] as u32));
+        Cell { first: first.wrapping_add(column.to_int()), x: x - column, y: y - row }
+    }
+
+    /// The interpolated value of a layer in a cell.
+    #[inline(always)]
+    fn at<R: Real>(&self, layer: R::Int, cell: &Cell<R>) -> R {
+        let [width, height] = self.size.map(|size| size as u32);
+        let first = layer.wrapping_mul(R::Int::splat(width * height)).wrapping_add(cell.first);
+        let [a, b] = R::gather_rows(&self.values, first);
+        let [c, d] = R::gather_rows(&self.values, first.wrapping_add(R::Int::splat(width)));
+        lerp(cell.y, lerp(cell.x, a, b), lerp(cell.x, c, d))
     }
 }
 
@@ -189,13 +234,20 @@ fn increasing(numbers: &[f32], what: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The number before `x` in increasing ones, and how far `x` is towards the next, in [0, 1): beyond
-/// them, the first or the last.
-fn place(numbers: &[f32], x: f32) -> (usize, f32) {
-    let after = numbers.partition_point(|&number| number <= x);
-    match (after.checked_sub(1), numbers.get(after)) {
-        (None, _) => (0, 0.0),
-        (Some(i), None) => (i, 0.0),
-        (Some(i), Some(next)) => (i, (x - numbers[i]) / (next - numbers[i])),
+/// The number before `x` in increasing ones, and how far `x` is towards the next, in [0, 1]: beyond
+/// them, the first or the last, and 0.
+#[inline(always)]
+fn place<R: Real>(numbers: &[f32], x: R) -> (R::Int, R) {
+    let last = R::Int::splat(numbers.len() as u32 - 1);
+    let (mut before, mut step) = (R::Int::splat(0), (numbers.len() as u32).next_power_of_two() / 2);
+    while step > 0 {
+        let next = before.wrapping_add(R::Int::splat(step));
+        let next = R::Int::select(last.lt(next), before, next);
+        before = R::Int::select(R::gather(numbers, next).le(x), next, before);
+        step /= 2;
     }
+    let after = R::Int::select(before.lt(last), before.wrapping_add(R::Int::splat(1)), before);
+    let [low, high] = [before, after].each(|i| R::gather(numbers, i));
+    let t = (x - low) / (high - low);
+    (before, R::select(x.gt(low) & low.lt(high), t, R::zero()))
 }
