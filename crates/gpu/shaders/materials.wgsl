@@ -11,6 +11,7 @@ const COATED_CONDUCTOR = 7u;
 const PRINCIPLED = 8u;
 const INTERFACE = 9u;
 const HAIR = 10u;
+const MEASURED = 11u;
 
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;
@@ -27,6 +28,7 @@ struct Bsdf {
     coat: Coat,
     surface: OpenPbr,
     fibre: Hair,
+    measured: Measured,
     // What it carries: radiance, unless it is a vertex of a light path.
     mode: u32,
 }
@@ -130,6 +132,9 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
     if (HAS_HAIR && bsdf.kind == HAIR) {
         bsdf.fibre = hair_at(at, values, context.uv.y, *lambda);
     }
+    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+        bsdf.measured = Measured_new(tables[at + 4], *lambda);
+    }
     if (is_coated) {
         let facets = facets_of(values[0].x, values[1].x, tables[at + 8]);
         bsdf.coat = Coat(
@@ -185,6 +190,7 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
     let is_smooth = TrowbridgeReitz_effectively_smooth(bsdf.facets);
     switch (bsdf.kind) {
         case HAIR: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
+        case MEASURED: { return BxdfFlags_GLOSSY_REFLECTION; }
         case DIFFUSE: {
             return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a));
         }
@@ -244,6 +250,9 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (HAS_HAIR && bsdf.kind == HAIR) {
         return Hair_f(bsdf.fibre, wo, wi, bsdf.mode);
     }
+    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+        return Measured_f(bsdf.measured, wo, wi, bsdf.mode);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
         case DIFFUSE_TRANSMISSION: {
@@ -275,6 +284,9 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     }
     if (HAS_HAIR && bsdf.kind == HAIR) {
         return Hair_pdf(bsdf.fibre, wo, wi, mode, Directions_All);
+    }
+    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+        return Measured_pdf(bsdf.measured, wo, wi, mode, Directions_All);
     }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
@@ -335,6 +347,9 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
     }
     if (HAS_HAIR && bsdf.kind == HAIR) {
         sample = Hair_sample_f(bsdf.fibre, wo, uc, u, mode, directions);
+    }
+    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+        sample = Measured_sample_f(bsdf.measured, wo, uc, u, mode, directions);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);

@@ -42,6 +42,14 @@ const PLUMBING: [&str; 14] = plumbing! {
     "hair_material" "lights" "light_choices" "cameras"
 };
 
+/// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
+/// `tables`, and how a `number` is read there.
+pub const MEASURED: &str = concat!(
+    include_str!("../shaders/law/piecewise_bilinear.wgsl"),
+    include_str!("../shaders/law/measured.wgsl"),
+    include_str!("../shaders/measured_table.wgsl")
+);
+
 /// What kernels of real-time frames share.
 const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
 
@@ -94,6 +102,8 @@ pub struct Parts {
     pub curves: bool,
     /// The material of hair.
     pub hair: bool,
+    /// Measured surfaces.
+    pub measured: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
     /// Participating media, or interfaces, which only [`Algorithm::VolPath`] has.
@@ -229,10 +239,12 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, curves, hair, rare_samplers, media: _ } = parts;
+    let Parts { holes, images, noise, coats, principled, curves, hair, measured, rare_samplers, media: _ } =
+        parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
+        const HAS_MEASURED = {measured};\n\
         const HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
@@ -240,7 +252,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     } else {
         include_str!("../shaders/openpbr_none.wgsl").to_owned()
     };
-    with_laws(&[&PLUMBING[..], &[direct, &has, &surfaces], texts].concat())
+    with_laws(&[&PLUMBING[..], &[direct, MEASURED, &has, &surfaces], texts].concat())
 }
 
 /// The text of a file of `shaders/dynamic/`.

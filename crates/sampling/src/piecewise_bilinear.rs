@@ -22,8 +22,16 @@ pub struct PiecewiseBilinear2d {
     columns: Vec<f32>,
 }
 
-/// Layers with their weights, of the sum 1, for each lane.
-pub type LayerWeights<'a, R = f32> = &'a [(<R as Real>::Int, R)];
+/// Up to four layers with their weights, of the sum 1, for each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerWeights<R: Real = f32> {
+    /// The layers.
+    pub layers: [R::Int; 4],
+    /// Their weights.
+    pub weights: [R; 4],
+    /// How many of them count.
+    pub count: usize,
+}
 
 /// A cell of the grid and a position in it.
 struct Cell<R: Real> {
@@ -56,6 +64,17 @@ impl PiecewiseBilinear2d {
         table
     }
 
+    /// The points along x and y.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The densities per cell at all points, their integrals over each row from x = 0 to each
+    /// point, and from y = 0 to each row: all by layer.
+    pub fn numbers(&self) -> [&[f32]; 3] {
+        [&self.values, &self.rows, &self.columns]
+    }
+
     fn push(&mut self, layer: &[f32]) {
         let positive = layer.iter().map(|&value| f64::from(value.max(0.0)));
         let mut values: Vec<f64> = positive.collect();
@@ -83,9 +102,9 @@ impl PiecewiseBilinear2d {
 
     /// A point of the square for `u` in [0, 1)², and its density per area.
     #[inline(always)]
-    pub fn sample<R: Real>(&self, u: Vec2<R>, layers: LayerWeights<R>) -> (Point2<R>, R) {
+    pub fn sample<R: Real>(&self, u: Vec2<R>, layers: &LayerWeights<R>) -> (Point2<R>, R) {
         // Binary searches for the last row and the last column that begin before the number.
-        let (mut row, mut step) = (R::Int::splat(0), half(self.height - 1));
+        let (mut row, mut step) = (R::Int::splat(0), first_step(self.height - 1));
         while step > 0 {
             let next = row.wrapping_add(R::Int::splat(step));
             let is_cell = next.lt(R::Int::splat(self.height as u32 - 1));
@@ -100,7 +119,7 @@ impl PiecewiseBilinear2d {
         };
         let [first, last] = self.ends(row, layers);
         let wanted = u.x * lerp(y, first, last);
-        let (mut column, mut step) = (R::Int::splat(0), half(self.width - 1));
+        let (mut column, mut step) = (R::Int::splat(0), first_step(self.width - 1));
         while step > 0 {
             let next = column.wrapping_add(R::Int::splat(step));
             let is_cell = next.lt(R::Int::splat(self.width as u32 - 1));
@@ -118,7 +137,7 @@ impl PiecewiseBilinear2d {
 
     /// The density of a point of the square per area.
     #[inline(always)]
-    pub fn pdf<R: Real>(&self, p: Point2<R>, layers: LayerWeights<R>) -> R {
+    pub fn pdf<R: Real>(&self, p: Point2<R>, layers: &LayerWeights<R>) -> R {
         let Cell { column, row, x, y } = self.cell(p);
         let [a, b] = self.across(column, row, y, layers);
         let [columns, rows] = self.cells::<R>();
@@ -127,7 +146,7 @@ impl PiecewiseBilinear2d {
 
     /// The `u` that [`sample`](Self::sample) sends to a point of the square, and its density.
     #[inline(always)]
-    pub fn invert<R: Real>(&self, p: Point2<R>, layers: LayerWeights<R>) -> (Vec2<R>, R) {
+    pub fn invert<R: Real>(&self, p: Point2<R>, layers: &LayerWeights<R>) -> (Vec2<R>, R) {
         let Cell { column, row, x, y } = self.cell(p);
         let [a, b] = self.across(column, row, y, layers);
         let [first, last] = self.ends(row, layers);
@@ -156,10 +175,11 @@ impl PiecewiseBilinear2d {
 
     /// The integral over all rows below one.
     #[inline(always)]
-    fn below<R: Real>(&self, row: R::Int, layers: LayerWeights<R>) -> R {
+    fn below<R: Real>(&self, row: R::Int, layers: &LayerWeights<R>) -> R {
         let height = R::Int::splat(self.height as u32);
         let mut sum = R::zero();
-        for &(layer, weight) in layers {
+        for i in 0..layers.count {
+            let (layer, weight) = (layers.layers[i], layers.weights[i]);
             sum += weight * R::gather(&self.columns, layer.wrapping_mul(height).wrapping_add(row));
         }
         sum
@@ -167,14 +187,14 @@ impl PiecewiseBilinear2d {
 
     /// The integral left of a column over the line at `y` between two rows.
     #[inline(always)]
-    fn left_of<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: LayerWeights<R>) -> R {
+    fn left_of<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: &LayerWeights<R>) -> R {
         let [low, high] = self.pair(&self.rows, column, row, layers);
         lerp(y, low, high)
     }
 
     /// The integrals over the rows at both sides of a cell.
     #[inline(always)]
-    fn ends<R: Real>(&self, row: R::Int, layers: LayerWeights<R>) -> [R; 2] {
+    fn ends<R: Real>(&self, row: R::Int, layers: &LayerWeights<R>) -> [R; 2] {
         self.pair(&self.rows, R::Int::splat(self.width as u32 - 1), row, layers)
     }
 
@@ -185,11 +205,12 @@ impl PiecewiseBilinear2d {
         numbers: &[f32],
         column: R::Int,
         row: R::Int,
-        layers: LayerWeights<R>,
+        layers: &LayerWeights<R>,
     ) -> [R; 2] {
         let width = R::Int::splat(self.width as u32);
         let (mut low, mut high) = (R::zero(), R::zero());
-        for &(layer, weight) in layers {
+        for i in 0..layers.count {
+            let (layer, weight) = (layers.layers[i], layers.weights[i]);
             let index = self.index(layer, row).wrapping_add(column);
             low += weight * R::gather(numbers, index);
             high += weight * R::gather(numbers, index.wrapping_add(width));
@@ -199,10 +220,11 @@ impl PiecewiseBilinear2d {
 
     /// The density at both sides of a cell, between its rows.
     #[inline(always)]
-    fn across<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: LayerWeights<R>) -> [R; 2] {
+    fn across<R: Real>(&self, column: R::Int, row: R::Int, y: R, layers: &LayerWeights<R>) -> [R; 2] {
         let width = R::Int::splat(self.width as u32);
         let mut sums = [[R::zero(); 2]; 2];
-        for &(layer, weight) in layers {
+        for i in 0..layers.count {
+            let (layer, weight) = (layers.layers[i], layers.weights[i]);
             let index = self.index(layer, row).wrapping_add(column);
             let low = R::gather_rows::<2>(&self.values, index);
             let high = R::gather_rows::<2>(&self.values, index.wrapping_add(width));
@@ -223,7 +245,7 @@ impl PiecewiseBilinear2d {
 }
 
 /// The first step of a binary search among so many: the largest power of two below, or 0.
-fn half(count: usize) -> u32 {
+fn first_step(count: usize) -> u32 {
     (count as u32).next_power_of_two() / 2
 }
 
@@ -251,14 +273,19 @@ mod tests {
         PiecewiseBilinear2d::new(SIZE, &values)
     }
 
-    const MEANS: [LayerWeights; 5] =
-        [&[(0, 1.0)], &[(1, 1.0)], &[(2, 1.0)], &[(0, 0.3), (1, 0.7)], &[(0, 0.2), (1, 0.5), (2, 0.3)]];
+    const MEANS: [LayerWeights; 5] = [
+        LayerWeights { layers: [0; 4], weights: [1.0, 0.0, 0.0, 0.0], count: 1 },
+        LayerWeights { layers: [1; 4], weights: [1.0, 0.0, 0.0, 0.0], count: 1 },
+        LayerWeights { layers: [2; 4], weights: [1.0, 0.0, 0.0, 0.0], count: 1 },
+        LayerWeights { layers: [0, 1, 0, 0], weights: [0.3, 0.7, 0.0, 0.0], count: 2 },
+        LayerWeights { layers: [0, 1, 2, 0], weights: [0.2, 0.5, 0.3, 0.0], count: 3 },
+    ];
 
     #[test]
     fn samples_have_their_density() {
         let table = table();
         let test = Chi2 { bins: [18, 9], samples: 100_000, tests: MEANS.len(), ..Chi2::default() };
-        for layers in MEANS {
+        for layers in &MEANS {
             let sample = |u: [f32; 2]| Some(table.sample(u.into(), layers).0.to_array());
             let pdf = |p: [f32; 2]| f64::from(table.pdf(p.into(), layers));
             test.rectangle([[0.0, 1.0]; 2], sample, pdf).unwrap();
@@ -268,7 +295,7 @@ mod tests {
     #[test]
     fn densities_are_bilinear_with_the_integral_one() {
         let table = table();
-        for layers in MEANS {
+        for layers in &MEANS {
             let pdf = |x: f64, y: f64| f64::from(table.pdf(Vec2::new(x as f32, y as f32), layers));
             let mut total = 0.0;
             for cell in 0..18 {
@@ -288,7 +315,7 @@ mod tests {
     fn the_inverse_finds_the_sample() {
         let table = table();
         let mut random = Random::new(4);
-        for layers in MEANS {
+        for layers in &MEANS {
             for _ in 0..2000 {
                 let u = Vec2::from(random.get_2d());
                 let (p, density) = table.sample(u, layers);
@@ -304,7 +331,7 @@ mod tests {
     #[test]
     fn borders_of_the_square_are_sampled() {
         let table = table();
-        for layers in MEANS {
+        for layers in &MEANS {
             for u in [Vec2::new(0.0, 0.0), Vec2::splat(math::ONE_MINUS_EPSILON)] {
                 let (p, density) = table.sample(u, layers);
                 assert!(p.min_element() >= 0.0 && p.max_element() <= 1.0 && density.is_finite(), "{p}");

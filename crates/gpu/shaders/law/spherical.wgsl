@@ -9,6 +9,11 @@ fn spherical_direction(sin_theta_1: f32, cos_theta: f32, phi: f32) -> vec3f {
     return vec3f(sin_theta_1 * cos_phi_1, sin_theta_1 * sin_phi_1, cos_theta);
 }
 
+// θ ∈ [0, π] of a unit vector.
+fn spherical_theta(v: vec3f) -> f32 {
+    return arc_acos(real_min(real_max(v.z, -1.0f), 1.0f));
+}
+
 // φ ∈ [0, 2π) of a vector.
 fn spherical_phi(v: vec3f) -> f32 {
     let phi = arc_atan2(v.y, v.x);

@@ -120,9 +120,9 @@ fn Line_place(this_: Line, sin_1: f32, cos_1: f32) -> f32 {
 }
 
 // 1 − cos of the angle from the corner at which a place is seen, without cancellation.
-fn Line_one_minus_cos(this_: Line, place: f32) -> f32 {
-    let x = this_.distance_ + (place * this_.along);
-    let y = place * this_.height;
+fn Line_one_minus_cos(this_: Line, place_1: f32) -> f32 {
+    let x = this_.distance_ + (place_1 * this_.along);
+    let y = place_1 * this_.height;
     let distance_1 = sqrt((x * x) + (y * y));
     return select(distance_1 - x, (y * y) / (distance_1 + x), x > 0.0f) / distance_1;
 }

@@ -12,6 +12,7 @@
 //! | 8 principled | offset of its record | numbers and colours |
 //! | 9 interface | | |
 //! | 10 hair | what absorption is given by: 0 its coefficient, 1 colour, 2 pigments, and then the colour space | longitudinal and azimuthal roughness, η, angle of the scales, that of the absorption or both pigments |
+//! | 11 measured | offset of its record | |
 //! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
@@ -37,6 +38,7 @@ const COATED_CONDUCTOR: u32 = 7;
 const PRINCIPLED: u32 = 8;
 const INTERFACE: u32 = 9;
 const HAIR: u32 = 10;
+const MEASURED: u32 = 11;
 
 /// The kind, the words and the textures of a material.
 type Record = (u32, [u32; 8], Vec<u32>);
@@ -119,7 +121,10 @@ impl Flattener<'_> {
             }
             Material::Interface => return (INTERFACE, [0; 8], Vec::new()),
             Material::Hair(m) => return self.hair(m, span),
-            Material::Measured(_) => "measured",
+            Material::Measured(m) => {
+                self.parts.measured = true;
+                return (MEASURED, words([self.measured(&m.table)]), Vec::new());
+            }
             Material::Subsurface(_) => "subsurface",
         };
         self.refuse(format!("material `{name}`"), span);

@@ -16,6 +16,7 @@ mod light_choices;
 mod light_paths;
 mod lights;
 mod materials;
+mod measured;
 mod media;
 mod openpbr;
 mod samplers;

@@ -196,6 +196,24 @@ Shape "curve" "string type" "cylinder" "float width" 0.15
     "point3 P" [ 0.9 0 -0.4  0.8 0 0.4  1 -0.2 0.6  0.9 0.1 1.2 ]
 "#;
 
+/// Two spheres over the ground, whose coated surfaces a test replaces with measured ones.
+pub const MEASURED: &str = r#"
+LookAt 0 -4 1.5  0 0 0.5  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.5 0.6 0.7 ]
+LightSource "point" "point3 from" [ 2 -2 3 ] "float scale" 30
+Material "diffuse"
+Shape "disk" "float radius" 3
+Material "coateddiffuse"
+Translate -0.6 0 0.5
+Shape "sphere" "float radius" 0.5
+Material "coateddiffuse" "float roughness" 0.1
+Translate 1.2 0 0
+Shape "sphere" "float radius" 0.5
+"#;
+
 /// Lamps whose points are sampled by area: parts of a disk and of a cylinder, and a bent patch.
 pub const LAMPS: &str = r#"
 LookAt 0 -4 2  0 0 0.6  0 0 1

@@ -149,6 +149,12 @@ const SOURCES: &[(&str, &[&str])] = &[
         "crates/scattering/src/bxdf/hair.rs",
         &["Hair::new", "Hair::sigma_a_from_reflectance", "Hair::f", "Hair::sample_f", "Hair::pdf"],
     ),
+    ("crates/sampling/src/piecewise_bilinear.rs", &[]),
+    ("crates/scattering/src/bxdf/measured/table.rs", &[]),
+    (
+        "crates/scattering/src/bxdf/measured/mod.rs",
+        &["Measured::new", "Measured::f", "Measured::sample_f", "Measured::pdf"],
+    ),
     ("crates/scattering/src/interior.rs", &[]),
     ("crates/scattering/src/bxdf/openpbr/parameters.rs", &[]),
     ("crates/scattering/src/bxdf/openpbr/film.rs", &[]),
@@ -197,9 +203,18 @@ const SOURCES: &[(&str, &[&str])] = &[
 /// Functions that the shaders have by hand. Drivers simplify sums as if they were exact, so that
 /// rounding by adding and subtracting a large number is lost; tables are packed; loops are others
 /// in vectors.
-const BY_HAND: [&str; 9] = [
+const BY_HAND: [&str; 18] = [
     "circular_reduce",
     "function_round",
+    "MeasuredTable_between",
+    "MeasuredTable_invert_normal",
+    "MeasuredTable_is_isotropic",
+    "MeasuredTable_luminance_pdf",
+    "MeasuredTable_ndf",
+    "MeasuredTable_sample_luminance",
+    "MeasuredTable_sample_normal",
+    "MeasuredTable_sigma",
+    "MeasuredTable_values",
     "noise_permuted",
     "OpenPbrTable_has_film",
     "OpenPbrTable_inside",
@@ -210,7 +225,7 @@ const BY_HAND: [&str; 9] = [
 ];
 
 /// Types that are records among the tables of a scene, of which shaders have the offsets.
-const RECORDS: [&str; 1] = ["OpenPbrTable"];
+const RECORDS: [&str; 2] = ["MeasuredTable", "OpenPbrTable"];
 
 /// Where the translations are.
 pub const FOLDER: &str = "crates/gpu/shaders/law";

@@ -22,11 +22,11 @@ pub use table::{MeasuredData, MeasuredGrid, MeasuredTable};
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, reflect};
-use lanes::{Real, atan2, hypot, sin_cos};
+use lanes::{Real, atan2, sin_cos};
 use math::{Point2, Vec2, Vector3, same_hemisphere, spherical_direction, spherical_theta, sqr};
+use sampling::LayerWeights;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
-use table::Between;
 
 /// Scattering by a measured surface.
 #[derive(Clone, Copy, Debug)]
@@ -44,37 +44,38 @@ impl<'a, R: Real> Measured<'a, R> {
 
     /// The side of `wo` as the upper one.
     #[inline(always)]
-    fn outgoing(&self, wo: Vector3<R>) -> Outgoing<R> {
+    fn outgoing(&self, wo: Vector3<R>) -> OutgoingDirection<R> {
         let w = Vector3::select(wo.z.lt(R::zero()), -wo, wo);
         let (theta, phi) = (spherical_theta(w), atan2(w.y, w.x));
         let turn = if self.table.is_isotropic() { phi } else { R::zero() };
-        Outgoing { w, at: square(theta, phi), turn, between: self.table.between(phi, theta) }
+        OutgoingDirection { w, at: in_square(theta, phi), turn, between: self.table.between(phi, theta) }
     }
 
     /// The normal of microfacets that turn a direction into `wi`, on its side.
     #[inline(always)]
-    fn facet(&self, outgoing: &Outgoing<R>, wo: Vector3<R>, wi: Vector3<R>) -> Facet<R> {
+    fn microfacet(&self, outgoing: &OutgoingDirection<R>, wo: Vector3<R>, wi: Vector3<R>) -> Microfacet<R> {
         let (wm, is_some) = (wo + wi).normalize_masked();
         let wm = Vector3::select(wm.z.lt(R::zero()), -wm, wm);
-        let at = square(spherical_theta(wm), atan2(wm.y, wm.x) - outgoing.turn);
+        let at = in_square(spherical_theta(wm), atan2(wm.y, wm.x) - outgoing.turn);
         let at = Vec2::new(at.x, at.y - at.y.floor());
         let exists = is_some & same_hemisphere(wo, wi);
-        Facet { at, cosine: outgoing.w.dot(wm), sin_theta: hypot(wm.x, wm.y), exists }
+        Microfacet { at, cosine: outgoing.w.dot(wm), sin_theta: (sqr(wm.x) + sqr(wm.y)).sqrt(), exists }
     }
 }
 
 /// The direction of light that leaves.
-struct Outgoing<R: Real> {
+struct OutgoingDirection<R: Real> {
     w: Vector3<R>,
     /// Its point of the square.
     at: Point2<R>,
     /// The azimuth that normals are measured from.
     turn: R,
-    between: Between<R>,
+    /// The layers of the tables around it.
+    between: LayerWeights<R>,
 }
 
 /// A microfacet normal.
-struct Facet<R: Real> {
+struct Microfacet<R: Real> {
     /// Its point of the square.
     at: Point2<R>,
     /// To the outgoing direction.
@@ -85,7 +86,7 @@ struct Facet<R: Real> {
 
 /// The point of the square of a direction.
 #[inline(always)]
-fn square<R: Real>(theta: R, phi: R) -> Point2<R> {
+fn in_square<R: Real>(theta: R, phi: R) -> Point2<R> {
     let x = (theta * R::splat(1.0 / FRAC_PI_2)).sqrt().min(R::one());
     Vec2::new(x, phi * R::splat(1.0 / TAU) + R::splat(0.5))
 }
@@ -105,8 +106,8 @@ impl<R: Real> Scatter<R> for Measured<'_, R> {
             TransportMode::Importance => (wi, wo),
         };
         let outgoing = self.outgoing(wo);
-        let facet = self.facet(&outgoing, wo, wi);
-        let (u, _) = self.table.normals.invert(facet.at, outgoing.between.layers());
+        let facet = self.microfacet(&outgoing, wo, wi);
+        let (u, _) = self.table.invert_normal(facet.at, &outgoing.between);
         let area = R::splat(4.0) * self.table.sigma(outgoing.at) * wi.z.abs();
         let f = self.table.values(u, &outgoing.between, &self.lambda) * (self.table.ndf(facet.at) / area);
         SampledSpectrum::select(facet.exists, f, SampledSpectrum::zero())
@@ -125,9 +126,8 @@ impl<R: Real> Scatter<R> for Measured<'_, R> {
             return BsdfSample::invalid();
         }
         let outgoing = self.outgoing(wo);
-        let layers = outgoing.between.layers();
-        let (u, _) = self.table.luminance.sample(u, layers);
-        let (at, _) = self.table.normals.sample(u, layers);
+        let u = self.table.sample_luminance(u, &outgoing.between);
+        let at = self.table.sample_normal(u, &outgoing.between);
         let theta = sqr(at.x) * R::splat(FRAC_PI_2);
         let phi = (at.y - R::splat(0.5)) * R::splat(TAU) + outgoing.turn;
         let (sin_theta, cos_theta) = sin_cos(theta);
@@ -145,14 +145,13 @@ impl<R: Real> Scatter<R> for Measured<'_, R> {
             return R::zero();
         }
         let outgoing = self.outgoing(wo);
-        let facet = self.facet(&outgoing, wo, wi);
-        let layers = outgoing.between.layers();
-        let (u, density) = self.table.normals.invert(facet.at, layers);
+        let facet = self.microfacet(&outgoing, wo, wi);
+        let (u, density) = self.table.invert_normal(facet.at, &outgoing.between);
         // From area of the square to solid angle of the normal, which has a limit at the pole, then
         // to that of its reflection.
         let solid_angle = R::splat(2.0 * PI * PI) * facet.at.x * facet.sin_theta;
         let solid_angle = R::splat(4.0) * facet.cosine * solid_angle.max(R::splat(1e-6));
-        let pdf = density * self.table.luminance.pdf(u, layers) / solid_angle;
+        let pdf = density * self.table.luminance_pdf(u, &outgoing.between) / solid_angle;
         R::select(facet.exists, pdf, R::zero())
     }
 }

@@ -1,7 +1,7 @@
 //! The tables of measured BRDFs.
 
-use lanes::{Each, Int, Mask, Real};
-use math::{Point2, lerp};
+use lanes::{Int, Mask, Real};
+use math::{Point2, Vec2, lerp};
 use sampling::{LayerWeights, PiecewiseBilinear2d};
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledSpectrum, SampledWavelengths};
 use std::fmt;
@@ -42,28 +42,14 @@ pub struct MeasuredData {
 #[derive(Clone, PartialEq)]
 pub struct MeasuredTable {
     data: MeasuredData,
-    pub(super) normals: PiecewiseBilinear2d,
-    pub(super) luminance: PiecewiseBilinear2d,
+    normals: PiecewiseBilinear2d,
+    luminance: PiecewiseBilinear2d,
 }
 
 impl fmt::Debug for MeasuredTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let directions = [self.data.phi.len(), self.data.theta.len()];
         f.debug_struct("MeasuredTable").field("directions", &directions).finish_non_exhaustive()
-    }
-}
-
-/// The place of an outgoing direction between those of a table.
-pub(super) struct Between<R: Real> {
-    layers: [(R::Int, R); 4],
-    count: usize,
-}
-
-impl<R: Real> Between<R> {
-    /// The directions around it, with their weights.
-    #[inline(always)]
-    pub fn layers(&self) -> LayerWeights<'_, R> {
-        &self.layers[..self.count]
     }
 }
 
@@ -98,6 +84,11 @@ impl MeasuredTable {
         &self.data
     }
 
+    /// The densities of visible normals and of samples, for an engine that looks them up elsewhere.
+    pub fn densities(&self) -> [&PiecewiseBilinear2d; 2] {
+        [&self.normals, &self.luminance]
+    }
+
     /// Whether azimuths count from that of the outgoing direction.
     pub(super) fn is_isotropic(&self) -> bool {
         self.data.phi.len() <= 2
@@ -105,7 +96,7 @@ impl MeasuredTable {
 
     /// The place of an outgoing direction.
     #[inline(always)]
-    pub(super) fn between<R: Real>(&self, phi: R, theta: R) -> Between<R> {
+    pub(super) fn between<R: Real>(&self, phi: R, theta: R) -> LayerWeights<R> {
         let (i, s) = place(&self.data.phi, phi);
         let (j, t) = place(&self.data.theta, theta);
         let is_between = s.gt(R::zero());
@@ -113,13 +104,41 @@ impl MeasuredTable {
         let low = i.wrapping_mul(step);
         let high = R::Int::select(is_between, low.wrapping_add(step), low);
         let next = R::Int::select(t.gt(R::zero()), j.wrapping_add(R::Int::splat(1)), j);
-        let layers = [
-            (low.wrapping_add(j), (R::one() - s) * (R::one() - t)),
-            (low.wrapping_add(next), (R::one() - s) * t),
-            (high.wrapping_add(j), s * (R::one() - t)),
-            (high.wrapping_add(next), s * t),
-        ];
-        Between { layers, count: if is_between.any() { 4 } else { 2 } }
+        let (before, early) = (R::one() - s, R::one() - t);
+        LayerWeights {
+            layers: [
+                low.wrapping_add(j),
+                low.wrapping_add(next),
+                high.wrapping_add(j),
+                high.wrapping_add(next),
+            ],
+            weights: [before * early, before * t, s * early, s * t],
+            count: if is_between.any() { 4 } else { 2 },
+        }
+    }
+
+    /// What [`PiecewiseBilinear2d::sample`] makes of `u` by the luminances of samples.
+    #[inline(always)]
+    pub(super) fn sample_luminance<R: Real>(&self, u: Vec2<R>, between: &LayerWeights<R>) -> Point2<R> {
+        self.luminance.sample(u, between).0
+    }
+
+    /// The density of these samples.
+    #[inline(always)]
+    pub(super) fn luminance_pdf<R: Real>(&self, u: Point2<R>, between: &LayerWeights<R>) -> R {
+        self.luminance.pdf(u, between)
+    }
+
+    /// The point of the square that visible normals have for `u`.
+    #[inline(always)]
+    pub(super) fn sample_normal<R: Real>(&self, u: Vec2<R>, between: &LayerWeights<R>) -> Point2<R> {
+        self.normals.sample(u, between).0
+    }
+
+    /// The `u` of a point, and the density of visible normals there.
+    #[inline(always)]
+    pub(super) fn invert_normal<R: Real>(&self, at: Point2<R>, between: &LayerWeights<R>) -> (Vec2<R>, R) {
+        self.normals.invert(at, between)
     }
 
     /// The density of microfacet normals at a point of the square.
@@ -142,7 +161,7 @@ impl MeasuredTable {
     pub(super) fn values<R: Real>(
         &self,
         u: Point2<R>,
-        between: &Between<R>,
+        between: &LayerWeights<R>,
         lambda: &SampledWavelengths<R>,
     ) -> SampledSpectrum<R> {
         let cell = self.data.values.cell(u);
@@ -162,19 +181,26 @@ impl MeasuredTable {
         for (value, &lambda) in sampled.0.iter_mut().zip(lambda.lambda()) {
             let (i, t) = place(wavelengths, lambda);
             let next = R::Int::select(t.gt(R::zero()), i.wrapping_add(R::Int::splat(1)), i);
-            let [a, b] = [i, next].each(|i| self.channel(i, count, &cell, between));
-            *value = lerp(t, a, b).max(R::zero());
+            let below = self.channel(i, count, &cell, between);
+            let above = self.channel(next, count, &cell, between);
+            *value = lerp(t, below, above).max(R::zero());
         }
         sampled
     }
 
     /// The reflectance of one of so many channels in a cell of the square.
     #[inline(always)]
-    fn channel<R: Real>(&self, channel: R::Int, channels: u32, cell: &Cell<R>, between: &Between<R>) -> R {
+    fn channel<R: Real>(
+        &self,
+        channel: R::Int,
+        channels: u32,
+        cell: &Cell<R>,
+        between: &LayerWeights<R>,
+    ) -> R {
         let mut sum = R::zero();
-        for &(layer, weight) in between.layers() {
-            let layer = layer.wrapping_mul(R::Int::splat(channels)).wrapping_add(channel);
-            sum += weight * self.data.values.at(layer, cell);
+        for i in 0..between.count {
+            let layer = between.layers[i].wrapping_mul(R::Int::splat(channels)).wrapping_add(channel);
+            sum += between.weights[i] * self.data.values.at(layer, cell);
         }
         sum
     }
@@ -247,7 +273,7 @@ fn place<R: Real>(numbers: &[f32], x: R) -> (R::Int, R) {
         step /= 2;
     }
     let after = R::Int::select(before.lt(last), before.wrapping_add(R::Int::splat(1)), before);
-    let [low, high] = [before, after].each(|i| R::gather(numbers, i));
+    let (low, high) = (R::gather(numbers, before), R::gather(numbers, after));
     let t = (x - low) / (high - low);
     (before, R::select(x.gt(low) & low.lt(high), t, R::zero()))
 }
