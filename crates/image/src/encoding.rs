@@ -36,7 +36,7 @@ impl ColorEncoding {
         match self {
             Self::Linear => code,
             Self::Srgb => linear_from_srgb(code),
-            Self::Gamma(gamma) => code.max(0.0).powf(gamma),
+            Self::Gamma(gamma) => power(code.max(0.0), gamma),
         }
     }
 
@@ -46,7 +46,7 @@ impl ColorEncoding {
         match self {
             Self::Linear => value,
             Self::Srgb => srgb_from_linear(value),
-            Self::Gamma(gamma) => value.powf(1.0 / gamma),
+            Self::Gamma(gamma) => power(value, 1.0 / gamma),
         }
     }
 
@@ -128,14 +128,19 @@ pub(crate) fn at_most(value: f32, max: f32) -> f32 {
     if value > 0.0 { value.min(max) } else { 0.0 }
 }
 
+/// A power that is rounded once, so that it never falls where it should rise.
+fn power(base: f32, exponent: f32) -> f32 {
+    libm::pow(base.into(), exponent.into()) as f32
+}
+
 /// The linear value of an sRGB code; values outside [0, 1] follow the same curve.
 pub fn linear_from_srgb(code: f32) -> f32 {
-    if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+    if code <= 0.04045 { code / 12.92 } else { power((code + 0.055) / 1.055, 2.4) }
 }
 
 /// The sRGB code of a linear value; values outside [0, 1] follow the same curve.
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * power(linear, 1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

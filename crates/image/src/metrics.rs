@@ -35,7 +35,7 @@ impl Difference {
     /// Peak signal-to-noise ratio in decibels, for a peak of 1; infinite where pictures are the
     /// same.
     pub fn psnr(&self) -> f64 {
-        -10.0 * self.mse.log10()
+        -10.0 * libm::log10(self.mse)
     }
 }
 

@@ -90,7 +90,7 @@ impl Projection {
             Self::EqualArea => 1.0,
             Self::LatitudeLongitude => {
                 let half = FRAC_PI_2 / height as f32;
-                height as f32 * half.sin() * ((2 * y + 1) as f32 * half).sin()
+                height as f32 * lanes::sin(half) * lanes::sin((2 * y + 1) as f32 * half)
             }
         }
     }
@@ -111,7 +111,7 @@ impl Projection {
             Self::EqualArea => [2.2 / width, 5.7 / width],
             Self::LatitudeLongitude => {
                 let step = TAU / width;
-                [step * w.x.hypot(w.y).max(floor), step]
+                [step * lanes::hypot(w.x, w.y).max(floor), step]
             }
         }
     }

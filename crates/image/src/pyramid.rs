@@ -241,7 +241,7 @@ impl Pyramid {
         if !(width > 0.0 && width.is_finite()) {
             return self.levels[0].bilinear(st, channels, self.wrap);
         }
-        let level = ((self.levels.len() - 1) as f32 + width.log2()).max(0.0);
+        let level = ((self.levels.len() - 1) as f32 + lanes::log2(width)).max(0.0);
         let index = level as usize;
         let mut values = self.ewa_at(index, st, longer, shorter, channels);
         let coarse = self.ewa_at(index + 1, st, longer, shorter, channels);
@@ -306,7 +306,7 @@ impl Pyramid {
 static EWA_WEIGHTS: LazyLock<[f32; 128]> = LazyLock::new(|| {
     std::array::from_fn(|index| {
         let r2 = index as f32 / 127.0;
-        (-2.0 * r2).exp() - (-2.0f32).exp()
+        lanes::exp(-2.0 * r2) - lanes::exp(-2.0f32)
     })
 });
 

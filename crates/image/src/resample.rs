@@ -126,7 +126,7 @@ fn windowed_sinc(x: f32) -> f32 {
 
 fn sinc(x: f32) -> f32 {
     let x = PI * x;
-    if 1.0 - x * x == 1.0 { 1.0 } else { x.sin() / x }
+    if 1.0 - x * x == 1.0 { 1.0 } else { lanes::sin(x) / x }
 }
 
 #[cfg(test)]

@@ -126,8 +126,8 @@ impl Photometry {
 
     /// The intensity in a direction, z up, by linear interpolation between angles.
     fn candela(&self, w: Vector3) -> f32 {
-        let vertical = w.x.hypot(w.y).atan2(-w.z) * (180.0 / PI);
-        let around = (w.y.atan2(w.x) / TAU).rem_euclid(1.0) * 360.0;
+        let vertical = libm::atan2f(libm::hypotf(w.x, w.y), -w.z) * (180.0 / PI);
+        let around = (libm::atan2f(w.y, w.x) / TAU).rem_euclid(1.0) * 360.0;
         let (first, last) = (self.vertical[0], self.vertical[self.vertical.len() - 1]);
         if vertical < first || vertical > last {
             return 0.0;

@@ -206,7 +206,7 @@ fn value(function: FunctionKind, p: Vec2) -> f64 {
         FunctionKind::Gaussian => {
             let variance = 0.25 * 0.25;
             let distance2 = (x - 0.5).powi(2) + (y - 0.5).powi(2);
-            (-distance2 / (2.0 * variance)).exp() / (2.0 * PI * variance * WITHIN * WITHIN)
+            libm::exp(-distance2 / (2.0 * variance)) / (2.0 * PI * variance * WITHIN * WITHIN)
         }
     }
 }

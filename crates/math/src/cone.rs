@@ -55,7 +55,7 @@ impl DirectionCone {
             return Self::ENTIRE_SPHERE;
         }
         let w = Transform::rotate(theta - theta_a, axis).vector(self.w);
-        Self::new(w.normalize(), theta.cos())
+        Self::new(w.normalize(), lanes::cos(theta))
     }
 }
 

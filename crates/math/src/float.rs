@@ -32,13 +32,13 @@ pub fn safe_sqrt<R: Real>(x: R) -> R {
 /// Arc cosine of a value that rounding may have pushed out of [−1, 1].
 #[inline]
 pub fn safe_acos(x: f32) -> f32 {
-    x.clamp(-1.0, 1.0).acos()
+    lanes::acos(x.clamp(-1.0, 1.0))
 }
 
 /// Arc sine of a value that rounding may have pushed out of [−1, 1].
 #[inline]
 pub fn safe_asin(x: f32) -> f32 {
-    x.clamp(-1.0, 1.0).asin()
+    lanes::asin(x.clamp(-1.0, 1.0))
 }
 
 /// `(1 − t)·a + t·b`.

@@ -23,7 +23,7 @@ pub fn blackbody(lambda: f32, temperature: f32) -> f32 {
 
 /// Planck's law for a wavelength in metres.
 fn planck(lambda: f64, temperature: f64) -> f64 {
-    2.0 * H * C * C / (lambda.powi(5) * (H * C / (lambda * K_B * temperature)).exp_m1())
+    2.0 * H * C * C / (lambda.powi(5) * libm::expm1(H * C / (lambda * K_B * temperature)))
 }
 
 /// A blackbody's spectrum, scaled so that its largest value over all wavelengths is one.

@@ -37,7 +37,7 @@ impl SampledSpectrum {
     /// The exponential of each value.
     #[inline]
     pub fn exp(self) -> Self {
-        self.map(f32::exp)
+        self.map(lanes::exp)
     }
 
     /// Each value to an integer power.
@@ -49,7 +49,7 @@ impl SampledSpectrum {
     /// Each value to a real power.
     #[inline]
     pub fn powf(self, exponent: f32) -> Self {
-        self.map(|v| v.powf(exponent))
+        self.map(|v| lanes::pow(v, exponent))
     }
 }
 

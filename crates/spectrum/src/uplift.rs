@@ -82,7 +82,7 @@ const ASINH_RANGE: f64 = 10.0;
 /// The largest component at node `i` of [`VALUES`]: dense towards 0 and 1, where coefficients
 /// change fast.
 pub fn node_value(i: usize) -> f64 {
-    let t = (0.015 + 0.985 * i as f64 / (VALUES - 1) as f64).powf(1.25);
+    let t = libm::pow(0.015 + 0.985 * i as f64 / (VALUES - 1) as f64, 1.25);
     t * t * (3.0 - 2.0 * t)
 }
 
@@ -154,7 +154,7 @@ impl RgbToSpectrumTable {
         let coefficients = data.chunks_exact(6).map(|node| {
             let [blue, green, red] = std::array::from_fn(|i| {
                 let step = f64::from(u16::from_le_bytes([node[2 * i], node[2 * i + 1]]));
-                (ASINH_RANGE * (step / 32767.5 - 1.0)).sinh()
+                libm::sinh(ASINH_RANGE * (step / 32767.5 - 1.0))
             });
             [(0.5 * (blue + red) - green) as f32, (0.5 * (red - blue)) as f32, green as f32]
         });

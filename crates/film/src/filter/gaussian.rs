@@ -22,6 +22,6 @@ impl GaussianFilter {
 
     fn gaussian(&self, x: f32) -> f32 {
         let variance = self.sigma * self.sigma;
-        (-x * x / (2.0 * variance)).exp() / (TAU * variance).sqrt()
+        lanes::exp(-x * x / (2.0 * variance)) / (TAU * variance).sqrt()
     }
 }

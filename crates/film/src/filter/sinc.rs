@@ -28,5 +28,5 @@ impl LanczosSincFilter {
 fn sinc(x: f32) -> f32 {
     let x = PI * x;
     // Below this, sin(x) / x rounds to one.
-    if x.abs() < 1e-4 { 1.0 } else { x.sin() / x }
+    if x.abs() < 1e-4 { 1.0 } else { lanes::sin(x) / x }
 }

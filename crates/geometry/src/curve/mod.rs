@@ -161,7 +161,7 @@ impl Curves {
         let side = match &self.profile {
             CurveProfile::Flat => sideways,
             CurveProfile::Cylinder => {
-                let (sin, cos) = ((v - 0.5) * std::f64::consts::PI).sin_cos();
+                let (sin, cos) = libm::sincos((v - 0.5) * std::f64::consts::PI);
                 sideways * cos - tangent.cross(sideways) * sin
             }
             CurveProfile::Ribbon(_) => {
@@ -213,12 +213,12 @@ impl Curves {
         let CurveProfile::Ribbon(normals) = &self.profile else { return None };
         let [start, end] = normals[(primitive >> self.split_depth) as usize].map(|n| n.as_dvec3());
         let angle = start.angle_between(end);
-        let sin = angle.sin();
+        let sin = libm::sin(angle);
         // An angle of 0 or π, where the plane of rotation is undefined.
         if sin.is_nan() || sin < 1e-6 {
             return Some(if u < 0.5 { start } else { end });
         }
-        Some((start * ((1.0 - u) * angle).sin() + end * (u * angle).sin()) / sin)
+        Some((start * libm::sin((1.0 - u) * angle) + end * libm::sin(u * angle)) / sin)
     }
 }
 
@@ -300,7 +300,7 @@ impl Search<'_> {
 fn depth(p: &Cubic, width: f64) -> i32 {
     let bend = |i: usize| (p[i] - p[i + 1] * 2.0 + p[i + 2]).abs().max_element();
     let ratio = std::f64::consts::SQRT_2 * 6.0 * bend(0).max(bend(1)) / (8.0 * FLATNESS * width);
-    (ratio.log2().floor() as i32 / 2).clamp(0, DEEPEST)
+    (libm::log2(ratio).floor() as i32 / 2).clamp(0, DEEPEST)
 }
 
 /// A unit vector perpendicular to a unit vector.

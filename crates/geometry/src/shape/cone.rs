@@ -57,7 +57,7 @@ impl Cone {
     pub(super) fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         let q = o + d * unrounded(self.roots(o, d), hit.t);
-        let (sin, cos) = phi(q).sin_cos();
+        let (sin, cos) = libm::sincos(phi(q));
         let below_tip = 1.0 - q.z / self.height;
         let rim = DVec3::new(cos, sin, 0.0) * self.radius;
         let p = rim * below_tip + DVec3::Z * q.z;
@@ -80,7 +80,7 @@ impl Cone {
 
     pub(super) fn sample(&self, u: Vec2) -> Option<ShapeSample> {
         let below_tip = (1.0 - u.x as f64).sqrt();
-        let (sin, cos) = (u.y as f64 * self.phi_max).sin_cos();
+        let (sin, cos) = libm::sincos(u.y as f64 * self.phi_max);
         let out = self.radius * below_tip;
         let p = DVec3::new(cos * out, sin * out, self.height * (1.0 - below_tip));
         let n = self.normal(u.y as f64);
@@ -106,18 +106,18 @@ impl Cone {
 
     /// The point with parameters (u, v) and its unit normal, in object space.
     fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
-        let (sin, cos) = (uv.x as f64 * self.phi_max).sin_cos();
+        let (sin, cos) = libm::sincos(uv.x as f64 * self.phi_max);
         let out = self.radius * (1.0 - uv.y as f64);
         (DVec3::new(cos * out, sin * out, self.height * uv.y as f64), self.normal(uv.x as f64))
     }
 
     fn object_area(&self) -> f64 {
-        0.5 * self.phi_max * self.radius * self.radius.hypot(self.height)
+        0.5 * self.phi_max * self.radius * libm::hypot(self.radius, self.height)
     }
 
     fn normal(&self, u: f64) -> DVec3 {
-        let (sin, cos) = (u * self.phi_max).sin_cos();
-        DVec3::new(self.height * cos, self.height * sin, self.radius) / self.radius.hypot(self.height)
+        let (sin, cos) = libm::sincos(u * self.phi_max);
+        DVec3::new(self.height * cos, self.height * sin, self.radius) / libm::hypot(self.radius, self.height)
     }
 
     fn parameters(&self, p: DVec3) -> Vec2 {

@@ -105,7 +105,7 @@ impl Cylinder {
     }
 
     fn normal(&self, u: f64) -> DVec3 {
-        let (sin, cos) = (u * self.phi_max).sin_cos();
+        let (sin, cos) = libm::sincos(u * self.phi_max);
         DVec3::new(cos, sin, 0.0)
     }
 

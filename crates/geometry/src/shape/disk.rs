@@ -64,7 +64,7 @@ impl Disk {
             return None;
         }
         let p = o + d * t;
-        let distance = p.x.hypot(p.y);
+        let distance = libm::hypot(p.x, p.y);
         let inside = distance <= self.radius && distance >= self.inner_radius && phi(p) <= self.phi_max;
         inside.then(|| ShapeHit { t: t as f32, uv: self.parameters(p) })
     }
@@ -100,7 +100,7 @@ impl Disk {
             q.extend(0.0)
         } else {
             let (r2, i2) = (self.radius * self.radius, self.inner_radius * self.inner_radius);
-            let (sin, cos) = (u.y as f64 * self.phi_max).sin_cos();
+            let (sin, cos) = libm::sincos(u.y as f64 * self.phi_max);
             DVec3::new(cos, sin, 0.0) * (i2 + (r2 - i2) * u.x as f64).sqrt()
         };
         let p = across + DVec3::Z * self.height;
@@ -123,7 +123,7 @@ impl Disk {
 
     /// The point with parameters (u, v) and its unit normal, in object space.
     fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
-        let (sin, cos) = (uv.x as f64 * self.phi_max).sin_cos();
+        let (sin, cos) = libm::sincos(uv.x as f64 * self.phi_max);
         let out = between([self.radius, self.inner_radius], uv.y as f64);
         (DVec3::new(cos * out, sin * out, self.height), DVec3::Z)
     }
@@ -133,7 +133,7 @@ impl Disk {
     }
 
     fn parameters(&self, p: DVec3) -> Vec2 {
-        let v = (self.radius - p.x.hypot(p.y)) / (self.radius - self.inner_radius);
+        let v = (self.radius - libm::hypot(p.x, p.y)) / (self.radius - self.inner_radius);
         Vec2::new((phi(p) / self.phi_max) as f32, v as f32)
     }
 }

@@ -117,7 +117,7 @@ impl Hyperboloid {
     }
 
     fn local(&self, v: f64, phi: f64) -> Local {
-        let (sin, cos) = phi.sin_cos();
+        let (sin, cos) = libm::sincos(phi);
         let turned = |p: DVec3| DVec3::new(p.x * cos - p.y * sin, p.x * sin + p.y * cos, p.z);
         let dpdv = turned(self.to - self.from);
         let p = turned(self.on_line(v));
@@ -157,7 +157,7 @@ impl Hyperboloid {
     /// ∂A/∂v of a radian of the sweep.
     fn area_element(&self, v: f64) -> f64 {
         let (constant, slope) = self.element();
-        constant.hypot(slope * (v - self.waist.1))
+        libm::hypot(constant, slope * (v - self.waist.1))
     }
 
     /// The area of a radian of the sweep between the waist and v; negative below the waist.
@@ -170,7 +170,7 @@ impl Hyperboloid {
         } else {
             constant * (x / constant).asinh() / x * constant
         };
-        0.5 * from_waist * (constant.hypot(x) + bent)
+        0.5 * from_waist * (libm::hypot(constant, x) + bent)
     }
 
     /// e_z·w and |e||ē|.

@@ -25,7 +25,7 @@ impl Level {
     /// (u, v).
     pub fn parameters(&self) -> Vec2 {
         let q = self.p - self.center;
-        let (u, v) = (q.y.atan2(q.x) / TAU, 1.0 - q.x.hypot(q.y).atan2(q.z) / PI);
+        let (u, v) = (libm::atan2(q.y, q.x) / TAU, 1.0 - libm::atan2(libm::hypot(q.x, q.y), q.z) / PI);
         Vec2::new((if u < 0.0 { u + 1.0 } else { u }) as f32, v as f32)
     }
 
@@ -40,7 +40,7 @@ impl Level {
     fn tangents(&self, n: DVec3) -> [DVec3; 2] {
         let q = self.p - self.center;
         let radius = q.length();
-        let across = f64::max(q.x.hypot(q.y), 1e-5 * radius);
+        let across = f64::max(libm::hypot(q.x, q.y), 1e-5 * radius);
         let (cos, sin) = if q.x == 0.0 && q.y == 0.0 { (1.0, 0.0) } else { (q.x / across, q.y / across) };
         let grad_u = DVec3::new(-sin, cos, 0.0) / (across * TAU);
         let grad_v = DVec3::new(-q.z * cos, -q.z * sin, across) / (radius * radius * PI);

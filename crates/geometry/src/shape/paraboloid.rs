@@ -105,14 +105,14 @@ impl Paraboloid {
     }
 
     fn object_area(&self) -> f64 {
-        let [low, high] = self.z.map(|z| (z + 0.25 * self.spread).powf(1.5));
+        let [low, high] = self.z.map(|z| libm::pow(z + 0.25 * self.spread, 1.5));
         self.phi_max * self.spread.sqrt() * (high - low) / 1.5
     }
 
     /// The point at fractions of the area below it and of the angle.
     fn place(&self, u: f64, v: f64) -> DVec3 {
-        let powers = self.z.map(|z| (z + 0.25 * self.spread).powf(1.5));
-        let z = between(powers, u).powf(2.0 / 3.0) - 0.25 * self.spread;
+        let powers = self.z.map(|z| libm::pow(z + 0.25 * self.spread, 1.5));
+        let z = libm::pow(between(powers, u), 2.0 / 3.0) - 0.25 * self.spread;
         self.at_height(z.clamp(self.z[0], self.z[1]), v)
     }
 
@@ -129,7 +129,7 @@ impl Paraboloid {
     }
 
     fn at_height(&self, z: f64, u: f64) -> DVec3 {
-        let (sin, cos) = (u * self.phi_max).sin_cos();
+        let (sin, cos) = libm::sincos(u * self.phi_max);
         let out = (self.spread * z).sqrt();
         DVec3::new(out * cos, out * sin, z)
     }

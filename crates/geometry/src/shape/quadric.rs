@@ -200,7 +200,7 @@ pub(super) fn unrounded(roots: Option<[f64; 2]>, t: f32) -> f64 {
 
 /// The angle of a point around the z axis, in [0, 2π).
 pub(super) fn phi(p: DVec3) -> f64 {
-    let phi = p.y.atan2(p.x);
+    let phi = libm::atan2(p.y, p.x);
     if phi < 0.0 { phi + std::f64::consts::TAU } else { phi }
 }
 

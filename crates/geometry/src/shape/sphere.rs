@@ -46,7 +46,7 @@ impl Sphere {
         let is_whole = z == [-radius, radius] && phi_max >= TAU;
         let scale = quadric.placement.uniform_scale().filter(|_| is_whole);
         let ball = scale.map(|s| (quadric.placement.center(), radius * s));
-        let theta = z.map(|z| (z / radius).clamp(-1.0, 1.0).acos());
+        let theta = z.map(|z| libm::acos((z / radius).clamp(-1.0, 1.0)));
         let mut sphere = Self { quadric, radius, z, theta, phi_max, ball, area: 0.0 };
         sphere.area = match sphere.ball {
             Some((_, r)) => (4.0 * PI * r * r) as f32,
@@ -99,7 +99,7 @@ impl Sphere {
             p.x = 1e-5 * r;
         }
         let height = self.theta[1] - self.theta[0];
-        let across = p.x.hypot(p.y);
+        let across = libm::hypot(p.x, p.y);
         let (cos_phi, sin_phi) = (p.x / across, p.y / across);
         let local = Local {
             p: n * r,
@@ -174,7 +174,7 @@ impl Sphere {
     /// The point with parameters (u, v) and its unit normal, in object space.
     fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
         let theta = between(self.theta, uv.y as f64);
-        let n = direction(theta.cos(), uv.x as f64 * self.phi_max);
+        let n = direction(libm::cos(theta), uv.x as f64 * self.phi_max);
         (n * self.radius, n)
     }
 
@@ -190,7 +190,7 @@ impl Sphere {
     }
 
     fn parameters(&self, p: DVec3) -> Vec2 {
-        let theta = (p.z / self.radius).clamp(-1.0, 1.0).acos();
+        let theta = libm::acos((p.z / self.radius).clamp(-1.0, 1.0));
         let v = (theta - self.theta[0]) / (self.theta[1] - self.theta[0]);
         Vec2::new((phi(p) / self.phi_max) as f32, v as f32)
     }
@@ -212,6 +212,6 @@ impl Cone {
 
 fn direction(cos_theta: f64, phi: f64) -> DVec3 {
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-    let (sin_phi, cos_phi) = phi.sin_cos();
+    let (sin_phi, cos_phi) = libm::sincos(phi);
     DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }

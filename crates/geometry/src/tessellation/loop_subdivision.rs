@@ -174,7 +174,7 @@ impl Mesh {
                 let weighted = |(j, &p): (usize, &DVec3)| p * weight(TAU * j as f64 / n as f64);
                 ring.iter().enumerate().map(weighted).sum::<DVec3>()
             };
-            return sum(f64::sin).cross(sum(f64::cos));
+            return sum(libm::sin).cross(sum(libm::cos));
         }
         let (first, last, p) = (ring[0], ring[n - 1], self.point(vertex));
         let inward = match ring[..] {
@@ -183,8 +183,8 @@ impl Mesh {
             [_, a, b, _] => (a + b) * 2.0 - first - last - p * 2.0,
             _ => {
                 let theta = PI / (n - 1) as f64;
-                let inner = (1..n - 1).map(|k| ring[k] * (k as f64 * theta).sin()).sum::<DVec3>();
-                inner * (2.0 - 2.0 * theta.cos()) - (first + last) * theta.sin()
+                let inner = (1..n - 1).map(|k| ring[k] * libm::sin(k as f64 * theta)).sum::<DVec3>();
+                inner * (2.0 - 2.0 * libm::cos(theta)) - (first + last) * libm::sin(theta)
             }
         };
         (last - first).cross(inward)

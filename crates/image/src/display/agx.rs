@@ -41,7 +41,7 @@ pub(super) fn show(rgb: [f64; 3]) -> [f64; 3] {
 
 /// The position of light on the scale of stops, from 0 to 1.
 fn position(light: f64) -> f64 {
-    let stops = (light.max(f64::MIN_POSITIVE) / GREY).log2();
+    let stops = libm::log2(light.max(f64::MIN_POSITIVE) / GREY);
     ((stops + STOPS[0]) / (STOPS[0] + STOPS[1])).clamp(0.0, 1.0)
 }
 
@@ -52,8 +52,8 @@ fn sigmoid(v: f64) -> f64 {
         false => (v - pivot, 1.0 - pivot, POWERS[1]),
     };
     // So that x = reach gives ½.
-    let bend = ((2.0 * SLOPE * reach).powf(power) - 1.0) / reach.powf(power);
-    let height = SLOPE * x / (1.0 + bend * x.powf(power)).powf(1.0 / power);
+    let bend = (libm::pow(2.0 * SLOPE * reach, power) - 1.0) / libm::pow(reach, power);
+    let height = SLOPE * x / libm::pow(1.0 + bend * libm::pow(x, power), 1.0 / power);
     if v < pivot { 0.5 - height } else { 0.5 + height }
 }
 

@@ -122,7 +122,7 @@ pub struct Display {
 impl Display {
     /// For pictures in this colour space.
     pub fn new(settings: &DisplaySettings, space: &RgbColorSpace) -> Self {
-        let scale = 2.0_f64.powf(settings.exposure.into());
+        let scale = libm::pow(2.0_f64, settings.exposure.into());
         let exposed = Matrix3::diagonal([scale; 3]);
         let balanced = settings.white.map_or(exposed, |white| {
             let balance = white_balance(white.xy(), space.white());

@@ -43,7 +43,7 @@ pub fn hunt_lab_from_rgb(rgb: Vec3) -> Vec3 {
     let c = xyz_from_rgb(rgb) / WHITE;
     let [x, y, z] = c.to_array().map(|t| {
         const DELTA: f32 = 6.0 / 29.0;
-        if t > DELTA.powi(3) { t.cbrt() } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
+        if t > DELTA.powi(3) { lanes::cbrt(t) } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
     });
     let lightness = 116.0 * y - 16.0;
     Vec3::new(lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z))
@@ -52,7 +52,7 @@ pub fn hunt_lab_from_rgb(rgb: Vec3) -> Vec3 {
 /// The HyAB distance: city blocks in lightness, straight in chroma [Abasi 2020].
 pub fn hyab(a: Vec3, b: Vec3) -> f32 {
     let d = (a - b).abs();
-    d.x + d.y.hypot(d.z)
+    d.x + lanes::hypot(d.y, d.z)
 }
 
 /// Relative luminance of linear sRGB.

@@ -74,7 +74,7 @@ pub fn hdr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Resu
     let mut worst = vec![0.0f32; reference_colors.len()];
     for exposure in exposures(&reference_colors) {
         let shown = |colors: &[Vec3]| -> Vec<Vec3> {
-            let scale = exposure.exp2();
+            let scale = libm::exp2f(exposure);
             colors.par_iter().map(|color| tone_map(*color * scale)).collect()
         };
         let map = difference(
@@ -128,7 +128,7 @@ fn exposures(reference: &[Vec3]) -> Vec<f32> {
     // The positive root of n(x) = 0.85 d(x).
     let [a, b, c] = std::array::from_fn(|i| TONE_NUMERATOR[i] - 0.85 * TONE_DENOMINATOR[i]);
     let bright = -0.5 * b / a + (0.25 * (b / a) * (b / a) - c / a).sqrt();
-    let (start, stop) = ((bright / brightest).log2(), (bright / median).log2());
+    let (start, stop) = (lanes::log2(bright / brightest), lanes::log2(bright / median));
     let count = (stop - start).ceil().clamp(2.0, MAX_EXPOSURES);
     (0..count as usize).map(|i| start + i as f32 * (stop - start) / (count - 1.0)).collect()
 }
@@ -146,13 +146,13 @@ fn difference(
     let kernels = Kernels::new(pixels_per_degree);
     let (reference, test) =
         (kernels.perceived(reference, width as usize), kernels.perceived(test, width as usize));
-    let largest = hyab(hunt_lab_from_rgb(Vec3::Y), hunt_lab_from_rgb(Vec3::Z)).powf(0.7);
+    let largest = lanes::pow(hyab(hunt_lab_from_rgb(Vec3::Y), hunt_lab_from_rgb(Vec3::Z)), 0.7);
     let knee = 0.4 * largest;
     Ok(reference
         .par_iter()
         .zip(&test)
         .map(|(reference, test)| {
-            let distance = hyab(reference.lab, test.lab).powf(0.7);
+            let distance = lanes::pow(hyab(reference.lab, test.lab), 0.7);
             let color_difference = if distance < knee {
                 0.95 / knee * distance
             } else {
@@ -160,7 +160,7 @@ fn difference(
             };
             let feature = (reference.edge - test.edge).abs().max((reference.point - test.point).abs());
             let feature_difference = (feature / std::f32::consts::SQRT_2).sqrt();
-            color_difference.powf(1.0 - feature_difference)
+            lanes::pow(color_difference, 1.0 - feature_difference)
         })
         .collect())
 }
@@ -191,7 +191,7 @@ impl Kernels {
         // The radius is three deviations of the widest Gaussian, b = 0.04.
         let radius = (3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
         let gaussian = |radius: i32, b: f32| -> Vec<f32> {
-            (-radius..=radius).map(|x| (-(PI * x as f32 / pixels_per_degree).powi(2) / b).exp()).collect()
+            (-radius..=radius).map(|x| lanes::exp(-(PI * x as f32 / pixels_per_degree).powi(2) / b)).collect()
         };
         // A sum of two separable kernels, normalised as one: the square root of each amplitude goes
         // to each axis.
@@ -204,7 +204,7 @@ impl Kernels {
         let radius_of_features = (3.0 * deviation).ceil() as i32;
         let features = |shape: &dyn Fn(f32) -> f32| -> Vec<f32> {
             let positions = (-radius_of_features..=radius_of_features).map(|x| x as f32 / deviation);
-            positions.map(|x| shape(x) * (-0.5 * x * x).exp()).collect()
+            positions.map(|x| shape(x) * lanes::exp(-0.5 * x * x)).collect()
         };
         Self {
             lightness: balanced(gaussian(radius, 0.0047)),
@@ -229,7 +229,7 @@ impl Kernels {
         let strength = |derivative: &[f32]| -> Vec<f32> {
             let dx = grey.convolved(derivative, &self.gauss).values;
             let dy = grey.convolved(&self.gauss, derivative).values;
-            dx.into_iter().zip(dy).map(|(dx, dy)| dx.hypot(dy)).collect()
+            dx.into_iter().zip(dy).map(|(dx, dy)| lanes::hypot(dx, dy)).collect()
         };
         let (edges, points) = (strength(&self.first_derivative), strength(&self.second_derivative));
         (0..colors.len())

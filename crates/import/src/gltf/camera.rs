@@ -70,9 +70,9 @@ impl Camera {
         let aspect = self.aspect();
         let kind = match *self {
             Self::Perspective { yfov, .. } => {
-                let vertical = (yfov / 2.0).tan();
+                let vertical = libm::tan(yfov / 2.0);
                 // The field of view is that over the shorter side.
-                let fov = 2.0 * (vertical * aspect.min(1.0)).atan();
+                let fov = 2.0 * libm::atan(vertical * aspect.min(1.0));
                 CameraKind::Perspective {
                     fov: (fov.to_degrees() as f32).clamp(1e-3, 179.99),
                     screen: ScreenDesc::default(),

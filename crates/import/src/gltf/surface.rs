@@ -275,7 +275,7 @@ impl Part<'_, '_, '_> {
         let (first, last) = (LAMBDA_MIN as u16, LAMBDA_MAX as u16);
         let sigma_a = (first..=last).step_by(5).map(f32::from).map(|lambda| {
             let left: f32 = left.at(lambda);
-            (lambda, -left.max(1e-4).ln() / volume.distance)
+            (lambda, -libm::logf(left.max(1e-4)) / volume.distance)
         });
         let sigma_a = SpectrumDesc::Samples(sigma_a.collect());
         let coefficients = CoefficientsDesc::Given { sigma_a, sigma_s: 0.0.into(), scale: 1.0 };
@@ -375,10 +375,10 @@ impl Part<'_, '_, '_> {
         for (x, y) in (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y))) {
             let [r, g, _] = image.rgb(x, y);
             let (dx, dy) = (f64::from(2.0 * r - 1.0), f64::from(2.0 * g - 1.0));
-            let length = dx.hypot(dy).max(1e-6);
+            let length = libm::hypot(dx, dy).max(1e-6);
             sum = [sum[0] + dx / length, sum[1] + dy / length];
         }
-        (sum[0].hypot(sum[1]) > 0.99 * count).then(|| sum[1].atan2(sum[0]) as f32)
+        (libm::hypot(sum[0], sum[1]) > 0.99 * count).then(|| libm::atan2(sum[1], sum[0]) as f32)
     }
 
     fn specular(&mut self, surface: &mut Principled) {

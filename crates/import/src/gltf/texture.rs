@@ -41,7 +41,7 @@ impl TextureRef {
             set = moved.integer("texCoord")?.unwrap_or(set);
             let [x, y] = moved.numbers("offset")?.unwrap_or([0.0; 2]);
             let [width, height] = moved.numbers("scale")?.unwrap_or([1.0; 2]);
-            let (sin, cos) = moved.number("rotation")?.unwrap_or(0.0).sin_cos();
+            let (sin, cos) = libm::sincos(moved.number("rotation")?.unwrap_or(0.0));
             // Counter-clockwise where v is down.
             let turn = DMat2::from_cols(DVec2::new(cos, -sin), DVec2::new(sin, cos));
             let scale = DMat2::from_diagonal(DVec2::new(width, height));

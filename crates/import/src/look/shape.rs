@@ -105,7 +105,7 @@ impl Look {
             false => primitive.tangents.iter().map(|&[x, y, z, sign]| (Vec3::new(x, y, z), sign)).collect(),
             true => along_u(primitive, uvs),
         };
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincosf(angle);
         let turned = |((tangent, sign), normal): ((Vec3, f32), &Vec3)| {
             let normal = normal.normalize_or(Vec3::Z);
             tangent * cos + normal.cross(tangent) * (sin * sign.signum())

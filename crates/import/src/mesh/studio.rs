@@ -62,7 +62,7 @@ pub(crate) fn add_camera(desc: &mut SceneDesc, low: DVec3, high: DVec3) -> Axes 
     let direction = -DVec3::new(0.4, 0.35, 1.0).normalize();
     let right = direction.cross(DVec3::Y).normalize();
     let up = right.cross(direction);
-    let eye = center - 1.1 * radius / (FOV / 2.0).to_radians().sin() * direction;
+    let eye = center - 1.1 * radius / libm::sin((FOV / 2.0).to_radians()) * direction;
     // Camera space is left-handed, with x to the right.
     let world_from_camera =
         DMat4::from_cols(right.extend(0.0), up.extend(0.0), direction.extend(0.0), eye.extend(1.0));

@@ -23,7 +23,7 @@ pub(super) fn view(prim: &Prim, world_from_camera: [DMat4; 2]) -> Result<View> {
         None | Some("perspective") => {
             let focal_length = above_zero("focalLength", 50.0)?;
             let shorter = width.min(height);
-            let fov = 2.0 * (shorter / (2.0 * focal_length)).atan();
+            let fov = 2.0 * libm::atan(shorter / (2.0 * focal_length));
             let screen = match [x, y] {
                 [0.0, 0.0] => ScreenDesc::default(),
                 _ => window([x, y], [width, height], shorter / 2.0),

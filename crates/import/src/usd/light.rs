@@ -70,8 +70,8 @@ pub(super) fn read(
             }
             let share = match angle {
                 0.0 => 1.0,
-                angle if angle <= PI / 2.0 => PI * angle.sin().powi(2),
-                angle => PI * (2.0 - angle.sin().powi(2)),
+                angle if angle <= PI / 2.0 => PI * libm::sin(angle).powi(2),
+                angle => PI * (2.0 - libm::sin(angle).powi(2)),
             };
             let illuminance = emission.scale * if emission.is_normalized { 1.0 } else { share };
             let kind =
@@ -191,7 +191,7 @@ fn emission(prim: &Prim, kind: &str) -> Result<Emission> {
     }
     let color = color.map(|v| v.max(0.0));
     let most = color.into_iter().fold(0.0, f64::max);
-    let scale = intensity * exposure.exp2() * most;
+    let scale = intensity * libm::exp2(exposure) * most;
     if !scale.is_finite() {
         return Err(prim.fault("inputs:exposure", "the light has no finite intensity"));
     }
@@ -303,7 +303,7 @@ fn shapes(prim: &Prim, kind: &str, placement: &TransformDesc) -> Result<(Vec<Sol
         }
         _ => {
             let radius = size("radius", 0.5)?;
-            let scale = (scales[0] * scales[1] * scales[2]).powf(2.0 / 3.0);
+            let scale = libm::pow(scales[0] * scales[1] * scales[2], 2.0 / 3.0);
             (vec![solid::sphere(radius)], 4.0 * PI * radius * radius * scale)
         }
     })

@@ -62,7 +62,7 @@ pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
         let cross = a.cross(b);
         let sin = cross.length();
         // An edge that is seen end-on, or has no length, contributes 0.
-        if sin == 0.0 { 0.0 } else { n.dot(cross) / sin * sin.atan2(a.dot(b)) }
+        if sin == 0.0 { 0.0 } else { n.dot(cross) / sin * lanes::atan2(sin, a.dot(b)) }
     };
     // A polygon that is counter-clockwise seen from its emitting side is clockwise about n.
     (0..len).map(side).sum::<f32>() / -TAU

@@ -67,7 +67,7 @@ impl Hemicube {
         let n = self.resolution;
         let step = 2.0 / n as f32;
         let place = move |i: u32| (i as f32 + 0.5) * step - 1.0;
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = lanes::sin_cos(self.angle);
         (0..n).map(move |column| {
             let (d, factor) = if row < n {
                 (Vector3::new(place(column), place(row), 1.0), 1.0)

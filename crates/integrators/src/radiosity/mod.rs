@@ -115,7 +115,7 @@ impl State {
         let RadiosityDesc { steps, tolerance, gather, .. } = self.solution.settings;
         let mut stats = RayStats::default();
         while self.sent < steps.min(pass + 1) {
-            let share = tolerance.powf((self.sent + 1) as f32 / steps as f32);
+            let share = lanes::pow(tolerance, (self.sent + 1) as f32 / steps as f32);
             stats += self.solution.shoot(scene, view, share, control)?;
             self.sent += 1;
         }

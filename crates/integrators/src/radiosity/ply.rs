@@ -97,6 +97,6 @@ fn rgb(solution: &Solution, light: &Bands, color_space: &RgbColorSpace) -> [f32;
 /// The sRGB encoding of a linear value.
 fn shown(x: f32) -> u8 {
     let x = x.clamp(0.0, 1.0);
-    let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * lanes::pow(x, 1.0 / 2.4) - 0.055 };
     (encoded * 255.0 + 0.5) as u8
 }

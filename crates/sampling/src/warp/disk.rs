@@ -40,10 +40,10 @@ pub fn invert_uniform_disk_concentric(p: Vec2) -> Vec2 {
     }
     let q = if p.x.abs() > p.y.abs() {
         let x = r.copysign(p.x);
-        Vec2::new(x, x * (p.y / p.x).atan() / FRAC_PI_4)
+        Vec2::new(x, x * lanes::atan(p.y / p.x) / FRAC_PI_4)
     } else {
         let y = r.copysign(p.y);
-        Vec2::new(y * (p.x / p.y).atan() / FRAC_PI_4, y)
+        Vec2::new(y * lanes::atan(p.x / p.y) / FRAC_PI_4, y)
     };
     0.5 * (q + Vec2::ONE)
 }
@@ -57,6 +57,6 @@ pub fn uniform_disk_pdf() -> f32 {
 /// The angle of (x, y) in turns, in [0, 1).
 #[inline]
 pub(super) fn turn(x: f32, y: f32) -> f32 {
-    let t = y.atan2(x) / TAU;
+    let t = lanes::atan2(y, x) / TAU;
     if t < 0.0 { (t + 1.0).min(math::ONE_MINUS_EPSILON) } else { t }
 }

@@ -66,7 +66,7 @@ pub fn invert_tent(x: f32, r: f32) -> f32 {
 /// Newton's iteration falls from ∛u to the root without passing it.
 #[inline]
 pub fn sample_smooth_step(u: f32, a: f32, b: f32) -> f32 {
-    let mut t = u.cbrt();
+    let mut t = lanes::cbrt(u);
     if t > 0.0 {
         for _ in 0..5 {
             t -= (t * t * t * (2.0 - t) - u) / (t * t * (6.0 - 4.0 * t));
@@ -91,26 +91,26 @@ pub fn invert_smooth_step(x: f32, a: f32, b: f32) -> f32 {
 /// A number in [0, ∞) with density a·e^(−a·x), for a > 0.
 #[inline]
 pub fn sample_exponential(u: f32, a: f32) -> f32 {
-    -(-u).ln_1p() / a
+    -lanes::ln_1p(-u) / a
 }
 
 /// Density of [`sample_exponential`].
 #[inline]
 pub fn exponential_pdf(x: f32, a: f32) -> f32 {
-    if x < 0.0 { 0.0 } else { a * (-a * x).exp() }
+    if x < 0.0 { 0.0 } else { a * lanes::exp(-a * x) }
 }
 
 /// Inverse of [`sample_exponential`].
 #[inline]
 pub fn invert_exponential(x: f32, a: f32) -> f32 {
-    -(-a * x).exp_m1()
+    -lanes::exp_m1(-a * x)
 }
 
 /// Two independent normal variables with mean `mu` and standard deviation `sigma`.
 #[inline]
 pub fn sample_two_normal(u: Vec2, mu: f32, sigma: f32) -> Vec2 {
-    let r = (-2.0 * (-u.x).ln_1p()).sqrt();
-    let (sin, cos) = (TAU * u.y).sin_cos();
+    let r = (-2.0 * lanes::ln_1p(-u.x)).sqrt();
+    let (sin, cos) = lanes::sin_cos(TAU * u.y);
     Vec2::splat(mu) + sigma * r * Vec2::new(cos, sin)
 }
 
@@ -118,5 +118,5 @@ pub fn sample_two_normal(u: Vec2, mu: f32, sigma: f32) -> Vec2 {
 #[inline]
 pub fn normal_pdf(x: f32, mu: f32, sigma: f32) -> f32 {
     let z = (x - mu) / sigma;
-    (-0.5 * z * z).exp() / (sigma * TAU.sqrt())
+    lanes::exp(-0.5 * z * z) / (sigma * TAU.sqrt())
 }

@@ -29,7 +29,7 @@ const SAMPLES: usize = 100;
 
 /// The middle of the share number `i` of an exponential distribution.
 fn free_path(i: usize) -> f64 {
-    -(1.0 - (i as f64 + 0.5) / SAMPLES as f64).ln()
+    -libm::log(1.0 - (i as f64 + 0.5) / SAMPLES as f64)
 }
 
 /// ∫₀¹ Fr(μ) μⁿ dμ for light in the medium that meets its boundary, of relative index `eta` below
@@ -76,11 +76,11 @@ impl HalfSpace {
         let phase = HenyeyGreenstein { g: self.g as f32 };
         let sample = |i| {
             let t = critical + free_path(i);
-            let d = r.hypot(t);
+            let d = libm::hypot(r, t);
             let cosine = t / d;
             let turned = f64::from(phase.p_of_cos(cosine as f32));
             let passes = 1.0 - f64::from(fr_dielectric(-cosine as f32, self.eta as f32));
-            albedo * (-(d + critical)).exp() / (d * d) * turned * passes * cosine
+            albedo * libm::exp(-(d + critical)) / (d * d) * turned * passes * cosine
         };
         (0..SAMPLES).map(sample).sum::<f64>() / SAMPLES as f64
     }
@@ -96,15 +96,15 @@ impl HalfSpace {
         let (by_fluence, by_flux) = (0.25 * (1.0 - 2.0 * f1), 0.5 * (1.0 - 3.0 * f2));
         let sample = |i| {
             let depth = free_path(i) / extinction;
-            let near = r.hypot(depth);
+            let near = libm::hypot(r, depth);
             let source = |z: f64| {
-                let d = r.hypot(z);
-                let share = (-decay * d).exp() / (4.0 * PI * d);
+                let d = libm::hypot(r, z);
+                let share = libm::exp(-decay * d) / (4.0 * PI * d);
                 [share / diffusion, z * (1.0 + decay * d) * share / (d * d)]
             };
             let ([fluence, flux], [fluence_v, flux_v]) = (source(depth), source(2.0 * mirror - depth));
             let leaves = (fluence - fluence_v) * by_fluence + (flux - flux_v) * by_flux;
-            let correction = 1.0 - (-2.0 * extinction * (near + depth)).exp();
+            let correction = 1.0 - libm::exp(-2.0 * extinction * (near + depth));
             correction * reduced * reduced * leaves
         };
         (0..SAMPLES).map(sample).sum::<f64>() / SAMPLES as f64

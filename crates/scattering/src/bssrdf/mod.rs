@@ -165,7 +165,7 @@ impl<'a> Bssrdf<'a> {
     pub fn probe_pdf(&self, n: Normal3, d: Vector3, n_met: Normal3) -> SampledSpectrum {
         let frame = Frame::from_z(n);
         let (d, n_met) = (frame.to_local(d), frame.to_local(n_met));
-        let distances = [d.y.hypot(d.z), d.z.hypot(d.x), d.x.hypot(d.y)];
+        let distances = [lanes::hypot(d.y, d.z), lanes::hypot(d.z, d.x), lanes::hypot(d.x, d.y)];
         let cosines = [n_met.x, n_met.y, n_met.z];
         (0..3).map(|i| self.at_radius(distances[i]).1 * (AXES[i] * cosines[i].abs())).sum()
     }

@@ -41,7 +41,7 @@ impl BssrdfTable {
     /// For the asymmetry `g`, in (−1, 1), and the relative index of refraction `eta`, > 0.
     pub fn new(g: f32, eta: f32) -> Self {
         let medium = HalfSpace::new(f64::from(g), f64::from(eta));
-        let spacing = |i: usize| 1.0 - (-8.0 * i as f64 / (ALBEDOS - 1) as f64).exp();
+        let spacing = |i: usize| 1.0 - libm::exp(-8.0 * i as f64 / (ALBEDOS - 1) as f64);
         let albedos: Vec<f32> = (0..ALBEDOS).map(|i| (spacing(i) / spacing(ALBEDOS - 1)) as f32).collect();
         let progression = (0..RADII - 1).map(|i| (2.5e-3 * 1.2f64.powi(i as i32)) as f32);
         let radii: Vec<f32> = std::iter::once(0.0).chain(progression).collect();

@@ -19,7 +19,7 @@ pub(super) struct ApertureMask(Arc<Image>);
 impl ApertureMask {
     /// A disk that darkens outwards, as exp(−r²) − exp(−1).
     pub fn gaussian() -> Self {
-        Self::shape(|p| ((-p.length_squared()).exp() - (-1.0f32).exp()).max(0.0))
+        Self::shape(|p| (lanes::exp(-p.length_squared()) - lanes::exp(-1.0f32)).max(0.0))
     }
 
     /// A square of half the diameter.
@@ -36,7 +36,7 @@ impl ApertureMask {
     /// A star of five points on the disk's border, one of them to the left.
     pub fn star() -> Self {
         // The pentagram's inner corners lie on a circle of this radius.
-        let inner = (0.4 * PI).cos() / (0.2 * PI).cos();
+        let inner = lanes::cos(0.4 * PI) / lanes::cos(0.2 * PI);
         let corners: [Vec2; 10] =
             std::array::from_fn(|i| on_circle(i as f32 / 10.0) * if i % 2 == 1 { 1.0 } else { inner });
         Self::shape(|p| f32::from(u8::from(is_in_polygon(&corners, p))))
@@ -76,7 +76,7 @@ impl ApertureMask {
 
 /// The point of the unit circle after a fraction of a turn.
 fn on_circle(turn: f32) -> Vec2 {
-    let (y, x) = (2.0 * PI * turn).sin_cos();
+    let (y, x) = lanes::sin_cos(2.0 * PI * turn);
     Vec2::new(x, y)
 }
 

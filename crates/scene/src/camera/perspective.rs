@@ -45,7 +45,7 @@ impl Perspective {
     /// A view of `fov` degrees over [−1, 1] of the screen, whose part `window` is mapped to
     /// `resolution` pixels.
     pub fn new(fov: f32, window: Bounds2, lens: ThinLens, resolution: [u32; 2]) -> Self {
-        let tan_half = (f64::from(fov).to_radians() * 0.5).tan() as f32;
+        let tan_half = libm::tan(f64::from(fov).to_radians() * 0.5) as f32;
         let window = Bounds2 { min: window.min * tan_half, max: window.max * tan_half };
         Self { screen: Screen::new(window, resolution), lens }
     }

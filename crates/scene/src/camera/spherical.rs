@@ -46,7 +46,7 @@ impl Spherical {
         let st = film / self.resolution;
         let z_up = match self.mapping {
             SphericalMapping::EquiRectangular => {
-                let (sin_theta, cos_theta) = (PI * st.y).sin_cos();
+                let (sin_theta, cos_theta) = lanes::sin_cos(PI * st.y);
                 spherical_direction(sin_theta, cos_theta, TAU * st.x)
             }
             SphericalMapping::EqualArea => equal_area_square_to_sphere(wrap_equal_area_square(st)),
@@ -76,8 +76,8 @@ impl Spherical {
         let z_up = Vec3::new(d.x, d.z, d.y);
         let (st, solid_angle) = match self.mapping {
             SphericalMapping::EquiRectangular => {
-                let sin_theta = d.x.hypot(d.z);
-                let theta = sin_theta.atan2(d.y);
+                let sin_theta = lanes::hypot(d.x, d.z);
+                let theta = lanes::atan2(sin_theta, d.y);
                 (Vec2::new(spherical_phi(z_up) / TAU, theta / PI), 2.0 * PI * PI * sin_theta)
             }
             SphericalMapping::EqualArea => (equal_area_sphere_to_square(z_up), 4.0 * PI),

@@ -77,9 +77,9 @@ impl Compiler<'_> {
                 Light::Point(PointLight { p: place(*from), motion, intensity })
             }
             LightKind::Spot { intensity, power, from, to, cone_angle, cone_delta_angle } => {
-                let cos_falloff_end = cone_angle.to_radians().cos();
+                let cos_falloff_end = lanes::cos(cone_angle.to_radians());
                 let cos_falloff_start =
-                    (cone_angle - cone_delta_angle).to_radians().cos().max(cos_falloff_end);
+                    lanes::cos((cone_angle - cone_delta_angle).to_radians()).max(cos_falloff_end);
                 let unit = SpotLight::effective_solid_angle(cos_falloff_start, cos_falloff_end);
                 let intensity = self.intensity(intensity, desc.scale, *power, unit, origin);
                 let axis = self.direction(&placement, *to - *from, origin)?;

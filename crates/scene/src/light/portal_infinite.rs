@@ -92,13 +92,13 @@ impl Portal {
     /// scene.
     fn position(&self, w: Vector3) -> Option<Point2> {
         let w = self.frame.to_local(w);
-        (w.z > 0.0).then(|| Vec2::new((w.x / w.z).atan(), (w.y / w.z).atan()) / PI + 0.5)
+        (w.z > 0.0).then(|| Vec2::new(lanes::atan(w.x / w.z), lanes::atan(w.y / w.z)) / PI + 0.5)
     }
 
     /// The local unit direction of a position, and solid angle per area there.
     fn local_direction(st: Point2) -> (Vector3, f32) {
         let tangent = (st - 0.5) * PI;
-        let w = Vec3::new(tangent.x.tan(), tangent.y.tan(), 1.0).normalize();
+        let w = Vec3::new(libm::tanf(tangent.x), libm::tanf(tangent.y), 1.0).normalize();
         (w, PI * PI * (w.x * w.x + w.z * w.z) * (w.y * w.y + w.z * w.z) / w.z)
     }
 

@@ -41,7 +41,7 @@ pub struct Slide {
 impl Slide {
     /// The slide whose shorter side is seen under `fov` degrees.
     pub fn new(image: EmissionImage, fov: f32) -> Self {
-        let half = (0.5 * fov).to_radians().tan();
+        let half = libm::tanf((0.5 * fov).to_radians());
         let [width, height] = [image.image.width() as f32, image.image.height() as f32];
         let corner = Vec2::new(width, height) * (half / width.min(height));
         Self { image, screen: Bounds2::new(-corner, corner) }

@@ -18,19 +18,19 @@ impl Screen {
 
     /// The rectangle between angles about the y and the x axis, in −π/2 … π/2.
     pub fn between_angles(min: [f64; 2], max: [f64; 2]) -> Self {
-        Self { min: min.map(f64::tan), max: max.map(f64::tan) }
+        Self { min: min.map(libm::tan), max: max.map(libm::tan) }
     }
 
     /// Its solid angle, ∫ cos³θ dA.
     pub fn solid_angle(&self) -> f64 {
-        self.integral(|x, y| (x * y / (1.0 + x * x + y * y).sqrt()).atan())
+        self.integral(|x, y| libm::atan(x * y / (1.0 + x * x + y * y).sqrt()))
     }
 
     /// Its solid angle weighted by the cosine with z, ∫ cos⁴θ dA.
     pub fn projected_solid_angle(&self) -> f64 {
         let term = |x: f64, y: f64| {
             let root = (1.0 + x * x).sqrt();
-            x / root * (y / root).atan()
+            x / root * libm::atan(y / root)
         };
         self.integral(|x, y| 0.5 * (term(x, y) + term(y, x)))
     }
@@ -65,7 +65,7 @@ mod tests {
             let at = |i: u32, axis: usize| {
                 min[axis] + (f64::from(i) + 0.5) / f64::from(count) * (max[axis] - min[axis])
             };
-            let [x, y] = [at(i % count, 0), at(i / count, 1)].map(f64::tan);
+            let [x, y] = [at(i % count, 0), at(i / count, 1)].map(libm::tan);
             // dA = (1 + x²)(1 + y²) dα dβ.
             let r2 = 1.0 + x * x + y * y;
             let area = (1.0 + x * x) * (1.0 + y * y);

@@ -129,7 +129,7 @@ impl LightModel for SpotLight {
             phi: 4.0 * PI * self.intensity.max_value(),
             cos_theta_o: if self.motion.is_some() { -1.0 } else { self.cos_falloff_start },
             // A margin for rounding, so that points just inside of the edge keep some importance.
-            cos_theta_e: edge.cos().min(0.999),
+            cos_theta_e: lanes::cos(edge).min(0.999),
             two_sided: false,
         })
     }

@@ -339,7 +339,7 @@ fn cost(b: &LightBounds, parent: &Bounds3, axis: usize) -> f32 {
     let sin_o = safe_sqrt(1.0 - b.cos_theta_o * b.cos_theta_o);
     let solid_angle = 2.0 * PI * (1.0 - b.cos_theta_o)
         + PI / 2.0
-            * (2.0 * theta_w * sin_o - (theta_o - 2.0 * theta_w).cos() - 2.0 * theta_o * sin_o
+            * (2.0 * theta_w * sin_o - lanes::cos(theta_o - 2.0 * theta_w) - 2.0 * theta_o * sin_o
                 + b.cos_theta_o);
     let d = parent.diagonal();
     let regular = d.max_element() / d[axis];

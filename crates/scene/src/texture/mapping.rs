@@ -130,7 +130,7 @@ impl Mapping2d {
             Self::Spherical { texture_from_render } => {
                 let at = Mapping3d { texture_from_render: *texture_from_render }.map(ctx);
                 let p = at.p;
-                let (rho2, rho) = (sqr(p.x) + sqr(p.y), p.x.hypot(p.y));
+                let (rho2, rho) = (sqr(p.x) + sqr(p.y), lanes::hypot(p.x, p.y));
                 let dsdp = Vec3::new(p.x * p.z / rho, p.y * p.z / rho, -rho) / (PI * p.length_squared());
                 let dtdp = Vec3::new(-p.y, p.x, 0.0) / (TAU * rho2);
                 let direction = p.normalize_or_zero();
@@ -141,7 +141,7 @@ impl Mapping2d {
                 let at = Mapping3d { texture_from_render: *texture_from_render }.map(ctx);
                 let p = at.p;
                 let dsdp = Vec3::new(-p.y, p.x, 0.0) / (TAU * (sqr(p.x) + sqr(p.y)));
-                at.onto(Vec2::new((PI + p.y.atan2(p.x)) / TAU, p.z), [dsdp, Vec3::Z])
+                at.onto(Vec2::new((PI + lanes::atan2(p.y, p.x)) / TAU, p.z), [dsdp, Vec3::Z])
             }
             Self::Planar { texture_from_render, axes, delta } => {
                 let at = Mapping3d { texture_from_render: *texture_from_render }.map(ctx);

@@ -39,6 +39,28 @@ const NOT_IN_LIBRARIES: [(&str, &str); 6] = [
     ("process::abort", "libraries return errors, and programs exit"),
 ];
 
+/// Where pictures are made, so that the same input gives the same bits on every platform: functions
+/// of the standard library are those of the platform's C library.
+const PICTURES: [&str; 11] = [
+    "crates/math/",
+    "crates/spectrum/",
+    "crates/sampling/",
+    "crates/image/",
+    "crates/geometry/",
+    "crates/scattering/",
+    "crates/planet/",
+    "crates/import/",
+    "crates/scene/",
+    "crates/film/",
+    "crates/integrators/",
+];
+
+/// Functions of the standard library that differ among platforms, as methods and by their paths.
+const OF_THE_PLATFORM: [&str; 21] = [
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "sinh", "cosh", "tanh", "exp", "exp2",
+    "exp_m1", "ln", "ln_1p", "log2", "log10", "powf", "cbrt", "hypot",
+];
+
 /// File system access.
 const FILES: [&str; 5] = ["std::fs", "fs::read", "File::open", "File::create", "OpenOptions"];
 
@@ -61,13 +83,20 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
             findings.push(Finding::new(path, line, format!("`{}`: {instead}", word.trim())));
         });
     }
-    let library = path.contains("/src/") && outside(&PROGRAMS) && !path.ends_with("/tests.rs");
+    let is_test = path.ends_with("tests.rs") || path.contains("/tests/");
+    let library = path.contains("/src/") && outside(&PROGRAMS) && !is_test;
     if library {
         let code = rust::without_tests(&code);
         each_word(&code, &NOT_IN_LIBRARIES, |line, word, instead| {
             findings.push(Finding::new(path, line, format!("`{word}` in a library: {instead}")));
         });
         for (number, line) in code.lines().enumerate() {
+            if !outside(&PICTURES)
+                && let Some(function) = of_the_platform(line)
+            {
+                let message = format!("`{function}` differs among platforms: take that of `lanes` or `libm`");
+                findings.push(Finding::new(path, number + 1, message));
+            }
             if outside(&FILE_READERS) && FILES.iter().any(|word| finds(line, word)) {
                 let message = "files are read by image codecs, the importer's AssetSource and shells alone";
                 findings.push(Finding::new(path, number + 1, message));
@@ -94,6 +123,15 @@ fn each_word(code: &str, table: &[(&str, &str)], mut found: impl FnMut(usize, &s
 fn finds(line: &str, word: &str) -> bool {
     line.match_indices(word)
         .any(|(at, _)| !line[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_'))
+}
+
+/// The function of the platform's library that a line calls or names, if any.
+fn of_the_platform(line: &str) -> Option<&'static str> {
+    let calls = |name: &&str| {
+        line.contains(&format!(".{name}("))
+            || ["f32", "f64"].iter().any(|float| finds(line, &format!("{float}::{name}")))
+    };
+    OF_THE_PLATFORM.into_iter().find(calls)
 }
 
 /// Whether an item starts with these words, after its visibility.
@@ -143,6 +181,17 @@ mod tests {
         assert_eq!(found("crates/math/tests/a.rs", "#[ignore = \"slow: an hour\"]"), 0);
         assert_eq!(found("crates/lanes/src/a.rs", "unsafe { a() }"), 0);
         assert_eq!(found("crates/geometry/src/shape/a.rs", "unsafe { a() }"), 1);
+    }
+
+    #[test]
+    fn pictures_take_no_functions_of_the_platform() {
+        for code in ["let a = b.sin();\n", "let a = (2.0 * b).atan2(c);\n", "let a = b.map(f64::exp);\n"] {
+            assert_eq!(found("crates/scene/src/a.rs", code), 1, "{code}");
+            assert_eq!(found("crates/cli/src/a.rs", code), 0, "{code}");
+        }
+        for code in ["let a = lanes::sin(b);\n", "let a = libm::exp(b);\n", "let a = b.since(c);\n"] {
+            assert_eq!(found("crates/scene/src/a.rs", code), 0, "{code}");
+        }
     }
 
     #[test]

@@ -203,20 +203,20 @@ impl Number for Interval {
             Function::Abs if self.low >= 0.0 => self,
             Function::Abs if self.high <= 0.0 => -self,
             Function::Abs => Self::new(0.0, f64::max(-self.low, self.high)),
-            Function::Sin => self.wave(f64::sin, 0.25),
-            Function::Cos => self.wave(f64::cos, 0.0),
+            Function::Sin => self.wave(libm::sin, 0.25),
+            Function::Cos => self.wave(libm::cos, 0.0),
             Function::Exp => {
-                let raised = self.rising(f64::exp);
+                let raised = self.rising(libm::exp);
                 Self { low: f64::max(raised.low, 0.0), ..raised }
             }
-            Function::Log => positive().rising(f64::ln),
+            Function::Log => positive().rising(libm::log),
             Function::Real(p) => {
                 let base = positive();
                 if base.is_empty() {
                     return Self::EMPTY;
                 }
                 let base = if p < 0.0 { Self { low: base.high, high: base.low } } else { base };
-                let raised = base.rising(|x| x.powf(p));
+                let raised = base.rising(|x| libm::pow(x, p));
                 Self { low: f64::max(raised.low, 0.0), ..raised }
             }
         }

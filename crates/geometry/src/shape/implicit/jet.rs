@@ -106,11 +106,13 @@ impl Number for Jet {
                 [root, 0.5 / root, -0.25 / (root * x)]
             }
             Function::Abs => [x.abs(), x.signum(), 0.0],
-            Function::Sin => [x.sin(), x.cos(), -x.sin()],
-            Function::Cos => [x.cos(), -x.sin(), -x.cos()],
-            Function::Exp => [x.exp(); 3],
-            Function::Log => [x.ln(), 1.0 / x, -1.0 / (x * x)],
-            Function::Real(p) => [x.powf(p), p * x.powf(p - 1.0), p * (p - 1.0) * x.powf(p - 2.0)],
+            Function::Sin => [libm::sin(x), libm::cos(x), -libm::sin(x)],
+            Function::Cos => [libm::cos(x), -libm::sin(x), -libm::cos(x)],
+            Function::Exp => [libm::exp(x); 3],
+            Function::Log => [libm::log(x), 1.0 / x, -1.0 / (x * x)],
+            Function::Real(p) => {
+                [libm::pow(x, p), p * libm::pow(x, p - 1.0), p * (p - 1.0) * libm::pow(x, p - 2.0)]
+            }
         })
     }
 }

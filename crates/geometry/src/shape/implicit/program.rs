@@ -80,11 +80,11 @@ impl Number for f64 {
             Function::Reciprocal => 1.0 / self,
             Function::Sqrt => self.sqrt(),
             Function::Abs => self.abs(),
-            Function::Sin => self.sin(),
-            Function::Cos => self.cos(),
-            Function::Exp => self.exp(),
-            Function::Log => self.ln(),
-            Function::Real(p) => self.powf(p),
+            Function::Sin => libm::sin(self),
+            Function::Cos => libm::cos(self),
+            Function::Exp => libm::exp(self),
+            Function::Log => libm::log(self),
+            Function::Real(p) => libm::pow(self, p),
         };
         // A pole has no value.
         if self == 0.0 && value.is_infinite() { f64::NAN } else { value }
@@ -265,7 +265,7 @@ impl Builder {
 
     pub fn pow(&mut self, a: Value, b: Value) -> Result<Value, TooLong> {
         match (a, b) {
-            (Value::Known(a), Value::Known(p)) => Ok(Value::Known(a.powf(p))),
+            (Value::Known(a), Value::Known(p)) => Ok(Value::Known(libm::pow(a, p))),
             (Value::Step(step), Value::Known(p)) => {
                 if p.fract() != 0.0 || p.abs() > Self::MAX_POWER as f64 {
                     return self.apply(if p == 0.5 { Function::Sqrt } else { Function::Real(p) }, a);

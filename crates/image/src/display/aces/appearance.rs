@@ -77,7 +77,7 @@ impl Appearance {
         let adaptation = Matrix3::diagonal(cones.apply([1.0; 3]).map(|c| REFERENCE / c));
         let cones_from_rgb = adaptation * cones;
         let k4 = (1.0 / (5.0 * ADAPTING + 1.0)).powi(4);
-        let f_l = 0.2 * k4 * (5.0 * ADAPTING) + 0.1 * (1.0 - k4).powi(2) * (5.0 * ADAPTING).cbrt();
+        let f_l = 0.2 * k4 * (5.0 * ADAPTING) + 0.1 * (1.0 - k4).powi(2) * libm::cbrt(5.0 * ADAPTING);
         let f_l = f_l / REFERENCE;
         let white = response(REFERENCE, f_l);
         let m = 43.0 * SURROUND[1];
@@ -106,37 +106,41 @@ impl Appearance {
         if a <= 0.0 {
             return Jmh { j: 0.0, m: 0.0, h: 0.0 };
         }
-        Jmh { j: 100.0 * a.powf(gamma()), m: x.hypot(y), h: y.atan2(x).to_degrees().rem_euclid(360.0) }
+        Jmh {
+            j: 100.0 * libm::pow(a, gamma()),
+            m: libm::hypot(x, y),
+            h: libm::atan2(y, x).to_degrees().rem_euclid(360.0),
+        }
     }
 
     /// The colour that appears so.
     pub fn rgb(&self, Jmh { j, m, h }: Jmh) -> [f64; 3] {
-        let (sin, cos) = h.to_radians().sin_cos();
-        let a = (j / 100.0).max(0.0).powf(1.0 / gamma());
+        let (sin, cos) = libm::sincos(h.to_radians());
+        let a = libm::pow((j / 100.0).max(0.0), 1.0 / gamma());
         let responses = self.response_from_aab.apply([a, m * cos, m * sin]);
         self.rgb_from_cones.apply(responses.map(|r| light(r, self.f_l)))
     }
 
     /// The lightness of grey of this luminance in nits.
     pub fn lightness(&self, luminance: f64) -> f64 {
-        100.0 * (response(luminance, self.f_l) / self.white).powf(gamma())
+        100.0 * libm::pow(response(luminance, self.f_l) / self.white, gamma())
     }
 
     /// The luminance of grey of this lightness, in nits.
     pub fn luminance(&self, lightness: f64) -> f64 {
-        light(self.white * (lightness / 100.0).max(0.0).powf(1.0 / gamma()), self.f_l)
+        light(self.white * libm::pow((lightness / 100.0).max(0.0), 1.0 / gamma()), self.f_l)
     }
 }
 
 fn response(c: f64, f_l: f64) -> f64 {
-    let x = (c.abs() * f_l).powf(0.42);
+    let x = libm::pow(c.abs() * f_l, 0.42);
     (400.0 * x / (27.13 + x)).copysign(c)
 }
 
 /// The inverse of [`response`].
 fn light(r: f64, f_l: f64) -> f64 {
     let x = 27.13 * r.abs() / (400.0 - r.abs()).max(1e-9);
-    (x.powf(1.0 / 0.42) / f_l).copysign(r)
+    (libm::pow(x, 1.0 / 0.42) / f_l).copysign(r)
 }
 
 #[cfg(test)]

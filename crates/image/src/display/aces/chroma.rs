@@ -26,7 +26,7 @@ impl ChromaCompression {
     pub fn new(input: &Appearance) -> Self {
         let peak = input.lightness(PEAK);
         let reach = std::array::from_fn(|degree| largest_colourfulness(input, peak, degree as f64));
-        Self { reach, peak, scale: (0.033_79 * PEAK).powf(0.305_96) - 0.451_35 }
+        Self { reach, peak, scale: libm::pow(0.033_79 * PEAK, 0.305_96) - 0.451_35 }
     }
 
     /// The largest colourfulness of the input at this hue, at the lightness of the peak.
@@ -44,8 +44,8 @@ impl ChromaCompression {
         let (light, gamma) = (j / self.peak, 1.0 / gamma());
         let dark = (1.0 - light).max(0.0);
         let norm = self.norm(h);
-        let limit = light.powf(gamma) * self.reach(h) / norm;
-        let m = m * (j / j_scene).powf(gamma) / norm;
+        let limit = libm::pow(light, gamma) * self.reach(h) / norm;
+        let m = m * libm::pow(j / j_scene, gamma) / norm;
         let m = limit
             - toe(
                 limit - m,
@@ -63,7 +63,7 @@ impl ChromaCompression {
         const COS: [f64; 3] = [11.340_72, 16.468_99, 7.883_80];
         const SIN: [f64; 3] = [14.664_41, -6.372_24, 9.193_64];
         let harmonics = (0..3).map(|i| {
-            let (sin, cos) = ((i + 1) as f64 * hue.to_radians()).sin_cos();
+            let (sin, cos) = libm::sincos((i + 1) as f64 * hue.to_radians());
             COS[i] * cos + SIN[i] * sin
         });
         (harmonics.sum::<f64>() + 77.128_96) * self.scale

@@ -115,8 +115,10 @@ impl GamutCompression {
         let bend = cusp + (self.peak - cusp) * FLATTENING[0];
         let gain = match j > bend {
             true => {
-                ((self.peak - bend) / (self.peak - j.min(self.peak)).max(0.0001)).log10().powf(FLATTENING[1])
-                    + 1.0
+                libm::pow(
+                    libm::log10((self.peak - bend) / (self.peak - j.min(self.peak)).max(0.0001)),
+                    FLATTENING[1],
+                ) + 1.0
             }
             false => 1.0,
         };
@@ -190,7 +192,7 @@ struct Line {
 /// Where a line meets the boundary J = j (M/m)^(1/inverse), about: `reference` is the start of the
 /// line through (j, m).
 fn intersection(line: &Line, inverse: f64, [j, m]: [f64; 2], reference: f64) -> f64 {
-    let start = reference * (line.start / reference).powf(inverse);
+    let start = reference * libm::pow(line.start / reference, inverse);
     start / (j / m - line.slope)
 }
 

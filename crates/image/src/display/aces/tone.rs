@@ -31,16 +31,16 @@ impl ToneScale {
         // What f has to be for an output of y, as a fraction of the peak.
         let before_toe = |y: f64| 0.5 * (y + (y * (y + 4.0 * TOE)).sqrt());
         let top = before_toe(1.0);
-        let m = top / (ROOF / top / (ROOF / top + 1.0)).powf(CONTRAST);
-        let grey = (before_toe(GREY[1] / PEAK) / m).powf(1.0 / CONTRAST);
+        let m = top / libm::pow(ROOF / top / (ROOF / top + 1.0), CONTRAST);
+        let grey = libm::pow(before_toe(GREY[1] / PEAK) / m, 1.0 / CONTRAST);
         let w = GREY[0] / (top * grey / (1.0 - grey));
-        let m2 = top / (ROOF / top / (ROOF / top + w)).powf(CONTRAST);
+        let m2 = top / libm::pow(ROOF / top / (ROOF / top + w), CONTRAST);
         Self { s2: w * top * 100.0, m2 }
     }
 
     /// The display's luminance for the scene's, in nits where diffuse white has 100.
     pub fn luminance(&self, y: f64) -> f64 {
-        let f = self.m2 * (y / (y + self.s2)).powf(CONTRAST);
+        let f = self.m2 * libm::pow(y / (y + self.s2), CONTRAST);
         f * f / (f + TOE) * PEAK
     }
 

@@ -27,7 +27,7 @@ pub fn inner_reflectance(eta: f32, thickness: f32) -> f32 {
     const STEPS: usize = 512;
     let step = |i: usize| {
         let mu = (i as f32 + 0.5) / STEPS as f32;
-        (2.0 * mu * fr_dielectric(-mu, eta) * (-2.0 * thickness / mu).exp()) as f64
+        (2.0 * mu * fr_dielectric(-mu, eta) * lanes::exp(-2.0 * thickness / mu)) as f64
     };
     ((0..STEPS).map(step).sum::<f64>() / STEPS as f64) as f32
 }

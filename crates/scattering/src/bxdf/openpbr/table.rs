@@ -349,7 +349,7 @@ impl OpenPbrTable {
         let mut means = Means::default();
         let steps = if self.azimuths > 1 { STEPS } else { 1 };
         for i in 0..steps {
-            let cos_phi = (FRAC_PI_2 * (i as f32 + 0.5) / steps as f32).cos();
+            let cos_phi = lanes::cos(FRAC_PI_2 * (i as f32 + 0.5) / steps as f32);
             for (cosine, weight) in nodes() {
                 let weight = weight / steps as f32;
                 let (mut taken, mut inside) = (Taken::default(), Inside::default());
