@@ -7,19 +7,23 @@ use math::{Vec2, Vec3, Vector3};
 use sampling::HashSequence;
 use sampling::warp::sample_cosine_hemisphere;
 use scattering::{
-    Conductor, Dielectric, Diffuse, Directions, Hair, HenyeyGreenstein, Layered, Scatter, TransportMode,
-    TrowbridgeReitz, inner_reflectance,
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Directions, Hair, HenyeyGreenstein, Layered,
+    Measured, MeasuredData, MeasuredGrid, MeasuredTable, OpenPbr, OpenPbrParameters, OpenPbrTable, Scatter,
+    ThinDielectric, TransportMode, TrowbridgeReitz, inner_reflectance,
 };
-use spectrum::SampledSpectrum;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::f32::consts::FRAC_PI_2;
 use std::hint::black_box;
 
 const HITS: usize = 1024;
 
 /// A surface that can be made for any number of lanes.
 trait Surface {
-    type Bxdf<R: Real>: Scatter<R>;
+    type Bxdf<'a, R: Real>: Scatter<R>
+    where
+        Self: 'a;
 
-    fn bxdf<R: Real>(&self, seed: R::Int) -> Self::Bxdf<R>;
+    fn bxdf<R: Real>(&self, seed: R::Int) -> Self::Bxdf<'_, R>;
 }
 
 fn grey<R: Real>(value: f32) -> SampledSpectrum<R> {
@@ -51,10 +55,10 @@ macro_rules! surfaces {
         struct $name;
 
         impl Surface for $name {
-            type Bxdf<$real: Real> = $bxdf;
+            type Bxdf<'a, $real: Real> = $bxdf;
 
             #[inline(always)]
-            fn bxdf<$real: Real>(&self, $seed: $real::Int) -> Self::Bxdf<$real> {
+            fn bxdf<$real: Real>(&self, $seed: $real::Int) -> Self::Bxdf<'_, $real> {
                 $value
             }
         }
@@ -64,6 +68,9 @@ macro_rules! surfaces {
 surfaces! {
     Matte(_seed, R) -> Diffuse<R> = Diffuse { reflectance: grey(0.5) };
     Metal(_seed, R) -> Conductor<R> = metal();
+    Leaf(_seed, R) -> DiffuseTransmission<R> =
+        DiffuseTransmission { reflectance: grey(0.4), transmittance: grey(0.3) };
+    Pane(_seed, R) -> ThinDielectric<R> = ThinDielectric { eta: R::splat(1.5) };
     Glass(_seed, R) -> Dielectric<R> = Dielectric { eta: R::splat(1.5), distribution: facets(0.2) };
     Satin(seed, R) -> Layered<Diffuse<R>, R> = coat(Diffuse { reflectance: grey(0.5) }, 0.2, -1.0, seed);
     Lacquered(seed, R) -> Layered<Conductor<R>, R> = coat(metal(), 0.1, -1.0, seed);
@@ -75,11 +82,74 @@ surfaces! {
 struct Glazed(f32);
 
 impl Surface for Glazed {
-    type Bxdf<R: Real> = Layered<Diffuse<R>, R>;
+    type Bxdf<'a, R: Real> = Layered<Diffuse<R>, R>;
 
     #[inline(always)]
-    fn bxdf<R: Real>(&self, seed: R::Int) -> Self::Bxdf<R> {
+    fn bxdf<R: Real>(&self, seed: R::Int) -> Self::Bxdf<'_, R> {
         coat(Diffuse { reflectance: grey(0.5) }, 0.0, self.0, seed)
+    }
+}
+
+#[inline(always)]
+fn wavelengths<R: Real>() -> SampledWavelengths<R> {
+    SampledWavelengths::new([450.0, 520.0, 580.0, 640.0].map(R::splat), [R::one(); 4])
+}
+
+/// A measured surface, as large as files of spectra are.
+impl Surface for MeasuredTable {
+    type Bxdf<'a, R: Real> = Measured<'a, R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(&self, _: R::Int) -> Measured<'_, R> {
+        Measured::new(self, &wavelengths())
+    }
+}
+
+fn measured() -> MeasuredTable {
+    let theta: Vec<f32> = (0..8).map(|i| FRAC_PI_2 * i as f32 / 7.0).collect();
+    let wavelengths: Vec<f32> = (0..195).map(|i| 360.0 + 3.2 * i as f32).collect();
+    let grid = |layers: usize| MeasuredGrid { size: [32, 32], values: vec![0.7; layers * 32 * 32] };
+    let data = MeasuredData {
+        ndf: grid(1),
+        sigma: grid(1),
+        vndf: grid(theta.len()),
+        luminance: grid(theta.len()),
+        values: grid(theta.len() * wavelengths.len()),
+        phi: vec![0.0],
+        wavelengths: Some(wavelengths),
+        theta,
+    };
+    MeasuredTable::new(data).expect("tables that fit")
+}
+
+/// A principled surface by its shares of metal, glass, coat, fuzz and film, with its table.
+struct Principled([f32; 5], OpenPbrTable);
+
+impl Principled {
+    fn new(shares: [f32; 5]) -> Self {
+        let parameters = principled(shares);
+        Self(shares, OpenPbrTable::new(&parameters, &parameters))
+    }
+}
+
+#[inline(always)]
+fn principled<R: Real>([metal, glass, coat, fuzz, film]: [f32; 5]) -> OpenPbrParameters<R> {
+    OpenPbrParameters {
+        base_metalness: R::splat(metal),
+        transmission_weight: R::splat(glass),
+        coat_weight: R::splat(coat),
+        fuzz_weight: R::splat(fuzz),
+        thin_film_weight: R::splat(film),
+        ..OpenPbrParameters::default()
+    }
+}
+
+impl Surface for Principled {
+    type Bxdf<'a, R: Real> = OpenPbr<'a, R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(&self, _: R::Int) -> OpenPbr<'_, R> {
+        OpenPbr::new(&self.1, &principled(self.0), &wavelengths())
     }
 }
 
@@ -133,7 +203,15 @@ fn hits(c: &mut Criterion) {
     measure(c, "coated diffuse, smooth", Glazed(inner_reflectance(1.5, 0.01)));
     measure(c, "coated diffuse, rough", Satin);
     measure(c, "coated conductor", Lacquered);
+    measure(c, "diffuse transmission", Leaf);
+    measure(c, "thin dielectric", Pane);
     measure(c, "hair", Fibre);
+    measure(c, "measured", measured());
+    measure(c, "openpbr", Principled::new([0.0; 5]));
+    measure(c, "openpbr, half metal, coated", Principled::new([0.5, 0.0, 1.0, 0.0, 0.0]));
+    measure(c, "openpbr, fuzz", Principled::new([0.0, 0.0, 0.0, 1.0, 0.0]));
+    measure(c, "openpbr, glass", Principled::new([0.0, 1.0, 0.0, 0.0, 0.0]));
+    measure(c, "openpbr, film", Principled::new([0.0, 0.0, 0.0, 0.0, 1.0]));
 }
 
 criterion_group!(scattering_hits, hits);
