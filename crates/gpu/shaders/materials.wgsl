@@ -126,7 +126,7 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
             bsdf.b /= bsdf.eta;
         }
         case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]); }
-        case PRINCIPLED: { bsdf.surface = openpbr_at(tables[at + 4], values, *lambda); }
+        case PRINCIPLED: { bsdf.surface = openpbr_at(tables[at + 4], values, context.uv, lambda); }
         default: {}
     }
     if (HAS_HAIR && bsdf.kind == HAIR) {

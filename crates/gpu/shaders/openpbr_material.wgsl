@@ -3,8 +3,26 @@
 // The most textures of a material.
 const MOST_TEXTURES = 30u;
 
-// The surface of a record, given what its textures are at the point.
-fn openpbr_at(at: u32, textures: array<vec4f, MOST_TEXTURES>, lambda: SampledWavelengths) -> OpenPbr {
+// The normal of the coat in the shading frame of the base; that of the base where it would be below.
+fn coat_normal(at: u32, uv: vec2f) -> vec3f {
+    var normals = array(vec3f(0, 0, 1), vec3f(0, 0, 1));
+    for (var i = 0u; i < 2; i++) {
+        if (tables[at + 33 + i] != 0) {
+            normals[i] = mapped_normal(tables[at + 33 + i], uv);
+        }
+    }
+    let normal = Frame_to_local(Frame_from_z_and_x(normals[1], vec3f(1, 0, 0)), normals[0]);
+    return select(vec3f(0, 0, 1), normal, normal.z > 0);
+}
+
+// The surface of a record at a point, given what its textures are there. Where it disperses, the
+// secondary wavelengths are terminated.
+fn openpbr_at(
+    at: u32,
+    textures: array<vec4f, MOST_TEXTURES>,
+    uv: vec2f,
+    lambda: ptr<function, SampledWavelengths>,
+) -> OpenPbr {
     var values = textures;
     var colors: array<vec4f, 6>;
     for (var i = 0u; i < 6; i++) {
@@ -19,7 +37,7 @@ fn openpbr_at(at: u32, textures: array<vec4f, MOST_TEXTURES>, lambda: SampledWav
         n[i] = number(at + 9 + i);
     }
     for (var i = 0u; i < tables[at + 2]; i++) {
-        let number_at = at + 33 + 3 * i;
+        let number_at = at + 35 + 3 * i;
         n[tables[number_at]] = clamp(values[i].x, number(number_at + 1), number(number_at + 2));
     }
     let is_thin = tables[at] == 1;
@@ -27,10 +45,18 @@ fn openpbr_at(at: u32, textures: array<vec4f, MOST_TEXTURES>, lambda: SampledWav
         // The medium inside absorbs instead of the boundary.
         colors[2] = vec4f(1);
     }
+    var coat_normal_here = vec3f(0, 0, 1);
+    if ((tables[at + 33] | tables[at + 34]) != 0 && n[14] > 0) {
+        coat_normal_here = coat_normal(at, uv);
+    }
+    if (!is_thin && n[7] > 0 && n[9] > 0) {
+        n[6] = real_max(cauchy(n[6], n[10] / n[9], (*lambda).lambda.x), 1);
+        SampledWavelengths_terminate_secondary(lambda);
+    }
     let p = OpenPbrParameters(
         n[0], colors[0], n[1], n[2], n[3], colors[1], n[4], n[5], n[6], n[7], colors[2],
-        n[11], colors[3], vec4f(), n[13], n[14], colors[4], n[15], n[16], n[17], n[18], vec3f(0, 0, 1),
+        n[11], colors[3], vec4f(), n[13], n[14], colors[4], n[15], n[16], n[17], n[18], coat_normal_here,
         n[19], colors[5], n[20], n[21], n[22], n[23], is_thin,
     );
-    return OpenPbr_new(tables[at + 1], p, lambda);
+    return OpenPbr_new(tables[at + 1], p, *lambda);
 }

@@ -6,7 +6,12 @@ struct OpenPbr {
     unused: u32,
 }
 
-fn openpbr_at(at: u32, textures: array<vec4f, MOST_TEXTURES>, lambda: SampledWavelengths) -> OpenPbr {
+fn openpbr_at(
+    at: u32,
+    textures: array<vec4f, MOST_TEXTURES>,
+    uv: vec2f,
+    lambda: ptr<function, SampledWavelengths>,
+) -> OpenPbr {
     return OpenPbr();
 }
 

@@ -15,9 +15,9 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 60] = laws! {
+const LAWS: [&str; 61] = laws! {
     "address" "arc" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
-    "diffuse" "diffuse_transmission" "direct" "disk" "dots" "error" "exponential" "flags"
+    "diffuse" "diffuse_transmission" "direct" "disk" "dispersion" "dots" "error" "exponential" "flags"
     "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hair" "hash"
     "hash_sequence" "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"
     "minimum_differentials" "noise" "octahedral" "orthographic" "perspective" "phase" "power"

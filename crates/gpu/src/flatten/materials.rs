@@ -21,7 +21,7 @@ use description::Span;
 use image::WrapMode;
 use scene::material::{
     Coat, ConductorIndex, ConductorMaterial, HairAbsorption, HairMaterial, Material, MaterialEntry,
-    MaterialId, Roughness,
+    MaterialId, NormalMap, Roughness,
 };
 use spectrum::{RgbColorSpace, Spectrum};
 
@@ -66,13 +66,15 @@ impl Flattener<'_> {
     fn entry(&mut self, entry: &MaterialEntry) -> u32 {
         let span = entry.span;
         let (kind, words, textures) = self.material(&entry.material, span);
-        let normals = match &entry.normal_map {
-            Some(map) => self.image(std::slice::from_ref(&map.image), WrapMode::Repeat, span),
-            None => 0,
-        };
+        let normals = entry.normal_map.as_ref().map_or(0, |map| self.normal_map(map, span));
         let height = entry.bump_map.map_or(0, |map| self.number_texture(map.displacement, span));
         let head = [kind, normals, height, textures.len() as u32];
         self.slab.add(head.into_iter().chain(words).chain(textures))
+    }
+
+    /// The image of normals.
+    pub(super) fn normal_map(&mut self, map: &NormalMap, span: Span) -> u32 {
+        self.image(std::slice::from_ref(&map.image), WrapMode::Repeat, span)
     }
 
     fn material(&mut self, material: &Material, span: Span) -> Record {

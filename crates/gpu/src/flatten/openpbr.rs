@@ -1,6 +1,7 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
-//! numbers; for each colour the place of its texture, or [`WHITE`]; the values of all numbers; and
-//! for each that has a texture, in the order of the textures, which it is, and its range.
+//! numbers; for each colour the place of its texture, or [`WHITE`]; the values of all numbers; the
+//! images of the normals of the coat and of the base, or 0, where they differ; and for each that has
+//! a texture, in the order of the textures, which it is, and its range.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
 //! offsets of what is taken, of what is inside, and of means; then its axes: which number, how it
@@ -30,15 +31,10 @@ impl Flattener<'_> {
     pub(super) fn principled(&mut self, surface: &OpenPbrMaterial, span: Span) -> (u32, Vec<u32>) {
         self.parts.principled = true;
         let textures = self.scene.textures();
-        let refused = [
-            (surface.may_be_a_body(textures), "light under the surface of `openpbr`"),
-            (surface.has_coat_normals(), "coats of `openpbr` with normals of their own"),
-            (surface.may_disperse(textures), "dispersion by `openpbr`"),
-        ];
-        for (_, what) in refused.into_iter().filter(|(is, _)| *is) {
-            self.refuse(what, span);
+        if surface.may_be_a_body(textures) {
+            self.refuse("light under the surface of `openpbr`", span);
         }
-        let PlainOpenPbr { constants, varying, colors, is_thin, table } = surface.plain();
+        let PlainOpenPbr { constants, varying, colors, is_thin, coat_normals, table } = surface.plain();
         let position = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
         let is_seen = |name: &str| {
             let Some(number) = position(name) else { return true };
@@ -54,6 +50,9 @@ impl Flattener<'_> {
             }
         }
         words.extend(constants.map(f32::to_bits));
+        for map in coat_normals.map_or([None; 2], |normals| normals.maps()) {
+            words.push(map.map_or(0, |map| self.normal_map(map, span)));
+        }
         for (number, _) in varying {
             let [least, most] = OpenPbrDesc::NUMBERS[number].range;
             words.extend([number as u32, least.to_bits(), most.to_bits()]);

@@ -80,10 +80,21 @@ impl Case {
 
     /// A slide of four colours, thrown through a stretched space at a wall and a sphere.
     fn projector() -> Self {
-        let slide: [f32; 12] = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 0.8, 0.8, 0.7];
-        let bytes = [b"PF\n2 2\n-1.0\n".as_slice(), &slide.map(f32::to_le_bytes).concat()].concat();
+        let slide = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 0.8, 0.8, 0.7];
+        Self::with_image(PROJECTOR, "slide.pfm", slide)
+    }
+
+    /// Principled surfaces, of which one has a coat with four normals of its own.
+    fn principled() -> Self {
+        let normals = [0.6, 0.5, 0.95, 0.4, 0.4, 0.9, 0.5, 0.65, 0.9, 0.5, 0.5, 1.0];
+        Self::with_image(PRINCIPLED, "normals.pfm", normals)
+    }
+
+    /// A scene that reads an image of 2 × 2 colours.
+    fn with_image(text: &str, name: &str, colors: [f32; 12]) -> Self {
+        let bytes = [b"PF\n2 2\n-1.0\n".as_slice(), &colors.map(f32::to_le_bytes).concat()].concat();
         let path = Path::new("scene.pbrt");
-        Self::new(path, &MemoryAssets::default().with(path, PROJECTOR).with("slide.pfm", bytes))
+        Self::new(path, &MemoryAssets::default().with(path, text).with(name, bytes))
     }
 
     /// One of the repository's scenes.
@@ -592,5 +603,5 @@ fn measured_surfaces_have_the_picture_of_the_cpu() {
 #[test]
 fn principled_surfaces_have_the_picture_of_the_cpu() {
     let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
-    assert_eq!(Case::of_text(PRINCIPLED).compare("principled", &path), None);
+    assert_eq!(Case::principled().compare("principled", &path), None);
 }

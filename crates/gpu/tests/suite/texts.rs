@@ -132,6 +132,13 @@ Translate -2 -1.2 0
 Material "openpbr" "float transmission_weight" 0.8 "bool geometry_thin_walled" true
     "rgb transmission_color" [ 0.5 0.9 0.6 ] "float subsurface_weight" 0.5
 Shape "disk" "float radius" 0.6 "float height" 0.2
+Translate 1.2 0 0
+Material "openpbr" "float transmission_weight" 1 "float transmission_dispersion_scale" 1
+    "float transmission_dispersion_abbe_number" 20
+Shape "sphere" "float radius" 0.3
+Translate 0.7 0 0
+Material "openpbr" "float coat_weight" 1 "float coat_roughness" 0.2 "string geometry_coat_normal" "normals.pfm"
+Shape "sphere" "float radius" 0.3
 "#;
 
 /// A slide, thrown through a stretched space at a wall and a sphere.

@@ -19,6 +19,11 @@ impl CoatNormals {
         (image(&coat) != image(&base)).then_some(Self { coat, base })
     }
 
+    /// The maps of the coat and of the base.
+    pub fn maps(&self) -> [Option<&NormalMap>; 2] {
+        [self.coat.as_ref(), self.base.as_ref()]
+    }
+
     /// The normals of the coat in the shading frame of the base, where the mask is true; that of
     /// the base where it would be below, and elsewhere.
     pub fn at<R: Real>(&self, uv: Point2<R>, mask: R::Mask) -> Vector3<R> {

@@ -13,6 +13,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod dispersion;
 mod hair;
 mod measured;
 mod mix;

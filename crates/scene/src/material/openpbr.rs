@@ -4,16 +4,13 @@
 //! absorbed by the medium inside, if there is one, and not by the boundary. Dispersive glass has
 //! Cauchy's index of refraction n = A + B/λ² by its Abbe number.
 
+use super::dispersion::cauchy;
 use super::{CoatNormals, MaterialModel};
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
 use description::OpenPbrDesc;
 use lanes::{Mask, Real};
-use math::sqr;
 use scattering::{OpenPbr, OpenPbrParameters, OpenPbrTable};
 use spectrum::{SampledSpectrum, SampledWavelengths};
-
-/// The Fraunhofer lines F, d and C, in nanometres.
-const LINES: [f32; 3] = [486.134, 587.562, 656.281];
 
 /// The values of [`OpenPbrDesc::NUMBERS`].
 type Numbers<R = f32> = [R; OpenPbrDesc::NUMBERS.len()];
@@ -49,17 +46,10 @@ pub struct PlainOpenPbr<'a> {
     pub colors: &'a [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
     /// Whether it is a wall without an inside.
     pub is_thin: bool,
+    /// The normals of its coat, if they are others than those of the base.
+    pub coat_normals: Option<&'a CoatNormals>,
     /// What its layers do with light.
     pub table: &'a OpenPbrTable,
-}
-
-/// The index of refraction at a wavelength, of a glass of index `ior` at the d line.
-#[inline(always)]
-fn cauchy<R: Real>(ior: R, abbe_number: R, lambda: R) -> R {
-    let [f, d, c] = LINES;
-    let [f, d, c] = [1.0 / sqr(f), 1.0 / sqr(d), 1.0 / sqr(c)];
-    let scale = (ior - R::one()) / (abbe_number * R::splat(f - c));
-    ior + scale * (R::one() / sqr(lambda) - R::splat(d))
 }
 
 impl OpenPbrMaterial {
@@ -131,7 +121,8 @@ impl OpenPbrMaterial {
     pub fn plain(&self) -> PlainOpenPbr<'_> {
         let Self { numbers, constants, varying, colors, is_thin, table, .. } = self;
         let varying = varying.iter().map(|&i| (i, numbers[i])).collect();
-        PlainOpenPbr { constants, varying, colors, is_thin: *is_thin, table }
+        let coat_normals = self.coat_normals.as_ref();
+        PlainOpenPbr { constants, varying, colors, is_thin: *is_thin, coat_normals, table }
     }
 
     /// Whether light may be scattered under the surface, to leave elsewhere.

@@ -190,6 +190,7 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/scene/src/camera/orthographic.rs", &["Orthographic::ray"]),
     ("crates/scene/src/camera/minimum_differentials.rs", &["MinimumDifferentials::dp_dxy"]),
     ("crates/scene/src/footprint.rs", &["Footprint::new", "on_plane"]),
+    ("crates/scene/src/material/dispersion.rs", &["cauchy"]),
     ("crates/scene/src/texture/mapping.rs", &[]),
     ("crates/scene/src/texture/checkerboard.rs", &["squares", "cubes"]),
     ("crates/scene/src/texture/bilerp.rs", &["weights"]),

@@ -1,0 +1,17 @@
+//! Cauchy's index of refraction n = A + B/λ², given at the d line and by the Abbe number.
+
+use lanes::Real;
+use math::sqr;
+
+/// The Fraunhofer lines F, d and C, in nanometres.
+const F: f32 = 486.134;
+const D: f32 = 587.562;
+const C: f32 = 656.281;
+
+/// The index of refraction at a wavelength, of a glass of index `ior` at the d line.
+#[inline(always)]
+pub(super) fn cauchy<R: Real>(ior: R, abbe_number: R, lambda: R) -> R {
+    let [f, d, c] = [1.0 / sqr(F), 1.0 / sqr(D), 1.0 / sqr(C)];
+    let scale = (ior - R::one()) / (abbe_number * R::splat(f - c));
+    ior + scale * (R::one() / sqr(lambda) - R::splat(d))
+}
