@@ -4,6 +4,8 @@ const FILTER_BOX = 0u;
 const FILTER_TRIANGLE = 1u;
 const PERSPECTIVE = 0u;
 const ORTHOGRAPHIC = 1u;
+const EQUIRECTANGULAR = 2u;
+const EQUAL_AREA = 3u;
 
 // The offset from the centre of a pixel that a filter draws, and the weight of the sample: its sign
 // where the filter is tabulated, which leaves a pixel as it is.
@@ -44,13 +46,25 @@ fn placed_camera() -> PlacedCamera {
     );
 }
 
+// The direction of a position on the square of a spherical camera.
+fn spherical_ray(st: vec2f) -> vec3f {
+    var z_up: vec3f;
+    if (tables[world.camera] == EQUIRECTANGULAR) {
+        let theta = sin_cos(3.1415927 * st.y);
+        z_up = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
+    } else {
+        z_up = equal_area_square_to_sphere(wrap_equal_area_square(st));
+    }
+    return z_up.xzy;
+}
+
 // The ray of a film position and a position on the lens, of any length.
 fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
     var ray: Tuple_Vec3_Vec3;
-    if (tables[world.camera] == PERSPECTIVE) {
-        ray = Perspective_ray(Perspective(camera.screen, camera.lens), film, lens);
-    } else {
-        ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens);
+    switch (tables[world.camera]) {
+        case PERSPECTIVE: { ray = Perspective_ray(Perspective(camera.screen, camera.lens), film, lens); }
+        case ORTHOGRAPHIC: { ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens); }
+        default: { ray = Tuple_Vec3_Vec3(vec3f(), spherical_ray(film / camera.screen.top_left)); }
     }
     return Ray(times(camera.rotation, ray.v0) + camera.translation, times(camera.rotation, ray.v1), 0);
 }
@@ -66,9 +80,11 @@ struct CameraRay {
 fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let camera = placed_camera();
     let has_neighbours = world.has_footprints == 1;
+    // Of a sphere, on which lines of pixels bend, by rays nearer than a pixel.
+    let step = select(1.0, 0.05, tables[world.camera] >= EQUIRECTANGULAR);
     var rays_of_film: array<Ray, 3>;
     for (var i = 0u; i < select(1u, 3u, has_neighbours); i++) {
-        rays_of_film[i] = unscaled_ray(camera, film + vec2f(f32(i == 1), f32(i == 2)), lens);
+        rays_of_film[i] = unscaled_ray(camera, film + step * vec2f(f32(i == 1), f32(i == 2)), lens);
     }
     let ray = rays_of_film[0];
     if (!has_neighbours) {
@@ -78,7 +94,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let ry = rays_of_film[2];
     let factor = 1 / length(ray.d);
     let d = ray.d * factor;
-    let scale = number(world.camera + 19);
+    let scale = number(world.camera + 19) / step;
     let near = Differentials(
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,

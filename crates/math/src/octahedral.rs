@@ -40,19 +40,14 @@ pub fn equal_area_sphere_to_square<R: Real>(d: Vector3<R>) -> Vec2<R> {
 }
 
 /// Wraps a point slightly outside of [0, 1]² to the point inside with the same direction.
-pub fn wrap_equal_area_square(p: Vec2) -> Vec2 {
-    let Vec2 { mut x, mut y } = p;
-    if x < 0.0 {
-        (x, y) = (-x, 1.0 - y);
-    } else if x > 1.0 {
-        (x, y) = (2.0 - x, 1.0 - y);
-    }
-    if y < 0.0 {
-        (x, y) = (1.0 - x, -y);
-    } else if y > 1.0 {
-        (x, y) = (1.0 - x, 2.0 - y);
-    }
-    Vec2::new(x, y)
+pub fn wrap_equal_area_square<R: Real>(p: Vec2<R>) -> Vec2<R> {
+    let (zero, one, two) = (R::zero(), R::one(), R::splat(2.0));
+    let (is_left, is_right) = (p.x.lt(zero), p.x.gt(one));
+    let x = R::select(is_left, -p.x, R::select(is_right, two - p.x, p.x));
+    let y = R::select(is_left | is_right, one - p.y, p.y);
+    let (is_above, is_below) = (y.lt(zero), y.gt(one));
+    let x = R::select(is_above | is_below, one - x, x);
+    Vec2::new(x, R::select(is_above, -y, R::select(is_below, two - y, y)))
 }
 
 #[cfg(test)]

@@ -35,3 +35,15 @@ fn equal_area_sphere_to_square(d: vec3f) -> vec2f {
     let v_1 = select(v, 1.0f - u, is_below);
     return vec2f((copysign(u_1, d.x) + 1.0f) * 0.5f, (copysign(v_1, d.y) + 1.0f) * 0.5f);
 }
+
+// Wraps a point slightly outside of [0, 1]² to the point inside with the same direction.
+fn wrap_equal_area_square(p: vec2f) -> vec2f {
+    let is_left = p.x < 0.0f;
+    let is_right = p.x > 1.0f;
+    let x = select(select(p.x, 2.0f - p.x, is_right), -p.x, is_left);
+    let y = select(p.y, 1.0f - p.y, is_left | is_right);
+    let is_above_1 = y < 0.0f;
+    let is_below = y > 1.0f;
+    let x_1 = select(x, 1.0f - x, is_above_1 | is_below);
+    return vec2f(x_1, select(select(y, 2.0f - y, is_below), -y, is_above_1));
+}

@@ -1,20 +1,27 @@
 //! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
-//! (top left and pixel) and the lens (radius and focal distance); then the factors on differences
+//! (top left and pixel; of a sphere its width and height in pixels) and the lens (radius and focal
+//! distance); then the factors on differences
 //! to rays of neighbouring pixels, of rays that have them and of others, and the smallest of these
 //! differences, of origins and of directions.
 
-use description::Span;
+use description::{Span, SphericalMapping};
 use scene::View;
 use scene::camera::{Projection, Screen, ThinLens, differential_scale};
 
 use super::Flattener;
+use crate::Algorithm;
 
 const PERSPECTIVE: u32 = 0;
 const ORTHOGRAPHIC: u32 = 1;
+const EQUIRECTANGULAR: u32 = 2;
+const EQUAL_AREA: u32 = 3;
 
 impl Flattener<'_> {
     /// The camera of a view; its offset.
-    pub fn camera(&mut self, view: &View) -> u32 {
+    pub fn camera(&mut self, view: &View, algorithm: &Algorithm) -> u32 {
+        if algorithm.splats() && matches!(view.camera.projection(), Projection::Spherical(_)) {
+            self.refuse("light paths to camera `spherical`", Span::NONE);
+        }
         let words = words(view).unwrap_or_else(|what| {
             self.refuse(what, Span::NONE);
             Vec::new()
@@ -29,17 +36,25 @@ pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
     if motion.is_moving() {
         return Err("moving cameras");
     }
-    let (kind, screen, lens) = match view.camera.projection() {
-        Projection::Perspective(p) => (PERSPECTIVE, p.screen(), p.lens()),
-        Projection::Orthographic(p) => (ORTHOGRAPHIC, p.screen(), p.lens()),
-        Projection::Spherical(_) => return Err("camera `spherical`"),
+    let flat = |screen: &Screen, lens: ThinLens| {
+        let &Screen { top_left, per_pixel } = screen;
+        [top_left.x, top_left.y, per_pixel.x, per_pixel.y, lens.radius, lens.focal_distance]
+    };
+    let (kind, film) = match view.camera.projection() {
+        Projection::Perspective(p) => (PERSPECTIVE, flat(p.screen(), p.lens())),
+        Projection::Orthographic(p) => (ORTHOGRAPHIC, flat(p.screen(), p.lens())),
+        Projection::Spherical(p) => {
+            let kind = match p.mapping() {
+                SphericalMapping::EquiRectangular => EQUIRECTANGULAR,
+                SphericalMapping::EqualArea => EQUAL_AREA,
+            };
+            (kind, [p.resolution().x, p.resolution().y, 1.0, 1.0, 0.0, 1.0])
+        }
         Projection::Realistic(_) => return Err("camera `realistic`"),
     };
-    let &Screen { top_left, per_pixel } = screen;
-    let ThinLens { radius, focal_distance } = lens;
     let matrix = motion.start().matrix();
     let mut numbers: Vec<f32> = [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect();
-    numbers.extend([top_left.x, top_left.y, per_pixel.x, per_pixel.y, radius, focal_distance]);
+    numbers.extend(film);
     let samples = view.samples_per_pixel;
     let least = if view.options.disable_pixel_jitter { 1 } else { samples };
     numbers.extend([samples, least].map(differential_scale));

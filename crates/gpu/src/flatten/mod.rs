@@ -171,7 +171,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         ..Head::default()
     };
     head.random_numbers = flattener.sampler(sampler);
-    head.camera = flattener.camera(view);
+    head.camera = flattener.camera(view, algorithm);
     head.filter = flattener.filter(film.filter());
     head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();

@@ -1,7 +1,7 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
 //! numbers; for each colour the place of its texture, or [`WHITE`]; the values of all numbers; the
-//! images of the normals of the coat and of the base, or 0, where they differ; and for each that has
-//! a texture, in the order of the textures, which it is, and its range.
+//! images of the normals of the coat and of the base where they differ, or 0; and for each number
+//! that has a texture, in the order of the textures, which it is, and its range.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
 //! offsets of what is taken, of what is inside, and of means; then its axes: which number, how it

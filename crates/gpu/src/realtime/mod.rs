@@ -27,6 +27,7 @@ use math::{Bounds2i, Point3};
 use rayon::prelude::*;
 use sampling::sampler::Independent;
 use scene::View;
+use scene::camera::Projection;
 
 use crate::Flat;
 use crate::algorithm::Algorithm;
@@ -238,6 +239,9 @@ impl Realtime {
 
     /// Looks from somewhere, at these pixels of the film; a picture at rest begins again.
     pub fn aim(&mut self, view: &View, pixels: Bounds2i) -> Result<(), AimError> {
+        if matches!(view.camera.projection(), Projection::Spherical(_)) {
+            return Err(AimError::Refused("frames of camera `spherical`"));
+        }
         let camera = cameras::words(view).map_err(AimError::Refused)?;
         let device = self.kernels.device();
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;

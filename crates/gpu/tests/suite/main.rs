@@ -7,6 +7,7 @@ mod chains;
 mod dynamic;
 mod faults;
 mod laws;
+mod measured;
 mod media;
 mod openpbr;
 mod photons;

@@ -1,14 +1,13 @@
 //! Pictures of scenes by both engines, from the same random numbers.
 
 use std::collections::BTreeMap;
-use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders};
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MaterialKind,
-    MltDesc, MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
@@ -19,11 +18,10 @@ use integrators::{
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
-use scattering::{MeasuredData, MeasuredGrid, MeasuredTable};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{HAIR, HOLES, LAMPS, MEASURED, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -37,7 +35,7 @@ fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
     known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
 }
 
-fn imported(path: &Path, assets: &dyn AssetSource) -> SceneDesc {
+pub fn imported(path: &Path, assets: &dyn AssetSource) -> SceneDesc {
     let imported = import(path, assets);
     let errors: Vec<_> = imported.diagnostics.iter().filter(|d| d.is_error()).collect();
     assert!(errors.is_empty(), "{errors:?}");
@@ -63,7 +61,7 @@ impl Case {
         Self::described(imported(path, assets), resolution)
     }
 
-    fn described(mut desc: SceneDesc, resolution: [u32; 2]) -> Self {
+    pub fn described(mut desc: SceneDesc, resolution: [u32; 2]) -> Self {
         desc.film.resolution = resolution.map(|n| n as i32);
         desc.film.save_fp16 = false;
         let scene = scene::compile(desc.clone()).expect("a scene").scene;
@@ -552,52 +550,15 @@ fn curves_and_hair_have_the_picture_of_the_cpu() {
     assert_eq!(Case::of_text(HAIR).compare("hair", &path), None);
 }
 
-/// Measurements of a surface that were made up, of spectra or of colours.
-fn measurements(phi: &[f32], wavelengths: Option<Vec<f32>>) -> Arc<MeasuredTable> {
-    let theta = vec![0.0, 0.7, 1.2, FRAC_PI_2];
-    let directions = phi.len() * theta.len();
-    let grid = |[width, height]: [usize; 2], layers: usize, value: fn(f32, f32, f32) -> f32| {
-        let part = |i: usize, n: usize| i as f32 / (n - 1) as f32;
-        let point = |i: usize| {
-            let layer = (i / (width * height)) as f32;
-            value(part(i % width, width), part(i / width % height, height), layer)
-        };
-        MeasuredGrid { size: [width, height], values: (0..layers * width * height).map(point).collect() }
-    };
-    let channels = wavelengths.as_ref().map_or(3, Vec::len);
-    let data = MeasuredData {
-        ndf: grid([9, 8], 1, |x, _, _| 2.0 * (1.0 - x) * (1.0 - x)),
-        sigma: grid([9, 8], 1, |x, _, _| 1.0 - 0.8 * x),
-        vndf: grid([17, 8], directions, |x, y, layer| {
-            x * (x * x * FRAC_PI_2).sin() * (1.0 - x) * (1.2 + (9.0 * y + layer).sin())
-        }),
-        luminance: grid([9, 5], directions, |x, y, layer| 1.5 + (7.0 * x + 5.0 * y + layer).sin()),
-        values: grid([6, 7], directions * channels, |x, y, layer| {
-            0.5 + 0.4 * (5.0 * x + 8.0 * y + layer).sin()
-        }),
-        phi: phi.to_vec(),
-        theta,
-        wavelengths,
-    };
-    Arc::new(MeasuredTable::new(data).expect("tables that fit"))
-}
-
 #[test]
-fn measured_surfaces_have_the_picture_of_the_cpu() {
-    let path = Path::new("scene.pbrt");
-    let mut desc = imported(path, &MemoryAssets::default().with(path, MEASURED));
-    let tables = [
-        measurements(&[0.0], Some(vec![400.0, 500.0, 530.0, 700.0])),
-        measurements(&[-PI, -1.0, 0.5, PI], None),
-    ];
-    let is_plastic = |kind: &MaterialKind| matches!(kind, MaterialKind::CoatedDiffuse(_));
-    let materials = desc.materials.iter_mut().filter(|(_, material)| is_plastic(&material.value.kind));
-    for ((_, material), table) in materials.zip(tables) {
-        material.value.kind = MaterialKind::Measured { table };
+fn spherical_cameras_have_the_picture_of_the_cpu() {
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    for mapping in ["equirectangular", "equalarea"] {
+        let case = Case::of_text(&AROUND.replace("MAPPING", mapping));
+        assert_eq!(case.compare(mapping, &path), None);
+        let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+        assert_eq!(refusals.expect("a refusal")[0].what, "light paths to camera `spherical`");
     }
-    let case = Case::described(desc, [64, 48]);
-    let settings = PathDesc { max_depth: 3, ..PathDesc::default() };
-    assert_eq!(case.compare("measured", &Algorithm::Path(settings)), None);
 }
 
 #[test]

@@ -221,6 +221,25 @@ Translate 1.2 0 0
 Shape "sphere" "float radius" 0.5
 "#;
 
+/// A room seen in all directions, by the mapping that is given.
+pub const AROUND: &str = r#"
+LookAt 0.3 -0.2 0.4  1 0.5 0.6  0 0 1
+Camera "spherical" "string mapping" "MAPPING"
+PixelFilter "triangle" "float xradius" 2 "float yradius" 2
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.3 0.4 0.6 ]
+LightSource "point" "point3 from" [ 0 0 1.5 ] "float scale" 9
+Texture "tiles" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "diffuse" "texture reflectance" "tiles"
+Shape "disk" "float radius" 3
+Shape "bilinearmesh" "point3 P" [ -1 1.5 -1  1.5 1.5 -1  -1 1.5 1.2  1.5 1.5 1.2 ]
+Material "conductor" "float roughness" 0.1
+Translate 1 -0.8 0.6
+Shape "sphere" "float radius" 0.4
+"#;
+
 /// Lamps whose points are sampled by area: parts of a disk and of a cylinder, and a bent patch.
 pub const LAMPS: &str = r#"
 LookAt 0 -4 2  0 0 0.6  0 0 1

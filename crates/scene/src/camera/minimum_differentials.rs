@@ -73,17 +73,17 @@ impl MinimumDifferentials {
     pub fn dp_dxy<R: Real>(&self, d: Vector3<R>, distance: R, n: Normal3<R>) -> [Vector3<R>; 2] {
         let frame = Frame::from_z(d);
         let n = frame.to_local(n);
-        let p = Vec3::new(R::zero(), R::zero(), distance);
-        [self.dp(0, &frame, p, n), self.dp(1, &frame, p, n)]
+        [self.dp(0, &frame, distance, n), self.dp(1, &frame, distance, n)]
     }
 
-    /// ∂p along an axis of the film.
+    /// ∂p along an axis of the film: the neighbouring ray meets the plane farther by `along`. Both
+    /// rays are hardly apart, so that their points are not subtracted from each other.
     #[inline(always)]
-    fn dp<R: Real>(&self, axis: usize, frame: &Frame<R>, p: Vector3<R>, n: Normal3<R>) -> Vector3<R> {
-        let (o, d) = (self.origin[axis], Vec3::Z + self.direction[axis]);
-        let (o, d) = (Vec3::broadcast(o), Vec3::broadcast(d));
-        let t = n.dot(p - o) / n.dot(d);
-        let dp = o + d * t - p;
+    fn dp<R: Real>(&self, axis: usize, frame: &Frame<R>, distance: R, n: Normal3<R>) -> Vector3<R> {
+        let (o, d) = (Vec3::broadcast(self.origin[axis]), Vec3::broadcast(self.direction[axis]));
+        let along = -(n.dot(o) + distance * n.dot(d)) / (n.z + n.dot(d));
+        let mut dp = o + d * (distance + along);
+        dp.z += along;
         Vec3::select(dp.are_finite(), frame.from_local(dp), Vec3::splat(R::zero()))
     }
 }

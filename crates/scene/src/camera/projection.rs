@@ -29,7 +29,7 @@ impl Projection {
         let (o, d) = match self {
             Self::Perspective(p) => p.ray(film, lens),
             Self::Orthographic(p) => p.ray(film, lens),
-            Self::Spherical(p) => p.ray_lanes(film),
+            Self::Spherical(p) => p.ray(film),
             Self::Realistic(p) => return p.ray(film, lens),
         };
         (o, d, R::one())

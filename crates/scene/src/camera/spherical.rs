@@ -7,7 +7,7 @@
 //! ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
-use lanes::{Each, MAX_LANES, Real};
+use lanes::Real;
 use math::{
     Point2, Point3, Vec2, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
     spherical_direction, spherical_phi, wrap_equal_area_square,
@@ -32,40 +32,28 @@ impl Spherical {
         Self { resolution: self.resolution / n as f32, ..*self }
     }
 
-    pub(super) fn mapping(&self) -> SphericalMapping {
+    /// How the sphere is mapped.
+    pub fn mapping(&self) -> SphericalMapping {
         self.mapping
     }
 
     /// Width and height of the film, in pixels.
-    pub(super) fn resolution(&self) -> Vec2 {
+    pub fn resolution(&self) -> Vec2 {
         self.resolution
     }
 
     /// Origin and unit direction, in camera space.
-    fn ray(&self, film: Point2) -> (Point3, Vector3) {
-        let st = film / self.resolution;
+    #[inline(always)]
+    pub(super) fn ray<R: Real>(&self, film: Point2<R>) -> (Point3<R>, Vector3<R>) {
+        let st = Vec2::new(film.x / R::splat(self.resolution.x), film.y / R::splat(self.resolution.y));
         let z_up = match self.mapping {
             SphericalMapping::EquiRectangular => {
-                let (sin_theta, cos_theta) = lanes::sin_cos(PI * st.y);
-                spherical_direction(sin_theta, cos_theta, TAU * st.x)
+                let (sin_theta, cos_theta) = lanes::sin_cos(R::splat(PI) * st.y);
+                spherical_direction(sin_theta, cos_theta, R::splat(TAU) * st.x)
             }
             SphericalMapping::EqualArea => equal_area_square_to_sphere(wrap_equal_area_square(st)),
         };
-        (Vec3::ZERO, Vec3::new(z_up.x, z_up.z, z_up.y))
-    }
-
-    /// [`Self::ray`] in each lane, one after another.
-    #[inline(always)]
-    pub(super) fn ray_lanes<R: Real>(&self, film: Point2<R>) -> (Point3<R>, Vector3<R>) {
-        let [x, y] = film.to_array().each(R::to_array);
-        let mut d = [[0.0; MAX_LANES]; 3];
-        for lane in 0..R::LANES {
-            let (_, direction) = self.ray(Vec2::new(x[lane], y[lane]));
-            for (column, value) in d.iter_mut().zip(direction.to_array()) {
-                column[lane] = value;
-            }
-        }
-        (Vec3::splat(R::zero()), Vec3::from_array(d.each(|column| R::load(&column))))
+        (Vec3::splat(R::zero()), Vec3::new(z_up.x, z_up.z, z_up.y))
     }
 
     /// The inverse of [`Self::ray`] on the film itself, and film area per solid angle: dω is

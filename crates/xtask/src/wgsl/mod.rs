@@ -50,7 +50,10 @@ const SOURCES: &[(&str, &[&str])] = &[
         "crates/math/src/frame.rs",
         &["Frame::from_z", "Frame::from_z_and_x", "Frame::to_local", "Frame::from_local"],
     ),
-    ("crates/math/src/octahedral.rs", &["equal_area_square_to_sphere", "equal_area_sphere_to_square"]),
+    (
+        "crates/math/src/octahedral.rs",
+        &["equal_area_square_to_sphere", "equal_area_sphere_to_square", "wrap_equal_area_square"],
+    ),
     ("crates/math/src/spherical.rs", &["spherical_direction", "spherical_phi", "face_forward"]),
     (
         "crates/spectrum/src/sampled.rs",
