@@ -112,12 +112,9 @@ impl PiecewiseBilinear2d {
             row = R::Int::select(self.below(next, layers).le(u.y), next, row);
             step /= 2;
         }
-        let y = {
-            let [a, b] = self.ends(row, layers);
-            let left = u.y - self.below(row, layers);
-            sample_linear(fraction(left, R::splat(0.5) * (a + b)), a, b)
-        };
         let [first, last] = self.ends(row, layers);
+        let left = u.y - self.below(row, layers);
+        let y = sample_linear(fraction(left, R::splat(0.5) * (first + last)), first, last);
         let wanted = u.x * lerp(y, first, last);
         let (mut column, mut step) = (R::Int::splat(0), first_step(self.width - 1));
         while step > 0 {
@@ -154,7 +151,7 @@ impl PiecewiseBilinear2d {
         let left = self.left_of(column, row, y, layers) + half * (a + b) * invert_linear(x, a, b);
         let below = self.below(row, layers) + half * (first + last) * invert_linear(y, first, last);
         let u = Vec2::new(fraction(left, lerp(y, first, last)), below.clamp(R::zero(), R::one()));
-        let [columns, rows]: [R; 2] = self.cells();
+        let [columns, rows] = self.cells::<R>();
         (u, lerp(x, a, b) * (columns * rows))
     }
 

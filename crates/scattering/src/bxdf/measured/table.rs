@@ -224,6 +224,9 @@ impl MeasuredGrid {
         if points != Some(self.values.len()) {
             return Err(format!("its {what} do not have {layers} layers of {width} × {height} numbers"));
         }
+        if u32::try_from(self.values.len()).is_err() {
+            return Err(format!("its {what} are more than 2³² numbers"));
+        }
         if !self.values.iter().all(|value| value.is_finite()) {
             return Err(format!("its {what} are not all finite"));
         }
