@@ -15,3 +15,15 @@ pub(super) fn cauchy<R: Real>(ior: R, abbe_number: R, lambda: R) -> R {
     let scale = (ior - R::one()) / (abbe_number * R::splat(f - c));
     ior + scale * (R::one() / sqr(lambda) - R::splat(d))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_follow_the_abbe_number() {
+        let [f, d, c] = [F, D, C].map(|line| cauchy(1.6f32, 30.0, line));
+        assert!((d - 1.6).abs() < 1e-6);
+        assert!(((d - 1.0) / (f - c) - 30.0).abs() < 0.01, "{f} {c}");
+    }
+}

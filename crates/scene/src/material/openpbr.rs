@@ -279,15 +279,3 @@ fn parameters<R: Real>(numbers: &Numbers<R>) -> (OpenPbrParameters<R>, Transmiss
     };
     (parameters, Transmission { depth, dispersion_scale, abbe_number }, radius)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indices_follow_the_abbe_number() {
-        let [f, d, c] = LINES.map(|line| cauchy(1.6f32, 30.0, line));
-        assert!((d - 1.6).abs() < 1e-6);
-        assert!(((d - 1.0) / (f - c) - 30.0).abs() < 0.01, "{f} {c}");
-    }
-}
