@@ -1,7 +1,7 @@
 //! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
 //! (top left and pixel; of a sphere its width and height in pixels) and the lens (radius and focal
-//! distance); then the factors on differences to rays of neighbouring pixels, of rays that have them
-//! and of others, and the smallest of these differences, of origins and of directions.
+//! distance); then the factors on differences to rays of neighbouring pixels, of rays that have
+//! them and of others, and the smallest of these differences, of origins and of directions.
 
 use description::{Span, SphericalMapping};
 use scene::View;
