@@ -1,5 +1,5 @@
-// Measured surfaces: the records of `src/flatten/measured.rs`, and the methods of `MeasuredTable` and
-// of its `PiecewiseBilinear2d`. `Measured` is a law.
+// Measured surfaces: the records of `src/flatten/measured.rs`, and the methods of `MeasuredTable`
+// and of its `PiecewiseBilinear2d`. `Measured` is a law.
 
 // Where the numbers of grids begin: of facets, their areas, visible normals, samples, reflectances.
 const MEASURED_NDF = 8u;
@@ -123,7 +123,8 @@ fn fraction(part: f32, whole: f32) -> f32 {
     return 0;
 }
 
-// Of bilinear densities, whose numbers are values, and integrals over rows and over columns: the one over all rows below one.
+// Of bilinear densities, which have the offsets of values, of integrals over rows and of those over
+// columns: the integral over all rows below one.
 fn densities_below(grid: u32, row: u32, between: LayerWeights) -> f32 {
     var layers = between.layers;
     var sum = 0.0;

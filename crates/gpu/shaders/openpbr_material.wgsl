@@ -3,7 +3,8 @@
 // The most textures of a material.
 const MOST_TEXTURES = 30u;
 
-// The normal of the coat in the shading frame of the base; that of the base where it would be below.
+// The normal of the coat in the shading frame of the base; that of the base where it would be
+// below.
 fn coat_normal(at: u32, uv: vec2f) -> vec3f {
     var normals = array(vec3f(0, 0, 1), vec3f(0, 0, 1));
     for (var i = 0u; i < 2; i++) {

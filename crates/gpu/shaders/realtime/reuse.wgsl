@@ -10,8 +10,8 @@ const MOST = 5u;
 // As many samples the frame before stands for at most.
 const MOST_BEFORE = 20.0;
 
-// The light of the chosen sample is found for as many sets of wavelengths, evenly spaced: of a frame
-// they make more noise than anything else, and need no rays.
+// The light of the chosen sample is found for as many sets of wavelengths, evenly spaced: they make
+// more noise in a frame than anything else, and need no rays.
 const SETS = 4u;
 
 // Neighbours are within this part of the picture's longer side [Bitterli 2020 §5], but not so near
