@@ -35,6 +35,8 @@ pub struct PatchPoints<R: Real> {
     pub dpdu: Vector3<R>,
     /// ∂p/∂v.
     pub dpdv: Vector3<R>,
+    /// A tangent along which shading has its x axis, but for its part along the shading normal.
+    pub ss: Vector3<R>,
 }
 
 /// Triangles or patches, one in each lane.
@@ -46,6 +48,8 @@ pub(crate) struct PatchLanes<R: Real> {
     pub twist: Option<Vector3<R>>,
     /// Zero in lanes without shading normals; `None` where no lane has any.
     pub normals: Option<[Normal3<R>; 3]>,
+    /// Shading tangents; zero in lanes without, `None` where no lane has any.
+    pub tangents: Option<[Vector3<R>; 3]>,
     pub uv: [Vec2<R>; 3],
     /// −1 where the outside is not on the side of `sides[0] × sides[1]`, else 1.
     pub sign: R,
@@ -67,6 +71,7 @@ impl<R: Real> PatchLanes<R> {
             sides: [Vec3::broadcast(right), Vec3::broadcast(up)],
             twist,
             normals,
+            tangents: None,
             uv: [Vec2::broadcast(a), Vec2::broadcast(b), Vec2::broadcast(c)],
             sign: R::splat(if patch.flips { -1.0 } else { 1.0 }),
         }
@@ -84,12 +89,17 @@ impl<R: Real> PatchLanes<R> {
             (None, None) => None,
             (a, b) => Some(select_each(mask, a.unwrap_or([none; 3]), b.unwrap_or([none; 3]))),
         };
+        let tangents = match (a.tangents, b.tangents) {
+            (None, None) => None,
+            (a, b) => Some(select_each(mask, a.unwrap_or([none; 3]), b.unwrap_or([none; 3]))),
+        };
         let [right, up] = [0, 1].each(|side: usize| Vec3::select(mask, a.sides[side], b.sides[side]));
         Self {
             corner: Vec3::select(mask, a.corner, b.corner),
             sides: [right, up],
             twist,
             normals,
+            tangents,
             uv: [0, 1, 2].each(|corner: usize| Vec2::select(mask, a.uv[corner], b.uv[corner])),
             sign: R::select(mask, a.sign, b.sign),
         }
@@ -119,8 +129,13 @@ impl<R: Real> PatchLanes<R> {
             ns = Vec3::select(is_smooth, mixed, n);
             n = face_forward(n, ns);
         }
+        let mut ss = dpdu;
+        if let Some(tangents) = self.tangents {
+            let mixed = tangents[0] * c + tangents[1] * a + tangents[2] * b;
+            ss = Vec3::select(mixed.length_squared().gt(R::zero()), mixed, dpdu);
+        }
         let uv = self.uv[0] * c + self.uv[1] * a + self.uv[2] * b;
-        let points = PatchPoints { p, n, ns, uv, dpdu, dpdv };
+        let points = PatchPoints { p, n, ns, uv, dpdu, dpdv, ss };
         (points, squared.ge(R::splat(f32::MIN_POSITIVE)))
     }
 }

@@ -11,17 +11,17 @@ use math::{
 
 /// The shading geometry, which interpolated normals or tangents make differ from the geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shading {
+pub struct Shading<R = f32> {
     /// Unit normal.
-    pub n: Normal3,
+    pub n: Normal3<R>,
     /// ∂p/∂u.
-    pub dpdu: Vector3,
+    pub dpdu: Vector3<R>,
     /// ∂p/∂v.
-    pub dpdv: Vector3,
+    pub dpdv: Vector3<R>,
     /// ∂n/∂u.
-    pub dndu: Normal3,
+    pub dndu: Normal3<R>,
     /// ∂n/∂v.
-    pub dndv: Normal3,
+    pub dndv: Normal3<R>,
 }
 
 /// A point on a surface.

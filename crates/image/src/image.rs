@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use half::f16;
+use lanes::Real;
 use math::Point2;
 use rayon::prelude::*;
 
@@ -277,7 +278,8 @@ impl Image {
     }
 
     /// [`Self::bilerp`] of the colour.
-    pub fn bilerp_rgb(&self, st: Point2, wrap: WrapMode) -> [f32; 3] {
+    #[inline(always)]
+    pub fn bilerp_rgb<R: Real>(&self, st: Point2<R>, wrap: WrapMode) -> [R; 3] {
         self.bilinear(st, self.color, wrap)
     }
 

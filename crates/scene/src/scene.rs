@@ -20,9 +20,9 @@ use geometry::{
     BuildQuality, Filter, Geometry, GeometryId, Hit, HitColumns, RayColumns, RayStats, RefitError, SphereSet,
     SurfacePoint, World,
 };
-use math::{DMat4, Point2, Point3, Ray, RayDifferential, Vec2, Vector3};
+use math::{DMat4, Differentials, Point2, Point3, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
-use scattering::{Bsdf, Bxdf, Diffuse};
+use scattering::{Bsdf, BsdfSample, Bxdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -307,7 +307,8 @@ impl Scene {
             Material::Interface => true,
             Material::Mix(_) => {
                 let interaction = self.interaction(hit, self.world.surface(ray, hit));
-                matches!(resolve(&self.materials, &interaction, &self.textures).material, Material::Interface)
+                let MaterialId(id) = resolve(&self.materials, &interaction, &self.textures);
+                matches!(self.materials[id as usize].material, Material::Interface)
             }
             _ => false,
         }
@@ -437,6 +438,43 @@ impl Scene {
         Some(sample)
     }
 
+    /// The material at a point that `ray` of a view has hit, after the choices of mixes.
+    pub fn material_at(
+        &self,
+        view: &View,
+        interaction: &mut SurfaceInteraction,
+        ray: &RayDifferential,
+    ) -> MaterialId {
+        if self.needs_footprints(view) {
+            interaction.compute_footprint(ray, view);
+        }
+        resolve(&self.materials, interaction, &self.textures)
+    }
+
+    /// Applies the normal or bump map of a material.
+    fn perturb(&self, entry: &MaterialEntry, interaction: &mut SurfaceInteraction) {
+        if let Some(map) = &entry.normal_map {
+            interaction.surface.shading = map.perturb(&interaction.surface);
+        } else if let Some(map) = &entry.bump_map {
+            let context = interaction.texture_context();
+            interaction.surface.shading = map.perturb(&interaction.surface.shading, &context, &self.textures);
+        }
+    }
+
+    /// The differentials of the ray that leaves the hit of `ray` by a sample of specular
+    /// scattering, if `ray` has differentials and they stay small enough for filtering.
+    pub fn scattered_differentials(
+        &self,
+        view: &View,
+        (ray, hit): (&RayDifferential, &Hit),
+        sample: &BsdfSample,
+    ) -> Option<Differentials> {
+        let mut interaction = self.interaction(hit, self.world.surface(&ray.ray, hit));
+        let MaterialId(id) = self.material_at(view, &mut interaction, ray);
+        self.perturb(&self.materials[id as usize], &mut interaction);
+        interaction.spawn_scattered(ray, sample).differentials
+    }
+
     /// The BSDF at a point that `ray` of a view has hit. Also computes the footprint and applies
     /// the normal or bump map. `None` for an interface between media, which the ray passes.
     pub fn bsdf(
@@ -447,18 +485,12 @@ impl Scene {
         lambda: &mut SampledWavelengths,
         sampler: &mut Sampler,
     ) -> Option<Bsdf<Bxdf<'_>>> {
-        if self.needs_footprints(view) {
-            interaction.compute_footprint(ray, view);
-        }
-        let entry = resolve(&self.materials, interaction, &self.textures);
+        let MaterialId(id) = self.material_at(view, interaction, ray);
+        let entry = &self.materials[id as usize];
         if matches!(entry.material, Material::Interface) {
             return None;
         }
-        if let Some(map) = &entry.normal_map {
-            interaction.surface.shading = map.perturb(&interaction.surface);
-        } else if let Some(map) = &entry.bump_map {
-            interaction.surface.shading = map.perturb(interaction, &self.textures);
-        }
+        self.perturb(entry, interaction);
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;
         let mut bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);

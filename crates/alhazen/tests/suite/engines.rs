@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use alhazen::description::{AmbientOcclusionDesc, IntegratorDesc, PathDesc, SceneDesc};
 use alhazen::geometry::InstructionSet;
-use alhazen::import::{AssetSource, Files, import};
+use alhazen::import::{AssetSource, Files, MemoryAssets, import};
 use alhazen::integrators::{
     self, AmbientOcclusion, Control, Integrator, Limits, PixelLoop, RayCasting, Session, SessionState,
     VolPath, WaveIntegrator, Wavefront, Whitted,
@@ -188,6 +188,56 @@ Translate 1 0 0
 Shape "sphere" "float radius" 0.4
 "#;
 
+/// Normal maps on meshes with tangents and without, on a sphere and on an instance, under a coat
+/// with other normals; bump maps; a mirror and glass. Textures are filtered.
+const MAPS: &str = r#"
+LookAt 0 1.5 5 0 0.8 0 0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb"
+WorldBegin
+LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.6 ]
+Texture "rough" "float" "fbm"
+Texture "height" "float" "scale" "texture tex" "rough" "float scale" 0.1
+Texture "here" "spectrum" "imagemap" "string filename" "waves.pfm"
+MakeNamedMaterial "waves" "string type" "diffuse" "texture reflectance" "here" "string normalmap" "waves.pfm"
+MakeNamedMaterial "hills" "string type" "conductor" "float roughness" 0.4 "texture displacement" "height"
+NamedMaterial "waves"
+Shape "trianglemesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ] "integer indices" [ 0 1 2  1 3 2 ]
+    "point2 uv" [ 0 0  0 2  2 0  2 2 ] "normal N" [ 0 1 0  0.1 1 0  0 1 0.1  0 1 0 ]
+    "vector3 S" [ 1 0 0  1 0 1  1 0 0  0 0 1 ]
+NamedMaterial "hills"
+Shape "bilinearmesh" "point3 P" [ -3 0 -2  0 0 -2  -3 2 -2  0 2 -2 ]
+Shape "sphere" "float radius" 0.5
+Material "openpbr" "float coat_weight" 1 "float specular_roughness" 0.4 "string normalmap" "waves.pfm"
+Shape "trianglemesh" "point3 P" [ 0 0 -2  3 0 -2  0 2 -2  3 2 -2 ] "integer indices" [ 0 1 2  1 3 2 ]
+    "point2 uv" [ 0 0  2 0  0 2  2 2 ]
+Material "conductor"
+Translate -1 0.5 0.5
+Shape "sphere" "float radius" 0.5
+Material "dielectric" "float eta" 1.2
+Translate 1 0 0.5
+Shape "sphere" "float radius" 0.4
+NamedMaterial "waves"
+ObjectBegin "ball"
+    Shape "sphere" "float radius" 0.4
+ObjectEnd
+Translate 1 0 0
+ObjectInstance "ball"
+"#;
+
+/// The scene with normal maps, and their image.
+fn maps() -> (SceneDesc, String) {
+    let mut waves = b"PF\n8 8\n-1\n".to_vec();
+    for pixel in 0..64u8 {
+        let [x, y] = [pixel % 8, pixel / 8].map(|i| (f32::from(i) * 0.8).sin());
+        let colors = [0.5 + 0.2 * x, 0.5 + 0.2 * y, 0.9];
+        waves.extend(colors.into_iter().flat_map(f32::to_le_bytes));
+    }
+    let assets = MemoryAssets::default().with("maps.pbrt", MAPS).with("waves.pfm", waves);
+    (small(Path::new("maps.pbrt"), &assets), "maps".to_string())
+}
+
 /// The scenes of the folder and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
     let texts =
@@ -197,7 +247,7 @@ fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
         (small(path, &assets), name.to_string())
     });
     let scenes = scenes().into_iter().map(|(path, name)| (small(&path, &Files), name));
-    scenes.chain(texts)
+    scenes.chain(texts).chain([maps()])
 }
 
 fn small(path: &Path, assets: &dyn AssetSource) -> SceneDesc {

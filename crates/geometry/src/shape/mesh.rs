@@ -212,10 +212,10 @@ impl TriangleMesh {
         self.uvs.as_deref()
     }
 
-    /// Whether vertices have shading tangents.
+    /// The shading tangents of all vertices.
     #[inline(always)]
-    pub(crate) fn has_tangents(&self) -> bool {
-        self.tangents.is_some()
+    pub(crate) fn tangents(&self) -> Option<&[Vector3]> {
+        self.tangents.as_deref()
     }
 
     /// Whether the outside is where the corners run clockwise.

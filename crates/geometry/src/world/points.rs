@@ -8,39 +8,66 @@
 use super::World;
 use super::columns::{HitColumns, RayColumns};
 use super::geometry::{Geometry, GeometryId};
-use super::hit::Hit;
 use super::sphere_points::{SphereHits, select};
 use crate::patch::{Patch, PatchLanes, PatchPoints};
 use crate::shape::{Shape, Triangle, TriangleMesh};
-use crate::surface::SurfacePoint;
+use crate::surface::{Shading, SurfacePoint};
 use crate::triples::{triples, vector};
 use lanes::{Each, Int, MAX_LANES, Mask, Real, Simd, Task};
-use math::{Point3Error, Ray, Vec2, Vec3, Vector3};
+use math::{Normal3, Point3Error, Vec2, Vec3, Vector3};
 
 /// Surface points in columns.
 #[derive(Clone, Debug, Default)]
 pub struct PointColumns {
-    /// Position, its error, normal, shading normal, ∂p/∂u, ∂p/∂v, and texture coordinates.
+    /// Position, its error, normal, shading normal, ∂p/∂u, ∂p/∂v, shading tangent, and texture
+    /// coordinates.
     values: [Vec<f32>; PointColumns::COLUMNS],
-    /// 1 where there is a point, else 0.
+    /// Of shading ∂p/∂v, ∂n/∂u and ∂n/∂v.
+    shading: [Vec<f32>; 3 + 3 + 3],
+    /// 1 where lanes have computed a point, else 0.
     found: Vec<u32>,
 }
 
 impl PointColumns {
-    const COLUMNS: usize = 3 + 3 + 3 + 3 + 3 + 3 + 2;
+    const COLUMNS: usize = 3 + 3 + 3 + 3 + 3 + 3 + 3 + 2;
 
-    /// The points from a place on, and a mask of the lanes that have one.
+    /// The points from a place on.
     #[inline(always)]
-    pub fn get<R: Real>(&self, first: usize) -> (PatchPoints<R>, R::Mask) {
-        let points = PatchPoints {
+    pub fn get<R: Real>(&self, first: usize) -> PatchPoints<R> {
+        PatchPoints {
             p: Point3Error::new(self.vector(0, first), self.vector(3, first)),
             n: self.vector(6, first),
             ns: self.vector(9, first),
             dpdu: self.vector(12, first),
             dpdv: self.vector(15, first),
-            uv: Vec2::new(self.number(18, first), self.number(19, first)),
-        };
-        (points, R::Int::load(&self.found[first..]).eq(R::Int::splat(1)))
+            ss: self.vector(18, first),
+            uv: Vec2::new(self.number(21, first), self.number(22, first)),
+        }
+    }
+
+    /// The shading geometry of points that [`World::points_with_shading`] has set.
+    #[inline(always)]
+    pub fn shading<R: Real>(&self, first: usize) -> Shading<R> {
+        let mut numbers = [R::zero(); 9];
+        for (number, column) in numbers.iter_mut().zip(&self.shading) {
+            *number = R::load(&column[first..]);
+        }
+        let [tx, ty, tz, ux, uy, uz, vx, vy, vz] = numbers;
+        Shading {
+            n: self.vector(9, first),
+            dpdu: self.vector(18, first),
+            dpdv: Vec3::new(tx, ty, tz),
+            dndu: Vec3::new(ux, uy, uz),
+            dndv: Vec3::new(vx, vy, vz),
+        }
+    }
+
+    /// Changes the shading normals and tangents of points.
+    #[inline(always)]
+    pub fn turn<R: Real>(&mut self, first: usize, ns: Normal3<R>, ss: Vector3<R>) {
+        for (column, x) in [(9, ns.x), (10, ns.y), (11, ns.z), (18, ss.x), (19, ss.y), (20, ss.z)] {
+            x.store(&mut self.values[column][first..]);
+        }
     }
 
     #[inline(always)]
@@ -62,9 +89,9 @@ impl PointColumns {
 
     #[inline(always)]
     fn set<R: Real>(&mut self, first: usize, points: &PatchPoints<R>, found: R::Mask) {
-        let PatchPoints { p, n, ns, uv, dpdu, dpdv } = points;
+        let PatchPoints { p, n, ns, uv, dpdu, dpdv, ss } = points;
         let mut next = 0;
-        for v in [&p.p, &p.error, n, ns, dpdu, dpdv] {
+        for v in [&p.p, &p.error, n, ns, dpdu, dpdv, ss] {
             for x in [v.x, v.y, v.z] {
                 x.store(&mut self.values[next][first..]);
                 next += 1;
@@ -79,7 +106,7 @@ impl PointColumns {
     fn set_one(&mut self, place: usize, point: &SurfacePoint) {
         let SurfacePoint { p, n, shading, dpdu, dpdv, uv, .. } = point;
         let mut columns = self.values.iter_mut();
-        for v in [p.p, p.error, *n, shading.n, *dpdu, *dpdv] {
+        for v in [p.p, p.error, *n, shading.n, *dpdu, *dpdv, shading.dpdu] {
             for (x, column) in v.to_array().into_iter().zip(&mut columns) {
                 column[place] = x;
             }
@@ -87,15 +114,23 @@ impl PointColumns {
         for (x, column) in [uv.x, uv.y].into_iter().zip(columns) {
             column[place] = x;
         }
-        self.found[place] = 1;
+    }
+
+    /// Sets the shading geometry of one point.
+    fn set_shading(&mut self, place: usize, shading: &Shading) {
+        let mut columns = self.shading.iter_mut();
+        for v in [shading.dpdv, shading.dndu, shading.dndv] {
+            for (x, column) in v.to_array().into_iter().zip(&mut columns) {
+                column[place] = x;
+            }
+        }
     }
 }
 
 impl World {
     /// The surface points of the hits of rays at some places of a batch. Those of instances, of
     /// spheres so small or far away that floats do not do, and of shapes other than triangles,
-    /// spheres of sets and bilinear patches without attributes are computed one by one. Points
-    /// whose shading has tangents of its own are left out.
+    /// spheres of sets and bilinear patches without attributes are computed one by one.
     pub fn points(&self, rays: RayColumns, hits: &HitColumns, places: &[u32], points: &mut PointColumns) {
         points.reset(places.len());
         // SAFETY: the processor has the instruction set of a world.
@@ -105,22 +140,30 @@ impl World {
         for (i, &place) in places.iter().enumerate() {
             if points.found[i] == 0
                 && let Some(hit) = hits.get(place as usize)
-                && let Some(point) = self.point_in_columns(&rays.ray(place as usize), &hit)
             {
-                points.set_one(i, &point);
+                points.set_one(i, &self.surface(&rays.ray(place as usize), &hit));
             }
         }
     }
 
-    /// The point of a hit, if its shading has no tangents of its own.
-    fn point_in_columns(&self, ray: &Ray, hit: &Hit) -> Option<SurfacePoint> {
-        let is_plain = match self.geometry(hit.geometry) {
-            Geometry::Mesh(mesh) if mesh.has_tangents() => return None,
-            Geometry::Mesh(_) => true,
-            _ => false,
-        };
-        let point = self.surface(ray, hit);
-        (is_plain || point.shading.dpdu == point.dpdu).then_some(point)
+    /// [`World::points`] with their [shading geometry](PointColumns::shading), computed one by one.
+    pub fn points_with_shading(
+        &self,
+        rays: RayColumns,
+        hits: &HitColumns,
+        places: &[u32],
+        points: &mut PointColumns,
+    ) {
+        points.reset(places.len());
+        let len = points.found.len();
+        points.shading.iter_mut().for_each(|column| column.resize(len, 0.0));
+        for (i, &place) in places.iter().enumerate() {
+            if let Some(hit) = hits.get(place as usize) {
+                let point = self.surface(&rays.ray(place as usize), &hit);
+                points.set_one(i, &point);
+                points.set_shading(i, &point.shading);
+            }
+        }
     }
 }
 
@@ -204,7 +247,7 @@ impl World {
             let lane = left.trailing_zeros() as usize % MAX_LANES;
             let mut here = geometry.eq(R::Int::splat(geometries[lane])) & of;
             match self.geometry(GeometryId(geometries[lane])) {
-                Geometry::Mesh(mesh) if !mesh.has_tangents() => {
+                Geometry::Mesh(mesh) => {
                     let primitive = R::Int::select(here, primitive, R::Int::splat(primitives[lane]));
                     lanes = PatchLanes::select(here, &triangles(mesh, primitive), &lanes);
                     found = found | here;
@@ -257,11 +300,16 @@ fn triangles<R: Real>(mesh: &TriangleMesh, triangle: R::Int) -> PatchLanes<R> {
     if let Some(given) = mesh.normals() {
         normals = Some(vertices(given, corners));
     }
+    let mut tangents = None;
+    if let Some(given) = mesh.tangents() {
+        tangents = Some(vertices(given, corners));
+    }
     PatchLanes {
         corner: a,
         sides: [b - a, c - a],
         twist: None,
         normals,
+        tangents,
         uv,
         sign: R::splat(if mesh.flips() { -1.0 } else { 1.0 }),
     }
@@ -368,6 +416,7 @@ impl PatchTable {
             sides: [Vec3::new(right_x, right_y, right_z), Vec3::new(up_x, up_y, up_z)],
             twist,
             normals,
+            tangents: None,
             uv: [Vec2::new(u0, v0), Vec2::new(u1, v1), Vec2::new(u2, v2)],
             sign,
         }

@@ -53,7 +53,7 @@ impl<R: Real> SphereHits<R> {
         let p = center + outwards * radius;
         let error = (center.abs() + Vec3::splat(radius)) * R::splat(gamma(6));
         let uv = Vec2::new(phi / tau, one - theta / R::splat(PI));
-        (PatchPoints { p: Point3Error::new(p, error), n, ns: n, uv, dpdu, dpdv }, found)
+        (PatchPoints { p: Point3Error::new(p, error), n, ns: n, uv, dpdu, dpdv, ss: dpdu }, found)
     }
 }
 
@@ -73,5 +73,6 @@ pub(super) fn select<R: Real>(mask: R::Mask, a: &PatchPoints<R>, b: &PatchPoints
         uv: Vec2::select(mask, a.uv, b.uv),
         dpdu: Vec3::select(mask, a.dpdu, b.dpdu),
         dpdv: Vec3::select(mask, a.dpdv, b.dpdv),
+        ss: Vec3::select(mask, a.ss, b.ss),
     }
 }

@@ -75,10 +75,7 @@ impl Kernel for Occlude<'_, '_> {
         for (part, queue) in rows.chunks(R::LANES).enumerate() {
             let first = part * R::LANES;
             let rows = Rows::<R>::first(queue);
-            let (PatchPoints { p, n, ns, .. }, found) = points.get::<R>(first);
-            rows.each_of(rows.active & !found, |lane, row| {
-                queues.scalar.push((row as u32, turns[first + lane]));
-            });
+            let PatchPoints { p, n, ns, .. } = points.get::<R>(first);
             let u = draw_2d::<R>(&pass, &mut paths.address(rows, pass.pixels.index));
             let places = Rows::<R>::first(&turns[first..first + queue.len()]);
             let time = R::gather(&segments.time, places.indices);
@@ -86,7 +83,7 @@ impl Kernel for Occlude<'_, '_> {
             let wo = -segments.direction.vector(places);
             let (ray, l) = algorithm.sample((&point, wo), u, &paths.lambda_lanes(rows));
             let [shadows, _] = &mut queues.shadows;
-            shadows.append(rows, rows.active & found & !l.is_black(), &Shadow { l, ray, t_max });
+            shadows.append(rows, rows.active & !l.is_black(), &Shadow { l, ray, t_max });
         }
     }
 }

@@ -6,7 +6,7 @@ use sampling::Sampler;
 use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
 use scene::material::{Material, MaterialId, MaterialModel};
-use scene::{Interfaces, SurfaceInteraction};
+use scene::{GeometryEntry, Interfaces, SurfaceInteraction};
 use spectrum::SampledWavelengths;
 
 use super::begin::Begin;
@@ -16,6 +16,7 @@ use super::groups::{Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
 use super::media::MediumVertices;
+use super::normals::Perturb;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
@@ -139,10 +140,10 @@ impl<'a> Batch<'a> {
             {
                 continue;
             }
-            let shading =
-                self.pass.materials.shading(entry.material, self.columns.segments.has_differentials(turn));
-            if is_emitted && !is_last && shading != Shading::Scalar {
-                self.columns.lanes.push(entry.material, turn, row);
+            let material =
+                if is_emitted && !is_last { self.material_at(turn, entry) } else { entry.material };
+            if is_emitted && !is_last && self.pass.materials.shading(material) != Shading::Scalar {
+                self.columns.lanes.push(material, turn, row);
             } else {
                 self.columns.queues.scalar.push((row, turn));
             }
@@ -150,6 +151,18 @@ impl<'a> Batch<'a> {
         self.columns.left = left;
         self.emit(direct);
         self.escape(direct);
+    }
+
+    /// The material at a hit on a geometry, after the choices of mixes.
+    fn material_at(&self, turn: u32, entry: &GeometryEntry) -> MaterialId {
+        let &PixelSamples { scene, view, .. } = self.pass.pixels;
+        if !matches!(scene.materials()[entry.material.0 as usize].material, Material::Mix(_)) {
+            return entry.material;
+        }
+        let hit = self.columns.hits.get(turn as usize).expect("invariant: paths without hit have ended");
+        let ray = self.columns.segments.state(turn as usize).ray;
+        let mut interaction = scene.interaction(&hit, scene.world().surface(&ray.ray, &hit));
+        scene.material_at(view, &mut interaction, &ray)
     }
 
     /// Adds the emission at hits of lights that shine in lanes.
@@ -186,8 +199,22 @@ impl<'a> Batch<'a> {
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {
             let BatchColumns { segments, hits, points, .. } = &mut *self.columns;
-            scene.world().points(segments.rays(), hits, turns, points);
-            match &scene.materials()[id.0 as usize].material {
+            let entry = &scene.materials()[id.0 as usize];
+            if entry.bump_map.is_some() {
+                scene.world().points_with_shading(segments.rays(), hits, turns, points);
+            } else {
+                scene.world().points(segments.rays(), hits, turns, points);
+            }
+            if entry.normal_map.is_some() || entry.bump_map.is_some() {
+                self.pass.instruction_set.dispatch_large(Perturb {
+                    pass: self.pass,
+                    entry,
+                    turns,
+                    segments,
+                    points,
+                });
+            }
+            match &entry.material {
                 Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::DiffuseTransmission(material) => {
                     self.dispatch(algorithm, (id, material), turns, rows);
@@ -217,14 +244,14 @@ impl<'a> Batch<'a> {
         turns: &[u32],
         rows: &[u32],
     ) {
-        let with_footprint = self.pass.materials.shading(id, false) == Shading::LanesWithFootprint;
+        let with_footprint = self.pass.materials.shading(id) == Shading::LanesWithFootprint;
         self.pass.instruction_set.dispatch_large(Shade {
             pass: self.pass,
             algorithm,
             material,
             with_footprint,
             points: &self.columns.points,
-            geometries: &self.columns.hits.geometry,
+            hits: &self.columns.hits,
             turns,
             rows,
             segments: &self.columns.segments,

@@ -29,6 +29,7 @@ mod lights;
 mod materials;
 mod media;
 mod medium_vertices;
+mod normals;
 mod numbers;
 mod pass;
 mod path;

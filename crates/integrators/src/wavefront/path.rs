@@ -2,9 +2,9 @@
 
 use geometry::{Hit, PatchPoints};
 use lanes::{Int, Mask, Real};
-use math::{Ray, Vec2, offset_ray_origin};
+use math::{Ray, Vec2, Vec3, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
@@ -12,6 +12,7 @@ use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, BatchColumns, Vertex};
+use super::columns::Rows;
 use super::lights::{self, LightLanes};
 use super::media::VerticesInMedia;
 use super::numbers::{VertexNumbers, draw_1d};
@@ -21,6 +22,7 @@ use super::shade::{AtVertices, Shade, Vertices};
 use super::shadows::{PassageLanes, Shadow};
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
+use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::roulette::{self, CERTAIN};
 use crate::transport::subsurface::entered;
 use crate::{Path, Tracer};
@@ -95,7 +97,7 @@ impl AtVertices for Path {
     ) {
         let samples_light = bsdf.flags().is_non_specular();
         let media = shade.segments.media.as_ref().map(|columns| {
-            let place = (vertices.turns, shade.geometries);
+            let place = (vertices.turns, &shade.hits.geometry[..]);
             VerticesInMedia::new(shade.pass.media, columns, place, vertices.lambda.secondary_terminated())
         });
         let (address, has_media) = (&mut vertices.address, media.is_some());
@@ -188,7 +190,44 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
             pdf: R::select(is_specular, R::zero(), pdf),
             media: media.map(|media| media.leave((wi, n), pdf)),
         };
+        let first = self.queues.next.rows.len();
         self.queues.next.append(rows.indices, survives, &segment);
+        if !self.segments.are_differentials.is_empty() && (survives & is_specular).any() {
+            self.carry_differentials(turns, survives, &sample, first);
+        }
+    }
+
+    /// Gives the rays that specular scattering has appended, from a place in the queue on, the
+    /// differentials of the rays before. Few rays have any, so that they are computed one by one.
+    fn carry_differentials<R: Real>(
+        &mut self,
+        turns: Rows<R>,
+        appended: R::Mask,
+        sample: &BsdfSample<R>,
+        first: usize,
+    ) {
+        let PixelSamples { scene, view, .. } = *self.pass.pixels;
+        let is_reflective = sample.flags.is_reflective().bits();
+        turns.each_of(appended & sample.flags.is_specular(), |lane, turn| {
+            if !self.segments.has_differentials(turn as u32) {
+                return;
+            }
+            let lobe = if is_reflective >> lane & 1 == 1 {
+                BxdfFlags::SPECULAR_REFLECTION
+            } else {
+                BxdfFlags::SPECULAR_TRANSMISSION
+            };
+            let wi = sample.wi.to_array().map(|coordinate| coordinate.lane(lane));
+            let scattered = BsdfSample {
+                eta: sample.eta.lane(lane),
+                ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
+            };
+            let hit = self.hits.get(turn).expect("invariant: vertices have hits");
+            let ray = self.segments.state(turn).ray;
+            let place = first + (appended.bits() & ((1 << lane) - 1)).count_ones() as usize;
+            let differentials = scene.scattered_differentials(view, (&ray, &hit), &scattered);
+            self.queues.next.set_differentials(place, differentials.as_ref());
+        });
     }
 }
 

@@ -5,11 +5,12 @@
 //! scatters, which take several times as long.
 
 use film::FirstEvent;
-use geometry::RayColumns;
-use lanes::{Int, MAX_LANES, Real};
+use geometry::{PatchPoints, RayColumns};
+use lanes::{Int, MAX_LANES, Mask, Real};
 use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
+use scene::{Footprint, View};
 use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Columns, Rows, fill, grow};
@@ -139,12 +140,7 @@ impl Segments {
         self.time[turn] = ray.time;
         self.origin.set_row(turn, ray.o.to_array());
         self.direction.set_row(turn, ray.d.to_array());
-        if let Some(is) = self.are_differentials.get_mut(turn) {
-            *is = differentials.is_some().into();
-        }
-        if let Some(differentials) = &differentials {
-            self.differentials.set_row(turn, numbers_of(differentials));
-        }
+        self.set_differentials(turn, differentials.as_ref());
         self.beta.set_row(turn, state.beta);
         self.depth[turn] = state.depth;
         self.eta_scale[turn] = state.eta_scale;
@@ -153,6 +149,16 @@ impl Segments {
             self.pdf[turn] = *pdf;
             let vectors = [context.p.p, context.p.error, context.n, context.ns];
             self.vertex.iter_mut().zip(vectors).for_each(|(columns, v)| columns.set_row(turn, v.to_array()));
+        }
+    }
+
+    /// Changes the differentials of a ray.
+    pub fn set_differentials(&mut self, turn: usize, differentials: Option<&Differentials>) {
+        if let Some(is) = self.are_differentials.get_mut(turn) {
+            *is = differentials.is_some().into();
+        }
+        if let Some(differentials) = differentials {
+            self.differentials.set_row(turn, numbers_of(differentials));
         }
     }
 
@@ -175,7 +181,7 @@ impl Segments {
         }
     }
 
-    /// Appends the paths of a mask's lanes, which have no differentials.
+    /// Appends the paths of a mask's lanes, without differentials.
     #[inline(always)]
     pub fn append<R: Real>(&mut self, rows: R::Int, mask: R::Mask, segment: &Segment<R>) {
         let turn = self.rows.len();
@@ -208,6 +214,21 @@ impl Segments {
         let time = R::gather(&self.time, turns.indices);
         LightSampleContext { p, n: n.vector(turns), ns: ns.vector(turns), time }
     }
+
+    /// The footprints of pixels of a view at the surface points that paths have hit.
+    #[inline(always)]
+    pub fn footprint<R: Real>(&self, view: &View, turns: Rows<R>, surface: &PatchPoints<R>) -> Footprint<R> {
+        let PatchPoints { p, n, dpdu, dpdv, .. } = *surface;
+        let time = R::gather(&self.time, turns.indices);
+        let is = R::Int::gather(&self.are_differentials, turns.indices).eq(R::Int::splat(1));
+        let across = if is.any() {
+            let differentials = differentials_of(self.differentials.get(turns));
+            view.pixel_on_plane(Some((&differentials, is)), p.p, n, time)
+        } else {
+            view.pixel_on_plane(None, p.p, n, time)
+        };
+        Footprint::new(across, [dpdu, dpdv])
+    }
 }
 
 /// The numbers of differentials.
@@ -219,7 +240,7 @@ pub(super) fn numbers_of<R: Real>(differentials: &Differentials<R>) -> [R; 12] {
 
 /// The differentials of these numbers.
 #[inline(always)]
-pub(super) fn differentials_of<R: Real>(numbers: [R; 12]) -> Differentials<R> {
+fn differentials_of<R: Real>(numbers: [R; 12]) -> Differentials<R> {
     let [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz] = numbers;
     Differentials {
         rx_origin: Vec3::new(ax, ay, az),

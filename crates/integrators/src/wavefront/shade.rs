@@ -1,7 +1,7 @@
 //! Shading in lanes: the vertices of hits and their BSDFs, where algorithms go on.
 
-use geometry::{PatchPoints, PointColumns};
-use lanes::{Int, Kernel, Mask, Real};
+use geometry::{HitColumns, PatchPoints, PointColumns};
+use lanes::{Kernel, Mask, Real};
 use math::{Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BxdfFlags, Scatter};
@@ -16,7 +16,7 @@ use super::lights::Samples;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
-use super::segments::{Segments, differentials_of};
+use super::segments::Segments;
 
 /// What an algorithm does at vertices.
 pub(super) trait AtVertices: Sized {
@@ -43,8 +43,8 @@ pub(super) struct Shade<'a, 'b, M, A> {
     pub with_footprint: bool,
     /// Their surface points.
     pub points: &'b PointColumns,
-    /// The geometries of all hits.
-    pub geometries: &'b [u32],
+    /// The hits of all paths.
+    pub hits: &'b HitColumns,
     /// Indices of hits, and their paths.
     pub turns: &'b [u32],
     pub rows: &'b [u32],
@@ -87,14 +87,18 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize, queue: &[u32]) {
         let mut vertices = self.vertices::<R>(first, queue);
-        let PatchPoints { p, n, ns, uv, dpdu, .. } = vertices.surface;
-        let footprint = if self.with_footprint { self.footprint(&vertices) } else { Footprint::point() };
+        let PatchPoints { p, n, ns, uv, ss, .. } = vertices.surface;
+        let footprint = if self.with_footprint {
+            self.segments.footprint(self.pass.pixels.view, vertices.turns, &vertices.surface)
+        } else {
+            Footprint::point()
+        };
         let context = TextureContext { p: p.p, n, uv, footprint };
         let before = vertices.lambda;
         let textures = self.pass.pixels.scene.textures();
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
         self.keep_wavelengths(&vertices, &before);
-        let mut bsdf = Bsdf::new(ns, dpdu, bxdf);
+        let mut bsdf = Bsdf::new(ns, ss, bxdf);
         bsdf.seed(&vertices.lambda, vertices.address.dimension);
         if self.algorithm.regularizes() {
             let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
@@ -112,38 +116,19 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     fn vertices<R: Real>(&mut self, first: usize, queue: &[u32]) -> Vertices<R> {
         let rows = Rows::<R>::first(queue);
         let turns = Rows::<R>::first(&self.turns[first..first + queue.len()]);
-        let (surface, found) = self.points.get::<R>(first);
-        rows.each_of(rows.active & !found, |lane, row| {
-            self.queues.scalar.push((row as u32, self.turns[first + lane]));
-        });
         let (paths, segments) = (&*self.paths, self.segments);
         Vertices {
             rows,
             turns,
-            active: rows.active & found,
+            active: rows.active,
             first,
-            surface,
+            surface: self.points.get(first),
             wo: -segments.direction.vector(turns).normalize(),
             time: R::gather(&segments.time, turns.indices),
             lambda: paths.lambda_lanes(rows),
             beta: segments.beta.get(turns),
             address: paths.address(rows, self.pass.pixels.index),
         }
-    }
-
-    /// The footprints of pixels at the vertices.
-    #[inline(always)]
-    fn footprint<R: Real>(&self, vertices: &Vertices<R>) -> Footprint<R> {
-        let PatchPoints { p, n, dpdu, dpdv, .. } = vertices.surface;
-        let (view, turns) = (self.pass.pixels.view, vertices.turns);
-        let is = R::Int::gather(&self.segments.are_differentials, turns.indices).eq(R::Int::splat(1));
-        let across = if is.any() {
-            let differentials = differentials_of(self.segments.differentials.get(turns));
-            view.pixel_on_plane(Some((&differentials, is)), p.p, n, vertices.time)
-        } else {
-            view.pixel_on_plane(None, p.p, n, vertices.time)
-        };
-        Footprint::new(across, [dpdu, dpdv])
     }
 
     /// Stores wavelengths whose densities the material has changed.

@@ -13,10 +13,10 @@
 //!
 //! Sources: [Blinn 1978]; [Pharr 2023 §10.5.3].
 
-use crate::interaction::SurfaceInteraction;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use geometry::Shading;
-use math::{Point2, Vec2, Vector3, face_forward};
+use lanes::Real;
+use math::{Vec2, Vec3, Vector3, face_forward};
 
 /// A bump map.
 #[derive(Clone, Copy, Debug)]
@@ -28,21 +28,33 @@ pub struct BumpMap {
 impl BumpMap {
     /// The shading geometry at a point, with the tangents and the normal of the raised surface.
     /// Where these are degenerate it stays as it is.
-    pub fn perturb(&self, interaction: &SurfaceInteraction, textures: &Textures) -> Shading {
-        let (surface, footprint) = (&interaction.surface, &interaction.footprint);
-        let shading = surface.shading;
-        let context = interaction.texture_context();
-        let here = textures.float(self.displacement, &context);
-        let slope = |dp: Vector3, duv: Point2, width: f32| {
-            let step = if width > 0.0 { 0.5 * width } else { 0.0005 };
-            let moved = TextureContext { p: context.p + dp * step, uv: context.uv + duv * step, ..context };
-            (textures.float(self.displacement, &moved) - here) / step
-        };
-        let along_u = slope(shading.dpdu, Vec2::X, footprint.dudx.abs() + footprint.dudy.abs());
-        let along_v = slope(shading.dpdv, Vec2::Y, footprint.dvdx.abs() + footprint.dvdy.abs());
-        let dpdu = shading.dpdu + shading.n * along_u + shading.dndu * here;
-        let dpdv = shading.dpdv + shading.n * along_v + shading.dndv * here;
-        let Some(n) = dpdu.cross(dpdv).try_normalize() else { return shading };
-        Shading { n: face_forward(n, surface.n), dpdu, dpdv, ..shading }
+    #[inline(always)]
+    pub fn perturb<R: Real>(
+        &self,
+        shading: &Shading<R>,
+        context: &TextureContext<R>,
+        textures: &Textures,
+    ) -> Shading<R> {
+        let Shading { n, dpdu, dpdv, dndu, dndv } = *shading;
+        let (zero, one, footprint) = (R::zero(), R::one(), &context.footprint);
+        let here = textures.float(self.displacement, context);
+        let widths =
+            [footprint.dudx.abs() + footprint.dudy.abs(), footprint.dvdx.abs() + footprint.dvdy.abs()];
+        let sides = [(dpdu, Vec2::new(one, zero)), (dpdv, Vec2::new(zero, one))];
+        let mut slopes = [zero; 2];
+        for ((slope, width), (dp, duv)) in slopes.iter_mut().zip(widths).zip(sides) {
+            let step = R::select(width.gt(zero), R::splat(0.5) * width, R::splat(0.0005));
+            let moved = TextureContext { p: context.p + dp * step, uv: context.uv + duv * step, ..*context };
+            *slope = (textures.float(self.displacement, &moved) - here) / step;
+        }
+        let raised: [Vector3<R>; 2] =
+            [dpdu + n * slopes[0] + dndu * here, dpdv + n * slopes[1] + dndv * here];
+        let (ns, is_regular) = raised[0].cross(raised[1]).normalize_masked();
+        Shading {
+            n: Vec3::select(is_regular, face_forward(ns, context.n), n),
+            dpdu: Vec3::select(is_regular, raised[0], dpdu),
+            dpdv: Vec3::select(is_regular, raised[1], dpdv),
+            ..*shading
+        }
     }
 }

@@ -123,19 +123,6 @@ impl Material {
         }
     }
 
-    /// Whether the BxDF may be specular somewhere.
-    pub fn may_be_specular(&self, textures: &Textures) -> bool {
-        match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Hair(_) | Self::Measured(_) => false,
-            Self::Conductor(m) => m.roughness.may_be_smooth(textures),
-            Self::Subsurface(m) => m.roughness.may_be_smooth(textures),
-            Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
-            Self::OpenPbr(m) => m.may_be_specular(textures),
-            Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
-            Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Mix(_) | Self::Interface => true,
-        }
-    }
-
     /// Whether a path that does not scatter ends there with its wavelengths as they are: no ray
     /// passes through the material, and it is not dispersive.
     pub fn stops(&self, textures: &Textures) -> bool {
@@ -172,30 +159,16 @@ pub struct MaterialEntry {
 
 /// The material at a point, after the choices of mixes.
 #[inline]
-pub(crate) fn resolve<'a>(
-    materials: &'a [MaterialEntry],
+pub(crate) fn resolve(
+    materials: &[MaterialEntry],
     interaction: &SurfaceInteraction,
     textures: &Textures,
-) -> &'a MaterialEntry {
-    let entry = &materials[interaction.material.0 as usize];
-    match &entry.material {
-        Material::Mix(mix) => chosen(mix, materials, interaction, textures),
-        _ => entry,
+) -> MaterialId {
+    let mut id = interaction.material;
+    while let Material::Mix(mix) = &materials[id.0 as usize].material {
+        id = mix.choose(interaction, textures);
     }
-}
-
-/// The material that a mix has at a point.
-fn chosen<'a>(
-    mut mix: &'a MixMaterial,
-    materials: &'a [MaterialEntry],
-    interaction: &SurfaceInteraction,
-    textures: &Textures,
-) -> &'a MaterialEntry {
-    loop {
-        let entry = &materials[mix.choose(interaction, textures).0 as usize];
-        let Material::Mix(inner) = &entry.material else { return entry };
-        mix = inner;
-    }
+    id
 }
 
 /// An index of refraction at the first wavelength. Where it varies, the secondary wavelengths are

@@ -6,6 +6,7 @@
 
 use geometry::{Shading, SurfacePoint};
 use image::{Image, WrapMode};
+use lanes::Real;
 use math::{Frame, Point2, Vec2, Vec3, Vector3, face_forward};
 use std::sync::Arc;
 
@@ -18,18 +19,25 @@ pub struct NormalMap {
 
 impl NormalMap {
     /// The normal at (u, v), in the frame of the surface.
-    pub fn normal(&self, uv: Point2) -> Vector3 {
-        let st = Vec2::new(uv.x, 1.0 - uv.y);
-        let [r, g, b] = self.image.bilerp_rgb(st, WrapMode::Repeat);
-        Vec3::new(2.0 * r - 1.0, 2.0 * g - 1.0, 2.0 * b - 1.0).normalize_or(Vec3::Z)
+    #[inline(always)]
+    pub fn normal<R: Real>(&self, uv: Point2<R>) -> Vector3<R> {
+        let (one, two) = (R::one(), R::splat(2.0));
+        let [r, g, b] = self.image.bilerp_rgb(Vec2::new(uv.x, one - uv.y), WrapMode::Repeat);
+        let (n, is_regular) = Vec3::new(two * r - one, two * g - one, two * b - one).normalize_masked();
+        Vec3::select(is_regular, n, Vec3::broadcast(Vec3::Z))
+    }
+
+    /// The shading frame at (u, v), rotated to the normal of the map.
+    #[inline(always)]
+    pub fn rotate<R: Real>(&self, frame: &Frame<R>, uv: Point2<R>) -> Frame<R> {
+        Frame::from_z_and_x(frame.from_local(self.normal(uv)), frame.x)
     }
 
     /// The shading geometry at a point, with the normal of the map.
     pub fn perturb(&self, s: &SurfacePoint) -> Shading {
-        let frame = Frame::from_z_and_x(s.shading.n, s.shading.dpdu);
-        let ns = frame.from_local(self.normal(s.uv));
-        let (u_length, v_length) = (s.shading.dpdu.length(), s.shading.dpdv.length());
-        let bent = Frame::from_z_and_x(ns, s.shading.dpdu);
-        Shading { n: face_forward(ns, s.n), dpdu: bent.x * u_length, dpdv: bent.y * v_length, ..s.shading }
+        let Shading { n, dpdu, dpdv, .. } = s.shading;
+        let frame = self.rotate(&Frame::from_z_and_x(n, dpdu), s.uv);
+        let (dpdu, dpdv) = (frame.x * dpdu.length(), frame.y * dpdv.length());
+        Shading { n: face_forward(frame.z, s.n), dpdu, dpdv, ..s.shading }
     }
 }

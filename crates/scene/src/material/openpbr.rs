@@ -99,18 +99,6 @@ impl OpenPbrMaterial {
         textures.constant(self.numbers[position(name)])
     }
 
-    /// Whether the BxDF may be specular somewhere.
-    pub(super) fn may_be_specular(&self, textures: &Textures) -> bool {
-        // α below 0.001 counts as smooth.
-        let may_be_smooth = |name| self.constant(textures, name).is_none_or(|roughness| roughness < 0.032);
-        let is_coated = self.constant(textures, "coat_weight") != Some(0.0);
-        // Sheets spread what they transmit less than what they reflect, if at all.
-        if self.is_thin && self.constant(textures, "transmission_weight") != Some(0.0) {
-            return true;
-        }
-        may_be_smooth("specular_roughness") || is_coated && may_be_smooth("coat_roughness")
-    }
-
     /// Whether secondary wavelengths may be terminated.
     pub fn may_disperse(&self, textures: &Textures) -> bool {
         let is_zero = |name| self.constant(textures, name) == Some(0.0);
@@ -129,11 +117,6 @@ impl OpenPbrMaterial {
     pub fn may_be_a_body(&self, textures: &Textures) -> bool {
         let is_zero = |name| self.constant(textures, name) == Some(0.0);
         !(self.is_thin || is_zero("subsurface_weight") || is_zero("subsurface_radius"))
-    }
-
-    /// Whether the coat has other normals than the base.
-    pub fn has_coat_normals(&self) -> bool {
-        self.coat_normals.is_some()
     }
 
     /// A colour, where it is seen.

@@ -16,12 +16,6 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    /// Whether the surface may be as smooth as a mirror somewhere.
-    pub(super) fn may_be_smooth(&self, textures: &Textures) -> bool {
-        let is_constant = [self.u, self.v].iter().all(|&id| textures.constant(id).is_some());
-        !is_constant || self.distribution::<f32>(textures, &TextureContext::default()).effectively_smooth()
-    }
-
     #[inline(always)]
     pub(super) fn distribution<R: Real>(
         &self,

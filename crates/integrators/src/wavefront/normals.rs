@@ -1,0 +1,51 @@
+//! Shading normals by normal maps and bump maps, before a material is shaded in lanes.
+
+use geometry::PointColumns;
+use lanes::{Kernel, Real};
+use math::{Frame, face_forward};
+use scene::Footprint;
+use scene::material::MaterialEntry;
+use scene::texture::TextureContext;
+
+use super::columns::Rows;
+use super::pass::Pass;
+use super::segments::Segments;
+
+/// Changes the normals and tangents of hits on a material that has a map.
+pub(super) struct Perturb<'a, 'b> {
+    pub pass: Pass<'a>,
+    pub entry: &'a MaterialEntry,
+    /// Indices of hits.
+    pub turns: &'b [u32],
+    pub segments: &'b Segments,
+    /// Their surface points; with shading geometry for a bump map.
+    pub points: &'b mut PointColumns,
+}
+
+impl Kernel for Perturb<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self { pass, entry, turns, segments, points } = self;
+        let (scene, view) = (pass.pixels.scene, pass.pixels.view);
+        let with_footprints = scene.needs_footprints(view);
+        for (part, turns) in turns.chunks(R::LANES).enumerate() {
+            let first = part * R::LANES;
+            let surface = points.get::<R>(first);
+            if let Some(map) = &entry.normal_map {
+                let frame = map.rotate(&Frame::from_z_and_x(surface.ns, surface.ss), surface.uv);
+                points.turn(first, face_forward(frame.z, surface.n), frame.x);
+            } else if let Some(map) = &entry.bump_map {
+                let footprint = if with_footprints {
+                    segments.footprint(view, Rows::first(turns), &surface)
+                } else {
+                    Footprint::point()
+                };
+                let context = TextureContext { p: surface.p.p, n: surface.n, uv: surface.uv, footprint };
+                let shading = map.perturb(&points.shading(first), &context, scene.textures());
+                points.turn(first, shading.n, shading.dpdu);
+            }
+        }
+    }
+}
