@@ -177,7 +177,7 @@ fn lights_met(walk: Subpath, before: ShapeSampleContext, hit: Hit, s: Surface) -
         var l: vec4f;
         if (hit.found) {
             point = LightPoint(s.light - 1, s.p.p, s.n, hit.uv, false);
-            l = light_radiance(light_record(point.light), s.n, s.wo, walk.lambda);
+            l = light_radiance(light_record(point.light), s, walk.lambda);
         } else {
             point.light = tables[world.infinite + i];
             point.is_distant = true;

@@ -37,9 +37,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 14] = plumbing! {
+const PLUMBING: [&str; 15] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "hair_material" "lights" "light_choices" "cameras"
+    "hair_material" "emission_images" "lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
@@ -92,6 +92,8 @@ pub struct Parts {
     pub holes: bool,
     /// Textures of images.
     pub images: bool,
+    /// Lights with surfaces whose images are their emission, or choose their points.
+    pub emission_images: bool,
     /// Textures of noise.
     pub noise: bool,
     /// Coated materials.
@@ -239,11 +241,22 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, curves, hair, measured, rare_samplers, media: _ } =
-        parts;
+    let Parts {
+        holes,
+        images,
+        emission_images,
+        noise,
+        coats,
+        principled,
+        curves,
+        hair,
+        measured,
+        rare_samplers,
+        media: _,
+    } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
+        const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
         const HAS_MEASURED = {measured};\n\
         const HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );

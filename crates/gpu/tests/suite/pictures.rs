@@ -21,7 +21,7 @@ use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -86,6 +86,12 @@ impl Case {
     fn principled() -> Self {
         let normals = [0.6, 0.5, 0.95, 0.4, 0.4, 0.9, 0.5, 0.65, 0.9, 0.5, 0.5, 1.0];
         Self::with_image(PRINCIPLED, "normals.pfm", normals)
+    }
+
+    /// Surfaces of all shapes that emit an image of four colours.
+    fn panels() -> Self {
+        let panel = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 1.5, 1.2, 0.7];
+        Self::with_image(PANELS, "panel.pfm", panel)
     }
 
     /// A scene that reads an image of 2 × 2 colours.
@@ -340,6 +346,13 @@ fn bidirectional_paths_have_the_picture_of_the_cpu() {
 fn a_projector_has_the_picture_of_the_cpu() {
     let path = PathDesc { max_depth: 3, ..PathDesc::default() };
     assert_eq!(Case::projector().compare("projector", &Algorithm::Path(path)), None);
+}
+
+/// Lights with images, which paths hit and choose.
+#[test]
+fn images_of_surfaces_have_the_picture_of_the_cpu() {
+    let path = PathDesc { max_depth: 2, ..PathDesc::default() };
+    assert_eq!(Case::panels().compare("panels", &Algorithm::Path(path)), None);
 }
 
 #[test]
