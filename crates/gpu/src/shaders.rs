@@ -37,9 +37,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 15] = plumbing! {
+const PLUMBING: [&str; 16] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "hair_material" "emission_images" "lights" "light_choices" "cameras"
+    "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
@@ -108,7 +108,7 @@ pub struct Parts {
     pub measured: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
-    /// Participating media, or interfaces, which only [`Algorithm::VolPath`] has.
+    /// Participating media, or interfaces, which paths pass.
     pub media: bool,
 }
 
@@ -124,6 +124,9 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         | Algorithm::AmbientOcclusion(..)
         | Algorithm::Path(_)
         | Algorithm::VolPath(_)
+        | Algorithm::SimpleVolPath(_)
+        | Algorithm::SimplePath(_)
+        | Algorithm::RandomWalk(_)
         | Algorithm::Mlt(..) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
             return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
@@ -218,14 +221,15 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
-        Algorithm::VolPath(_) if parts.media => {
+        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
+        Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.media => {
             concat!(
                 include_str!("../shaders/media.wgsl"),
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/vol_path.wgsl")
             )
         }
-        Algorithm::Path(_) | Algorithm::VolPath(_) => {
+        Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
             concat!(
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/path.wgsl"),
@@ -252,13 +256,13 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         hair,
         measured,
         rare_samplers,
-        media: _,
+        media,
     } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
         const HAS_MEASURED = {measured};\n\
-        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_INTERFACES = {media};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

@@ -13,8 +13,8 @@ use film::Film;
 use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
-    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RayCasting,
-    RayIntegrator, Session, SessionState, Sppm, VolPath, Whitted,
+    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
+    RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, VolPath, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
@@ -175,6 +175,9 @@ impl Case {
             Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
             Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
             Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
+            Algorithm::SimpleVolPath(desc) => self.by_rays(VolPath::simple(desc.max_depth)),
+            Algorithm::SimplePath(desc) => self.by_rays(SimplePath(*desc)),
+            Algorithm::RandomWalk(desc) => self.by_rays(RandomWalk(*desc)),
             Algorithm::LightTracing(desc) => Box::new(LightTracing::new(*desc, sampler, light_sampler)),
             Algorithm::Bdpt(desc) => Box::new(Bdpt::new(*desc, sampler, light_sampler)),
             Algorithm::Mlt(desc, seed) => Box::new(Mlt::new(*desc, sampler, *seed)),

@@ -73,7 +73,9 @@ fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     let path = Algorithm::Path(Default::default());
     let vol_path = Algorithm::VolPath(Default::default());
+    let simple = Algorithm::SimplePath(Default::default());
     let algorithms = [
+        simple.clone(),
         Algorithm::RayCasting,
         Algorithm::Whitted(Default::default()),
         occlusion,
@@ -93,7 +95,9 @@ fn kernels_are_valid() {
                 add(algorithm, shaders::light(algorithm, parts, false));
             }
         }
-        add(&"media", shaders::pixels(&vol_path, Parts { media: true, ..parts }));
+        for algorithm in [&path, &vol_path, &simple] {
+            add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
+        }
         add(&"chains", shaders::chains(parts));
         shaders::wavefront(parts).into_iter().for_each(|source| add(&"wavefront", source));
         add(&"other light", shaders::light(&path, parts, true));
