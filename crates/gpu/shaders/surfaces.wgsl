@@ -33,7 +33,7 @@ fn seen_normal(s: Surface) -> vec3f {
 }
 
 fn spawn(s: Surface, d: vec3f) -> Ray {
-    return Ray_spawn(s.p, s.n, d, 0);
+    return Ray_spawn(s.p, s.n, d, shutter_time);
 }
 
 // The rows of a matrix.

@@ -110,6 +110,8 @@ pub struct Parts {
     pub rare_samplers: bool,
     /// Participating media, or interfaces, which paths pass.
     pub media: bool,
+    /// Diffuse surfaces instead of all others.
+    pub force_diffuse: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm; of Metropolis light transport,
@@ -257,12 +259,13 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         measured,
         rare_samplers,
         media,
+        force_diffuse,
     } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
         const HAS_MEASURED = {measured};\n\
-        const HAS_INTERFACES = {media};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const FORCES_DIFFUSE = {force_diffuse};\nconst HAS_INTERFACES = {media};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

@@ -282,8 +282,8 @@ impl Flattener<'_> {
                 | Algorithm::SimplePath(_)
                 | Algorithm::RandomWalk(_)
         );
+        self.parts.force_diffuse = view.options.force_diffuse;
         let whole = [
-            (view.options.force_diffuse, "`forcediffuse`"),
             (!knows_media && has_media(self.scene), "participating media or interfaces"),
             (view.wavelengths.is_some(), "spectral films"),
             (film.layers() != film::LayerSet::NONE, "layers beside the colour"),

@@ -243,6 +243,9 @@ impl Realtime {
         if matches!(view.camera.projection(), Projection::Spherical(_)) {
             return Err(AimError::Refused("frames of camera `spherical`"));
         }
+        if view.camera.is_moving() {
+            return Err(AimError::Refused("frames of moving cameras"));
+        }
         let camera = cameras::words(view).map_err(AimError::Refused)?;
         let device = self.kernels.device();
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
-    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
+    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, SimplePathDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
@@ -21,7 +21,7 @@ use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PAN, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -575,6 +575,23 @@ fn spherical_cameras_have_the_picture_of_the_cpu() {
         let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
         assert_eq!(refusals.expect("a refusal")[0].what, "light paths to camera `spherical`");
     }
+}
+
+#[test]
+fn moving_cameras_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(PAN);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("pan", &path), None);
+    let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+    assert_eq!(refusals.expect("a refusal")[0].what, "light paths to moving cameras");
+}
+
+/// Of glass the reflectance is 1, and of a rough metal it is estimated.
+#[test]
+fn forced_diffuse_surfaces_have_the_picture_of_the_cpu() {
+    let text = format!("Option \"forcediffuse\" true\n{MEDLEY}");
+    let simple = Algorithm::SimplePath(SimplePathDesc { max_depth: 3, ..Default::default() });
+    assert_eq!(Case::of_text(&text).compare("forced diffuse", &simple), None);
 }
 
 #[test]

@@ -124,6 +124,33 @@ ReverseOrientation
 Shape "cylinder" "float radius" 0.3 "float zmin" -0.3 "float zmax" 0.4 "float phimax" 200
 "#;
 
+/// A camera that turns, moves and stretches while its shutter is open, before the motion is over.
+pub const PAN: &str = r#"
+TransformTimes 1 4
+ActiveTransform EndTime
+Rotate 25 0.1 0.2 1
+Translate 0.4 0.3 0
+Scale 1.2 0.9 1
+ActiveTransform All
+LookAt 0 -6 2  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 40 "float shutteropen" 0.5 "float shutterclose" 3 "float lensradius" 0.1
+    "float focaldistance" 6
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
+Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "diffuse" "texture reflectance" "squares"
+Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
+Translate -0.7 0 0.6
+Material "conductor"
+Shape "sphere" "float radius" 0.6
+Translate 1.4 0 0
+Material "dielectric"
+Shape "sphere" "float radius" 0.6
+"#;
+
 /// Principled surfaces of all kinds: metal with a textured roughness, brushed metal, coats, fuzz,
 /// films, frosted glass, and a window.
 pub const PRINCIPLED: &str = r#"

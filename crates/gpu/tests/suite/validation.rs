@@ -53,6 +53,7 @@ fn parts(bits: u32) -> Parts {
         measured,
         rare_samplers,
         media: false,
+        force_diffuse: false,
     }
 }
 
@@ -98,6 +99,7 @@ fn kernels_are_valid() {
         for algorithm in [&path, &vol_path, &simple] {
             add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
         }
+        add(&"forced diffuse", shaders::pixels(&simple, Parts { force_diffuse: true, ..parts }));
         add(&"chains", shaders::chains(parts));
         shaders::wavefront(parts).into_iter().for_each(|source| add(&"wavefront", source));
         add(&"other light", shaders::light(&path, parts, true));
