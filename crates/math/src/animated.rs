@@ -24,8 +24,8 @@ struct Motion {
     stretch: [DMat3; 2],
 }
 
-/// What the transform at a time is interpolated from, for engines that do so elsewhere. At both keys
-/// it is translation · rotation · stretch.
+/// What the transform at a time is interpolated from, for engines that do so elsewhere. At both
+/// keys it is translation · rotation · stretch.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionKeys {
     /// The times of the keys.

@@ -586,7 +586,6 @@ fn moving_cameras_have_the_picture_of_the_cpu() {
     assert_eq!(refusals.expect("a refusal")[0].what, "light paths to moving cameras");
 }
 
-/// Of glass the reflectance is 1, and of a rough metal it is estimated.
 #[test]
 fn forced_diffuse_surfaces_have_the_picture_of_the_cpu() {
     let text = format!("Option \"forcediffuse\" true\n{MEDLEY}");
