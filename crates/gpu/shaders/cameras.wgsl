@@ -38,12 +38,54 @@ fn placed_camera() -> PlacedCamera {
     let at = world.camera;
     let row = at + 1;
     let screen = Screen(vec2f(number(at + 13), number(at + 14)), vec2f(number(at + 15), number(at + 16)));
+    let lens = ThinLens(number(at + 17), number(at + 18));
+    if (tables[at + 33] == 1) {
+        let placement = placement_at(at + 36, shutter_time);
+        return PlacedCamera(placement.linear, placement.translation, screen, lens);
+    }
     return PlacedCamera(
         Rows(vector(row), vector(row + 4), vector(row + 8)),
         vec3f(number(row + 3), number(row + 7), number(row + 11)),
         screen,
-        ThinLens(number(at + 17), number(at + 18)),
+        lens,
     );
+}
+
+// An affine transform.
+struct Placement {
+    linear: Rows,
+    translation: vec3f,
+}
+
+// The numbers of a key of a motion.
+const MOTION_KEY = 17u;
+
+// A transform at a time, interpolated between two keys as in `math/src/animated.rs`.
+fn placement_at(first: u32, time: f32) -> Placement {
+    let last = first + MOTION_KEY;
+    let t = clamp((time - number(first)) / (number(last) - number(first)), 0, 1);
+    let angle = number(last + MOTION_KEY);
+    var weights = vec2f(1 - t, t);
+    if (angle > 1e-4) {
+        weights = vec2f(sin_cos((1 - t) * angle).v0, sin_cos(t * angle).v0) / sin_cos(angle).v0;
+    }
+    let start = vec4f(vector(first + 4), number(first + 7));
+    let end = vec4f(vector(last + 4), number(last + 7));
+    let q = start * weights.x + end * weights.y;
+    let twice = 2 * q.xyz;
+    let squares = q.xyz * twice;
+    let products = q.xxy * twice.yzz;
+    let turns = q.w * twice;
+    let stretch = Rows(
+        mix(vector(first + 8), vector(last + 8), t),
+        mix(vector(first + 11), vector(last + 11), t),
+        mix(vector(first + 14), vector(last + 14), t),
+    );
+    let x = vec3f(1 - squares.y - squares.z, products.x - turns.z, products.y + turns.y);
+    let y = vec3f(products.x + turns.z, 1 - squares.x - squares.z, products.z - turns.x);
+    let z = vec3f(products.y - turns.y, products.z + turns.x, 1 - squares.x - squares.y);
+    let linear = Rows(transposed(stretch, x), transposed(stretch, y), transposed(stretch, z));
+    return Placement(linear, mix(vector(first + 1), vector(last + 1), t));
 }
 
 // The direction of a position on the square of a spherical camera.
@@ -69,6 +111,15 @@ fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
     return Ray(times(camera.rotation, ray.v0) + camera.translation, times(camera.rotation, ray.v1), 0);
 }
 
+// The time of the sample, of cameras that move.
+var<private> shutter_time: f32;
+
+fn set_shutter_time(u: f32) {
+    if (tables[world.camera + 33] == 1) {
+        shutter_time = lerp(u, number(world.camera + 34), number(world.camera + 35));
+    }
+}
+
 // A camera ray of unit direction, and its neighbours.
 struct CameraRay {
     ray: Ray,
@@ -88,7 +139,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     }
     let ray = rays_of_film[0];
     if (!has_neighbours) {
-        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), 0), no_differentials());
+        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), no_differentials());
     }
     let rx = rays_of_film[1];
     let ry = rays_of_film[2];
@@ -99,7 +150,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
     );
-    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), 0), near);
+    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), near);
 }
 
 // A sample of a pixel: the camera ray, its wavelengths, and its weight in the pixel.
@@ -134,6 +185,7 @@ fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
     let is_centered = world.is_centered == 1;
     let drawn = select(filter_sample(u[1]), vec3f(0, 0, 1), is_centered);
     let position = vec2f(pixel) + 0.5 + drawn.xy;
+    set_shutter_time(select(u[2].x, 0.5, is_centered));
     let camera = camera_ray(position, select(u[3], vec2f(0.5), is_centered));
     let wavelength = select(u[0].x, 0.5, world.has_one_wavelength == 1);
     return CameraSample(

@@ -9,6 +9,8 @@ fn scattered(s: Surface, bsdf: Bsdf, light: LightSample) -> vec4f {
 struct DirectLight {
     shadow: ShadowRay,
     l: vec4f,
+    // Of a light that paths do not hit, which interfaces occlude.
+    is_delta: bool,
 }
 
 // The light of the light that `u` chooses and of its point that `u_light` chooses, which a surface
@@ -36,7 +38,8 @@ fn direct_light(
     }
     let pdf = choice.pmf * light.pdf;
     var weight = 1.0;
-    if (!is_delta(light_record(choice.light))) {
+    found.is_delta = is_delta(light_record(choice.light));
+    if (!found.is_delta) {
         weight = power_heuristic(pdf, bsdf_pdf(bsdf, s.wo, light.wi));
     }
     found.shadow = shadow_ray(s, light);

@@ -110,7 +110,7 @@ fn image_direction_density(at: u32, w: vec3f) -> f32 {
 // The density of a direction from a surface.
 fn surface_direction_density(at: u32, n: vec3f, w: vec3f) -> f32 {
     let cosine = dot(n, w);
-    if (tables[at + 3] == 1) {
+    if (is_two_sided(at)) {
         return 0.5 * cosine_hemisphere_pdf(abs(cosine));
     }
     return cosine_hemisphere_pdf(max(cosine, 0));
@@ -166,7 +166,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             let point = point_by_area(at, u_position);
             var u_side = u_direction;
             var side = point.n;
-            if (tables[at + 3] == 1) {
+            if (is_two_sided(at)) {
                 u_side.x *= 2;
                 if (u_side.x >= 1) {
                     u_side.x -= 1;
@@ -178,7 +178,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             e.origin.n = point.n;
             e.origin.uv = point.uv;
             e.ray = Ray_spawn(point.p, point.n, w, 0);
-            share *= abs(dot(point.n, w));
+            share = image_share_at(at, point.p.p, point.uv, lambda) * abs(dot(point.n, w));
             pdf = point.pdf * surface_direction_density(at, point.n, w);
         }
     }

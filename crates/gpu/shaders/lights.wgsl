@@ -51,17 +51,26 @@ fn flat_light(at: u32) -> FlatShape {
     return FlatShape(vector(at + 4), sides, vector(at + 13), tables[at] == TRIANGLE_LIGHT);
 }
 
-// Whether a surface with the normal `n` emits along `w`.
-fn emits(at: u32, n: vec3f, w: vec3f) -> bool {
-    return !(tables[at + 3] == 0 && dot(n, w) < 0);
+// Whether both sides of a surface emit.
+fn is_two_sided(at: u32) -> bool {
+    return (tables[at + 3] & 1) == 1;
 }
 
-// The radiance that a surface with the normal `n` sends along `w`.
-fn light_radiance(at: u32, n: vec3f, w: vec3f, lambda: SampledWavelengths) -> vec4f {
-    if (!emits(at, n, w)) {
+// Whether a surface with the normal `n` emits along `w`.
+fn emits(at: u32, n: vec3f, w: vec3f) -> bool {
+    return is_two_sided(at) || !(dot(n, w) < 0);
+}
+
+// The radiance that the surface of a light sends back along the ray that hits it.
+fn light_radiance(at: u32, s: Surface, lambda: SampledWavelengths) -> vec4f {
+    if (!emits(at, s.n, s.wo)) {
         return vec4f();
     }
-    return emission(at, lambda);
+    var l = emission(at, lambda);
+    if (HAS_EMISSION_IMAGES && emission_image(at) != 0) {
+        l *= image_share(emission_image(at), s.uv, lambda);
+    }
+    return l;
 }
 
 // The shadow ray from a surface to a light sample, and its end.
@@ -94,7 +103,7 @@ fn sample_light(
         case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
             sample = sample_far_light(at, u, lambda, allow_incomplete);
         }
-        default: { sample = sample_surface(at, context, u); }
+        default: { sample = sample_surface(at, context, u, lambda); }
     }
     sample.l *= emission(at, lambda);
     sample.valid = sample.valid && !is_black(sample.l);
@@ -177,7 +186,7 @@ fn sample_far_light(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incompl
     return sample;
 }
 
-fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f) -> LightSample {
+fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: SampledWavelengths) -> LightSample {
     var point: ShapeSample;
     var is_valid = true;
     switch (tables[at]) {
@@ -201,7 +210,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f) -> LightSample
         return sample;
     }
     sample.wi = Vec3_normalize(to_light);
-    sample.l = vec4f(1);
+    sample.l = image_share_at(at, point.p.p, point.uv, lambda);
     sample.pdf = point.pdf;
     sample.p = point.p;
     sample.n = point.n;
@@ -296,8 +305,21 @@ fn patch_weights(at: u32) -> vec4f {
     return vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
 }
 
+// The density with which parameters of a patch are chosen.
+fn patch_density(at: u32, uv: vec2f) -> f32 {
+    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
+        return density_of(tables[at + 21], uv);
+    }
+    return bilinear_pdf(uv, patch_weights(at));
+}
+
 fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
-    let uv = sample_bilinear(u, patch_weights(at));
+    var uv: vec2f;
+    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
+        uv = draw_2d(tables[at + 21], u).xy;
+    } else {
+        uv = sample_bilinear(u, patch_weights(at));
+    }
     let sides = vector(at + 7) * uv.x + vector(at + 10) * uv.y + vector(at + 13) * (uv.x * uv.y);
     let p = Point3Error(vector(at + 4) + sides, POINT_ERROR * (abs(vector(at + 4)) + abs(sides)));
     let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 20);
@@ -316,7 +338,7 @@ fn surface_density(at: u32, uv: vec2f) -> f32 {
             let radius = number(at + 7);
             return 1 / (4 * 3.1415927 * radius * radius);
         }
-        case PATCH_LIGHT: { return bilinear_pdf(uv, patch_weights(at)) / length(patch_normal(at, uv)); }
+        case PATCH_LIGHT: { return patch_density(at, uv) / length(patch_normal(at, uv)); }
         default: { return 1 / number(at + 21); }
     }
 }

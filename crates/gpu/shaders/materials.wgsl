@@ -51,11 +51,33 @@ fn material_record(material: u32) -> u32 {
 }
 
 // The BSDF of a point, whose shading geometry gets the material's normals. Dispersive materials
-// terminate the secondary wavelengths.
+// terminate the secondary wavelengths. Where that is forced, it is a diffuse one of the reflectance
+// of its material, estimated by one sample.
+fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
+    let bsdf = material_at(s, context, lambda);
+    if (!FORCES_DIFFUSE) {
+        return bsdf;
+    }
+    var u: array<vec2f, 2>;
+    for (var i = 0u; i < 2; i++) {
+        u[i] = next_numbers(i == 1);
+    }
+    let sample = bsdf_sample(bsdf, (*s).wo, u[0].x, u[1]);
+    var forced: Bsdf;
+    forced.kind = DIFFUSE;
+    forced.frame = bsdf.frame;
+    forced.eta = 1;
+    if (sample.valid) {
+        forced.a = sample.f * (abs(dot(sample.wi, (*s).ns)) / sample.pdf);
+    }
+    return forced;
+}
+
+// The BSDF of the material of a point.
 //
 // All textures are evaluated at one place of the program, because they are long: what mixes choose
 // by, what raises the surface, and the numbers of the material.
-fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
+fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
     var at = material_record((*s).material);
     // The heights here, along u and along v.
     var heights: array<f32, 3>;

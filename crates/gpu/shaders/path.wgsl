@@ -82,13 +82,21 @@ fn shade(
     }
     var s = surface_at(hit, (*path).ray);
     *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
+    if (HAS_INTERFACES && is_interface(s.material)) {
+        var near = (*path).near;
+        var ray = (*path).ray;
+        pass_through(&ray, &near, s, hit.t);
+        (*path).near = near;
+        (*path).ray = ray;
+        return true;
+    }
     let textures = texture_context(s, (*path).near);
     var bsdf = bsdf_at(&s, textures, lambda);
     if ((*path).depth == world.max_depth) {
         return false;
     }
     (*path).depth++;
-    if (world.regularize == 1 && (*path).rough_before) {
+    if (has_setting(REGULARIZES) && (*path).rough_before) {
         regularize(&bsdf);
     }
     let flags = bsdf_flags(bsdf);

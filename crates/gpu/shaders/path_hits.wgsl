@@ -25,7 +25,7 @@ fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec
         return vec4f();
     }
     let light = s.light - 1;
-    let l = light_radiance(light_record(light), s.n, s.wo, lambda);
+    let l = light_radiance(light_record(light), s, lambda);
     if (is_black(l) || !path.is_found_twice) {
         return l;
     }

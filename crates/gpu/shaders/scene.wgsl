@@ -21,7 +21,7 @@ struct World {
     is_centered: u32,
     has_one_wavelength: u32,
     max_depth: u32,
-    regularize: u32,
+    settings: u32,
     white: u32,
     white_scale: f32,
     max_distance: f32,
@@ -38,6 +38,16 @@ struct World {
 @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
 @group(0) @binding(4) var<storage, read_write> tables: array<u32>;
 @group(0) @binding(7) var<storage, read_write> texels: array<u32>;
+
+// The bits of `settings`.
+const REGULARIZES = 1u;
+const SAMPLES_LIGHTS = 2u;
+const SAMPLES_BSDFS = 4u;
+const MIRRORS_DIRECTIONS = 8u;
+
+fn has_setting(bit: u32) -> bool {
+    return (world.settings & bit) != 0;
+}
 
 // Where the sample is in its random numbers.
 var<private> place: Address;

@@ -11,7 +11,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     }
     let s = surface_at(hit, ray);
     if (s.light != 0) {
-        l = light_radiance(light_record(s.light - 1), s.n, s.wo, *lambda);
+        l = light_radiance(light_record(s.light - 1), s, *lambda);
     }
     return l;
 }

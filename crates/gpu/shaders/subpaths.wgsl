@@ -177,7 +177,7 @@ fn lights_met(walk: Subpath, before: ShapeSampleContext, hit: Hit, s: Surface) -
         var l: vec4f;
         if (hit.found) {
             point = LightPoint(s.light - 1, s.p.p, s.n, hit.uv, false);
-            l = light_radiance(light_record(point.light), s.n, s.wo, walk.lambda);
+            l = light_radiance(light_record(point.light), s, walk.lambda);
         } else {
             point.light = tables[world.infinite + i];
             point.is_distant = true;
@@ -320,7 +320,7 @@ fn arrive(walk: ptr<function, Subpath>, s: ptr<function, Surface>, t: f32) -> Ar
     var bsdf = bsdf_at(s, textures, &lambda);
     (*walk).lambda = lambda;
     bsdf.mode = select(TransportMode_Radiance, TransportMode_Importance, is_light_path);
-    if (world.regularize == 1 && (*walk).rough_before) {
+    if (has_setting(REGULARIZES) && (*walk).rough_before) {
         regularize(&bsdf);
     }
     (*walk).depth++;

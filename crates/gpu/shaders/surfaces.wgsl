@@ -33,7 +33,7 @@ fn seen_normal(s: Surface) -> vec3f {
 }
 
 fn spawn(s: Surface, d: vec3f) -> Ray {
-    return Ray_spawn(s.p, s.n, d, 0);
+    return Ray_spawn(s.p, s.n, d, shutter_time);
 }
 
 // The rows of a matrix.
@@ -350,10 +350,16 @@ fn alpha_at(hit: Hit, s: Surface) -> f32 {
     return clamp(texture(alpha, context, SampledWavelengths()).x, 0, 1);
 }
 
+// Whether interfaces do not stop the ray that is traced.
+var<private> passes_interfaces: bool;
+
 // Whether a hit on a surface that is cut out counts, by a hash of the ray and the distance.
 fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
     if (!HAS_HOLES) {
         return true;
+    }
+    if (HAS_INTERFACES && is_interface(tables[world.geometries + 5 * hit.geometry])) {
+        return !passes_interfaces;
     }
     let alpha = alpha_at(hit, surface_at(hit, Ray(o, d, 0)));
     return alpha >= 1 || (alpha > 0 && hashed(o, d, bitcast<u32>(hit.t)) < alpha);

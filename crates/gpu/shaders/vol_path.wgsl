@@ -147,11 +147,8 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         rays++;
         let hit = trace(part.o, part.d, t_max, false);
         let geometry = hit.geometry;
-        var is_interface = false;
-        if (hit.found) {
-            is_interface = tables[material_record(tables[world.geometries + 5 * geometry])] == INTERFACE;
-        }
-        if (is_shadow && hit.found && !is_interface) {
+        let is_open = hit.found && is_interface(tables[world.geometries + 5 * geometry]);
+        if (is_shadow && hit.found && !is_open) {
             shadow.is_on_its_way = false;
             continue;
         }
@@ -204,11 +201,13 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 break;
             }
             l += carried(path) * emitted(path, s, hit.uv, *lambda);
-            if (is_interface) {
+            if (is_open) {
                 path.medium = medium_towards(geometry, s.n, part.d, medium);
-                path.near.rx_origin += path.near.rx_direction * hit.t;
-                path.near.ry_origin += path.near.ry_direction * hit.t;
-                path.ray = spawn(s, part.d);
+                var near_by = path.near;
+                var beyond = path.ray;
+                pass_through(&beyond, &near_by, s, hit.t);
+                path.near = near_by;
+                path.ray = beyond;
                 continue;
             }
             textures = texture_context(s, path.near);
@@ -219,7 +218,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             if (SampledWavelengths_secondary_terminated(*lambda)) {
                 keep_first(&path);
             }
-            if (world.regularize == 1 && path.rough_before) {
+            if (has_setting(REGULARIZES) && path.rough_before) {
                 regularize(&bsdf);
             }
             flags = bsdf_flags(bsdf);
@@ -232,7 +231,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         let phase = HenyeyGreenstein(number(max(medium, 1) + 1));
         // What chooses the light and its point, the collisions of the shadow ray, and the lobe and
         // its direction.
-        let samples_light = in_medium || is_non_specular(flags);
+        let samples_light = has_setting(SAMPLES_LIGHTS) && (in_medium || is_non_specular(flags));
         var u: array<vec2f, 6>;
         for (var i = select(4u, 0u, samples_light); i < 6; i++) {
             if (!(in_medium && i == 4)) {
@@ -256,7 +255,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (in_medium) {
             let scattered = HenyeyGreenstein_sample_p(phase, s.wo, u[5]);
             path.near = no_differentials();
-            path.is_found_twice = true;
+            path.is_found_twice = has_setting(SAMPLES_LIGHTS);
             path.rough_before = true;
             leave(&path, s, context, scattered.v0, scattered.v1);
             goes_on = survives(&path);
@@ -272,8 +271,9 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             if (HAS_COATS && sample.pdf_is_proportional) {
                 pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
             }
-            path.is_found_twice = (sample.flags & BxdfFlags_SPECULAR) == 0;
-            path.rough_before |= path.is_found_twice;
+            let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
+            path.is_found_twice = !is_specular && has_setting(SAMPLES_LIGHTS);
+            path.rough_before |= !is_specular;
             if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
                 path.eta_scale *= sample.eta * sample.eta;
             }

@@ -28,7 +28,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         var s = surface_at(hit, branch.ray);
         if (s.light != 0) {
-            l += branch.beta * light_radiance(light_record(s.light - 1), s.n, s.wo, *lambda);
+            l += branch.beta * light_radiance(light_record(s.light - 1), s, *lambda);
         }
         let textures = texture_context(s, branch.near);
         let bsdf = bsdf_at(&s, textures, lambda);

@@ -3,7 +3,8 @@
 use description::schema::Settings;
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
-    MltTechnique, PathDesc, ReflectionsDesc, SppmDesc, WhittedDesc,
+    MltTechnique, PathDesc, RandomWalkDesc, ReflectionsDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc,
+    WhittedDesc,
 };
 use sampling::Sampler;
 use spectrum::RgbColorSpace;
@@ -24,6 +25,12 @@ pub enum Algorithm {
     Path(PathDesc),
     /// The same through media.
     VolPath(PathDesc),
+    /// The same without light sampling.
+    SimpleVolPath(SimpleVolPathDesc),
+    /// Path tracing by light sampling or by hits, without weights.
+    SimplePath(SimplePathDesc),
+    /// Walks in uniform directions.
+    RandomWalk(RandomWalkDesc),
     /// Light paths, connected to the camera.
     LightTracing(LightTracingDesc),
     /// Bidirectional path tracing.
@@ -54,6 +61,9 @@ impl Algorithm {
             IntegratorDesc::AmbientOcclusion(settings) => Ok(Self::AmbientOcclusion(settings, space)),
             IntegratorDesc::Path(settings) => Ok(Self::Path(settings)),
             IntegratorDesc::VolPath(settings) => Ok(Self::VolPath(settings)),
+            IntegratorDesc::SimpleVolPath(settings) => Ok(Self::SimpleVolPath(settings)),
+            IntegratorDesc::SimplePath(settings) => Ok(Self::SimplePath(settings)),
+            IntegratorDesc::RandomWalk(settings) => Ok(Self::RandomWalk(settings)),
             IntegratorDesc::LightTracing(settings) => Ok(Self::LightTracing(settings)),
             IntegratorDesc::Bdpt(settings) if settings.visualize_strategies || settings.visualize_weights => {
                 Err(format!("pictures of the strategies of integrator `{name}`"))
@@ -71,9 +81,13 @@ impl Algorithm {
     /// How it chooses a light for a point.
     pub fn light_sampler(&self) -> LightSamplerDesc {
         match self {
-            Self::RayCasting | Self::Whitted(_) | Self::AmbientOcclusion(..) | Self::LightTracing(_) => {
-                LightSamplerDesc::Uniform
-            }
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(..)
+            | Self::SimpleVolPath(_)
+            | Self::SimplePath(_)
+            | Self::RandomWalk(_)
+            | Self::LightTracing(_) => LightSamplerDesc::Uniform,
             Self::Path(desc) | Self::VolPath(desc) => desc.light_sampler,
             Self::Bdpt(_) | Self::Mlt(..) | Self::Sppm(..) => LightSamplerDesc::Bvh,
         }
@@ -88,6 +102,9 @@ impl Algorithm {
             | Self::AmbientOcclusion(..)
             | Self::Path(_)
             | Self::VolPath(_)
+            | Self::SimpleVolPath(_)
+            | Self::SimplePath(_)
+            | Self::RandomWalk(_)
             | Self::LightTracing(_)
             | Self::Bdpt(_)
             | Self::Sppm(..) => sampler.samples_per_pixel(),
@@ -101,7 +118,10 @@ impl Algorithm {
             | Self::Whitted(_)
             | Self::AmbientOcclusion(..)
             | Self::Path(_)
-            | Self::VolPath(_) => false,
+            | Self::VolPath(_)
+            | Self::SimpleVolPath(_)
+            | Self::SimplePath(_)
+            | Self::RandomWalk(_) => false,
             Self::LightTracing(_) | Self::Bdpt(_) | Self::Mlt(..) | Self::Sppm(..) => true,
         }
     }

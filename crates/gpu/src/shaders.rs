@@ -37,9 +37,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 14] = plumbing! {
+const PLUMBING: [&str; 16] = plumbing! {
     "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "hair_material" "lights" "light_choices" "cameras"
+    "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
@@ -92,6 +92,8 @@ pub struct Parts {
     pub holes: bool,
     /// Textures of images.
     pub images: bool,
+    /// Lights with surfaces whose images are their emission, or choose their points.
+    pub emission_images: bool,
     /// Textures of noise.
     pub noise: bool,
     /// Coated materials.
@@ -106,8 +108,10 @@ pub struct Parts {
     pub measured: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
-    /// Participating media, or interfaces, which only [`Algorithm::VolPath`] has.
+    /// Participating media, or interfaces, which paths pass.
     pub media: bool,
+    /// Diffuse surfaces instead of all others.
+    pub force_diffuse: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm; of Metropolis light transport,
@@ -122,6 +126,9 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         | Algorithm::AmbientOcclusion(..)
         | Algorithm::Path(_)
         | Algorithm::VolPath(_)
+        | Algorithm::SimpleVolPath(_)
+        | Algorithm::SimplePath(_)
+        | Algorithm::RandomWalk(_)
         | Algorithm::Mlt(..) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
             return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
@@ -216,14 +223,15 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
-        Algorithm::VolPath(_) if parts.media => {
+        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
+        Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.media => {
             concat!(
                 include_str!("../shaders/media.wgsl"),
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/vol_path.wgsl")
             )
         }
-        Algorithm::Path(_) | Algorithm::VolPath(_) => {
+        Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
             concat!(
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/path.wgsl"),
@@ -239,13 +247,25 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts { holes, images, noise, coats, principled, curves, hair, measured, rare_samplers, media: _ } =
-        parts;
+    let Parts {
+        holes,
+        images,
+        emission_images,
+        noise,
+        coats,
+        principled,
+        curves,
+        hair,
+        measured,
+        rare_samplers,
+        media,
+        force_diffuse,
+    } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
+        const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
         const HAS_MEASURED = {measured};\n\
-        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const FORCES_DIFFUSE = {force_diffuse};\nconst HAS_INTERFACES = {media};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

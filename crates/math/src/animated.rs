@@ -24,6 +24,20 @@ struct Motion {
     stretch: [DMat3; 2],
 }
 
+/// What the transform at a time is interpolated from, for engines that do so elsewhere. At both
+/// keys it is translation · rotation · stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionKeys {
+    /// The times of the keys.
+    pub times: [f32; 2],
+    /// Translations.
+    pub translations: [DVec3; 2],
+    /// Unit quaternions of which none is more than a right angle from the other.
+    pub rotations: [DQuat; 2],
+    /// Stretches.
+    pub stretches: [DMat3; 2],
+}
+
 impl From<Transform> for AnimatedTransform {
     fn from(start: Transform) -> Self {
         Self { start, motion: None }
@@ -72,6 +86,14 @@ impl AnimatedTransform {
     #[inline]
     pub fn start(&self) -> &Transform {
         &self.start
+    }
+
+    /// What it is interpolated from; `None` at rest.
+    pub fn keys(&self) -> Option<MotionKeys> {
+        self.motion.as_ref().map(|motion| {
+            let Motion { times, translation, rotation, stretch, .. } = **motion;
+            MotionKeys { times, translations: translation, rotations: rotation, stretches: stretch }
+        })
     }
 
     /// A box around the moving box `b` at all times.

@@ -18,7 +18,7 @@ mod spherical;
 mod transform;
 mod vector;
 
-pub use animated::AnimatedTransform;
+pub use animated::{AnimatedTransform, MotionKeys};
 pub use bounds::{Bounds2, Bounds2i, Bounds3};
 pub use cone::{DirectionCone, bound_subtended_directions};
 pub use elementary::map_lanes;

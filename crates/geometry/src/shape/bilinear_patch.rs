@@ -146,6 +146,11 @@ impl BilinearPatch {
         Self { image: Some(image), ..self }
     }
 
+    /// What samples follow beside the area, if anything.
+    pub fn image(&self) -> Option<&PiecewiseConstant2d> {
+        self.image.as_deref()
+    }
+
     pub(super) fn bounds(&self) -> Option<Bounds3> {
         Some(Bounds3::around(self.p))
     }

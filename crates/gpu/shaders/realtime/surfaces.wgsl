@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         found.n = seen_normal(s);
         found.id = 1 + s.material;
         if (s.light != 0) {
-            found.guide = light_radiance(light_record(s.light - 1), s.n, s.wo, lambda).xyz;
+            found.guide = light_radiance(light_record(s.light - 1), s, lambda).xyz;
         }
         if (all(found.guide == vec3f())) {
             let bsdf = bsdf_at(&s, texture_context(s, camera.near), &lambda);

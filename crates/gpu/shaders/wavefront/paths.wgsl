@@ -158,6 +158,7 @@ fn kept_path(index: u32) -> Path {
     let o = numbers(RAY_O, index);
     let d = numbers(RAY_D, index);
     path.ray = Ray(o.xyz, d.xyz, o.w);
+    shutter_time = o.w;
     path.pdf = d.w;
     let p = numbers(P, index);
     path.eta_scale = p.w;

@@ -1,9 +1,13 @@
 //! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
 //! (top left and pixel; of a sphere its width and height in pixels) and the lens (radius and focal
 //! distance); then the factors on differences to rays of neighbouring pixels, of rays that have
-//! them and of others, and the smallest of these differences, of origins and of directions.
+//! them and of others, and the smallest of these differences, of origins and of directions; then 1
+//! if it moves. The matrix is then that of the first key, and there follow the times at which the
+//! shutter opens and closes, for both keys the time, the translation, the unit quaternion of the
+//! rotation, and the rows of the stretch, and the angle between these quaternions.
 
 use description::{Span, SphericalMapping};
+use math::MotionKeys;
 use scene::View;
 use scene::camera::{Projection, Screen, ThinLens, differential_scale};
 
@@ -21,6 +25,9 @@ impl Flattener<'_> {
         if algorithm.splats() && matches!(view.camera.projection(), Projection::Spherical(_)) {
             self.refuse("light paths to camera `spherical`", Span::NONE);
         }
+        if algorithm.begins_at_lights() && view.camera.is_moving() {
+            self.refuse("light paths to moving cameras", Span::NONE);
+        }
         let words = words(view).unwrap_or_else(|what| {
             self.refuse(what, Span::NONE);
             Vec::new()
@@ -32,9 +39,6 @@ impl Flattener<'_> {
 /// The record of a view's camera; the error is what kernels do not draw.
 pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
     let motion = view.camera.transform().animated();
-    if motion.is_moving() {
-        return Err("moving cameras");
-    }
     let flat = |screen: &Screen, lens: ThinLens| {
         let &Screen { top_left, per_pixel } = screen;
         [top_left.x, top_left.y, per_pixel.x, per_pixel.y, lens.radius, lens.focal_distance]
@@ -59,5 +63,22 @@ pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
     numbers.extend([samples, least].map(differential_scale));
     let differences = view.camera.minimum_differentials().differences();
     numbers.extend(differences.as_flattened().iter().flat_map(|v| v.to_array()));
-    Ok([kind].into_iter().chain(numbers.into_iter().map(f32::to_bits)).collect())
+    let keys = motion.keys().map(|keys| [&view.camera.shutter()[..], &interpolated(&keys)].concat());
+    let (moves, moving) = (keys.is_some().into(), keys.unwrap_or_default());
+    let bits = |numbers: Vec<f32>| numbers.into_iter().map(f32::to_bits);
+    Ok([kind].into_iter().chain(bits(numbers)).chain([moves]).chain(bits(moving)).collect())
+}
+
+/// The numbers of both keys of a motion, and the angle.
+fn interpolated(keys: &MotionKeys) -> Vec<f32> {
+    let MotionKeys { times, translations, rotations, stretches } = keys;
+    let mut numbers = Vec::new();
+    for i in 0..2 {
+        numbers.push(times[i]);
+        numbers.extend(translations[i].as_vec3().to_array());
+        numbers.extend(rotations[i].as_quat().to_array());
+        numbers.extend(stretches[i].transpose().as_mat3().to_cols_array());
+    }
+    numbers.push(rotations[0].dot(rotations[1]).clamp(-1.0, 1.0).acos() as f32);
+    numbers
 }

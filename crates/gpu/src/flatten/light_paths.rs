@@ -29,7 +29,10 @@ impl Flattener<'_> {
             | Algorithm::Whitted(_)
             | Algorithm::AmbientOcclusion(..)
             | Algorithm::Path(_)
-            | Algorithm::VolPath(_) => (self.sampler(sampler), pixels as f32),
+            | Algorithm::VolPath(_)
+            | Algorithm::SimpleVolPath(_)
+            | Algorithm::SimplePath(_)
+            | Algorithm::RandomWalk(_) => (self.sampler(sampler), pixels as f32),
         };
         let emitting = self.power(&PowerLightSampler::new(self.scene.lights()));
         let (sphere, reach) = (self.scene.sphere(), film.reach());

@@ -1,30 +1,32 @@
-//! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit, and numbers.
+//! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit plus twice the
+//! offset of the image, if it has one, and numbers.
 //!
 //! | kind | numbers |
 //! |---|---|
 //! | 0 point | position |
 //! | 1 spot | position, axis, cosines of the start and of the end of the falloff |
 //! | 2 distant | direction |
-//! | 3 triangle, 4 rectangle | corner, sides, normal |
+//! | 3 triangle, 4 rectangle | corner, sides, normal, and of a triangle with an image the texture coordinates at its corners |
 //! | 5 sphere | centre, radius, 1 or −1 where the outside is inside, the rows of the rotation from object to render space |
 //! | 6 uniform infinite | none |
 //! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
 //! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
-//! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside |
+//! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
-//! spectrum.
+//! spectrum. The image of a surface is the offset of a pyramid of one level, in which colours are
+//! interpolated, and that of their space.
 
 use std::f32::consts::TAU;
 
 use description::Span;
-use geometry::{PlainShape, RevolvedKind};
-use image::{Image, Projection};
+use geometry::{PlainShape, RevolvedKind, Shape};
+use image::{Image, Projection, WrapMode};
 use math::{AnimatedTransform, DVec3};
 use scene::light::{
-    AreaLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef, ProjectionLight,
+    AreaEmission, AreaLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef, ProjectionLight,
 };
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 
@@ -48,7 +50,7 @@ impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
     pub fn lights(&mut self) -> (u32, u32) {
         let mut offsets = Vec::new();
-        // All primitives of a geometry have the same spectrum.
+        // All primitives of a geometry have the same spectrum and image.
         let mut shared = None;
         for light in self.scene.lights().iter() {
             offsets.push(self.light(&light, &mut shared));
@@ -57,7 +59,7 @@ impl Flattener<'_> {
         (self.slab.add(offsets), self.slab.add(infinite))
     }
 
-    fn light(&mut self, light: &LightRef, shared: &mut Option<u32>) -> u32 {
+    fn light(&mut self, light: &LightRef, shared: &mut Option<[u32; 2]>) -> u32 {
         let span = light.span();
         match light.row() {
             Light::Point(l) => {
@@ -163,31 +165,60 @@ impl Flattener<'_> {
         at
     }
 
-    fn area_light(&mut self, area: &AreaLight, primitive: u32, span: Span, shared: &mut Option<u32>) -> u32 {
+    fn area_light(
+        &mut self,
+        area: &AreaLight,
+        primitive: u32,
+        span: Span,
+        shared: &mut Option<[u32; 2]>,
+    ) -> u32 {
         let emission = &self.scene.emissions()[area.emission.0 as usize];
         let refused = [
             (!area.instance.is_top(), "area lights in instances"),
             (area.alpha.is_some() || area.invisible, "area lights with alpha"),
-            (emission.image.is_some(), "area lights with images"),
         ];
         if let Some((_, what)) = refused.into_iter().find(|(is, _)| *is) {
             return self.no_light(what, span);
         }
         let shape = self.scene.world().geometry(area.geometry).shape(primitive);
-        let (kind, numbers) = if let Some(flat) = shape.as_ref().and_then(|shape| shape.flat_shape()) {
+        let Some(shape) = shape.as_deref() else {
+            return self.no_light("area lights of this shape", span);
+        };
+        let (kind, mut numbers) = if let Some(flat) = shape.flat_shape() {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
             (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
-        } else if let Some(numbers) = shape.and_then(|shape| surface(&shape.plain()?, shape.area())) {
+        } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain, shape.area())) {
             numbers
         } else {
             return self.no_light("area lights of this shape", span);
         };
-        let spectrum = *shared.get_or_insert_with(|| self.spectrum(&emission.radiance.spectrum));
+        if let (Shape::Triangle(triangle), Some(_)) = (shape, &emission.image) {
+            numbers.extend(triangle.uv.iter().flat_map(|uv| uv.to_array()));
+        }
+        let distribution = match shape {
+            Shape::BilinearPatch(patch) => patch.image().map_or(0, |image| self.distribution(image)),
+            _ => 0,
+        };
+        self.parts.emission_images |= distribution != 0;
+        let [spectrum, image] = *shared.get_or_insert_with(|| self.emission(emission, span));
         let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
-        let at = self.slab.add([kind, spectrum, scale.to_bits(), emission.two_sided.into()]);
+        let sides = u32::from(emission.two_sided);
+        let at = self.slab.add([kind, spectrum, scale.to_bits(), sides + 2 * image]);
         self.slab.add_numbers(numbers);
+        self.slab.add([distribution]);
         at
+    }
+
+    /// The offsets of the spectrum of a surface's emission and of its image, or 0.
+    fn emission(&mut self, emission: &AreaEmission, span: Span) -> [u32; 2] {
+        let Some(EmissionImage { image, color_space, .. }) = &emission.image else {
+            return [self.spectrum(&emission.radiance.spectrum), 0];
+        };
+        self.parts.emission_images = true;
+        let pyramid = self.image(std::slice::from_ref(image), WrapMode::Clamp, span);
+        let space = self.color_space(color_space);
+        [self.spectrum(&color_space.illuminant()), self.slab.add([pyramid, space])]
     }
 }
 

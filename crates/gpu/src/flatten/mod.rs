@@ -96,9 +96,11 @@ pub(crate) struct Head {
     /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
     pub(crate) is_centered: u32,
     pub(crate) has_one_wavelength: u32,
-    /// The most scattering events, and whether surfaces are roughened.
+    /// The most scattering events, and bits: 1 if surfaces are roughened; of simple paths and of
+    /// those through media 2 if lights are sampled; of simple paths 4 if directions are by BSDFs,
+    /// and 8 if others are on the sides to which surfaces scatter.
     pub(crate) max_depth: u32,
-    pub(crate) regularize: u32,
+    pub(crate) settings: u32,
     /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
     /// surfaces do not occlude, and whether directions follow the cosine.
     pub(crate) white: u32,
@@ -192,27 +194,35 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         }
         Algorithm::Path(desc) | Algorithm::VolPath(desc) => {
             head.max_depth = desc.max_depth;
-            head.regularize = desc.regularize.into();
+            head.settings = SAMPLES_LIGHTS | regularizes(desc.regularize);
         }
+        Algorithm::SimpleVolPath(desc) => head.max_depth = desc.max_depth,
+        Algorithm::SimplePath(desc) => {
+            head.max_depth = desc.max_depth;
+            head.settings = MIRRORS_DIRECTIONS
+                | if desc.sample_lights { SAMPLES_LIGHTS } else { 0 }
+                | if desc.sample_bsdf { SAMPLES_BSDFS } else { 0 };
+        }
+        Algorithm::RandomWalk(desc) => head.max_depth = desc.max_depth,
         Algorithm::LightTracing(desc) => head.max_depth = desc.max_depth,
         Algorithm::Bdpt(desc) => {
             head.max_depth = desc.max_depth;
-            head.regularize = desc.regularize.into();
+            head.settings = regularizes(desc.regularize);
         }
         Algorithm::Mlt(desc, _) => {
             head.max_depth = desc.max_depth;
-            head.regularize = desc.regularize.into();
+            head.settings = regularizes(desc.regularize);
         }
         Algorithm::Sppm(desc, _) => head.max_depth = desc.max_depth,
     }
     if algorithm.begins_at_lights() {
         head.light_paths = flattener.light_paths(algorithm, light_sampler, film);
     }
-    if has_media(scene) {
+    if has_media(scene) || matches!(algorithm, Algorithm::SimpleVolPath(_)) {
         flattener.parts.media = true;
         head.media = flattener.media(view.medium);
     }
-    let bvh = flattener.bvh();
+    let bvh = flattener.bvh(algorithm);
     head.top = bvh.top;
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let radius = scene.sphere().radius;
@@ -222,10 +232,21 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
 
 /// Whether there are media, or interfaces that would be between them.
 fn has_media(scene: &Scene) -> bool {
-    let materials = scene.materials();
-    let is_interface =
-        |entry: &GeometryEntry| matches!(materials[entry.material.0 as usize].material, Material::Interface);
-    !scene.media().is_empty() || scene.geometries().iter().any(is_interface)
+    !scene.media().is_empty() || scene.geometries().iter().any(|entry| is_interface(scene, entry))
+}
+
+fn is_interface(scene: &Scene, entry: &GeometryEntry) -> bool {
+    matches!(scene.materials()[entry.material.0 as usize].material, Material::Interface)
+}
+
+// The bits of `Head::settings`.
+const REGULARIZES: u32 = 1;
+const SAMPLES_LIGHTS: u32 = 2;
+const SAMPLES_BSDFS: u32 = 4;
+const MIRRORS_DIRECTIONS: u32 = 8;
+
+fn regularizes(is: bool) -> u32 {
+    if is { REGULARIZES } else { 0 }
 }
 
 /// Tables under construction.
@@ -253,9 +274,16 @@ impl Flattener<'_> {
 
     /// Refuses what concerns the whole picture.
     fn check(&mut self, view: &View, film: &Film, algorithm: &Algorithm) {
-        let knows_media = matches!(algorithm, Algorithm::VolPath(_));
+        let knows_media = matches!(
+            algorithm,
+            Algorithm::Path(_)
+                | Algorithm::VolPath(_)
+                | Algorithm::SimpleVolPath(_)
+                | Algorithm::SimplePath(_)
+                | Algorithm::RandomWalk(_)
+        );
+        self.parts.force_diffuse = view.options.force_diffuse;
         let whole = [
-            (view.options.force_diffuse, "`forcediffuse`"),
             (!knows_media && has_media(self.scene), "participating media or interfaces"),
             (view.wavelengths.is_some(), "spectral films"),
             (film.layers() != film::LayerSet::NONE, "layers beside the colour"),
@@ -267,8 +295,15 @@ impl Flattener<'_> {
         }
     }
 
-    fn bvh(&mut self) -> Bvh {
-        let is_cut_out = |id: GeometryId| self.scene.geometries()[id.0 as usize].alpha.is_some();
+    fn bvh(&mut self, algorithm: &Algorithm) -> Bvh {
+        // Shadow rays of paths that do not know media pass interfaces as they pass holes.
+        let has_open_interfaces = matches!(algorithm, Algorithm::Path(_));
+        let is_open = |entry: &GeometryEntry| has_open_interfaces && is_interface(self.scene, entry);
+        self.parts.holes |= self.scene.geometries().iter().any(is_open);
+        let is_cut_out = |id: GeometryId| {
+            let entry = &self.scene.geometries()[id.0 as usize];
+            entry.alpha.is_some() || is_open(entry)
+        };
         let error = match Bvh::new(self.scene.world(), &is_cut_out) {
             Ok(bvh) => return bvh,
             Err(error) => error,

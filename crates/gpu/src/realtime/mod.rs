@@ -138,9 +138,10 @@ impl Realtime {
         algorithm: &Algorithm,
         shared: Option<Weights>,
     ) -> Result<Self, GpuError> {
-        let shared = shared.filter(
-            |_| matches!(algorithm, Algorithm::Path(desc) | Algorithm::VolPath(desc) if desc.max_depth > 0),
-        );
+        // Among media light finds its way through them, or through interfaces.
+        let has_direct_light =
+            matches!(algorithm, Algorithm::Path(desc) | Algorithm::VolPath(desc) if desc.max_depth > 0);
+        let shared = shared.filter(|_| has_direct_light && !flat.parts.media);
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();
@@ -241,6 +242,9 @@ impl Realtime {
     pub fn aim(&mut self, view: &View, pixels: Bounds2i) -> Result<(), AimError> {
         if matches!(view.camera.projection(), Projection::Spherical(_)) {
             return Err(AimError::Refused("frames of camera `spherical`"));
+        }
+        if view.camera.is_moving() {
+            return Err(AimError::Refused("frames of moving cameras"));
         }
         let camera = cameras::words(view).map_err(AimError::Refused)?;
         let device = self.kernels.device();

@@ -119,7 +119,10 @@ impl Renderer {
             | Algorithm::Whitted(_)
             | Algorithm::AmbientOcclusion(..)
             | Algorithm::Path(_)
-            | Algorithm::VolPath(_) => {}
+            | Algorithm::VolPath(_)
+            | Algorithm::SimpleVolPath(_)
+            | Algorithm::SimplePath(_)
+            | Algorithm::RandomWalk(_) => {}
             Algorithm::LightTracing(desc) => splats = Some(desc.max_depth),
             Algorithm::Bdpt(desc) => splats = Some(desc.max_depth),
             Algorithm::Mlt(desc, seed) if desc.max_depth > 0 => {

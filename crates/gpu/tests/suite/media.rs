@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use alhazen_gpu::Algorithm;
-use description::{MediumKind, PathDesc, TemperatureDesc, VoxelsDesc};
+use description::{
+    MediumKind, PathDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, TemperatureDesc, VoxelsDesc,
+};
 use image::Image;
 use sampling::Sampler;
 use sampling::sampler::Independent;
@@ -148,7 +150,24 @@ fn settings(max_depth: u32) -> Algorithm {
 
 #[test]
 fn homogeneous_media_have_the_picture_of_the_cpu() {
-    assert_eq!(Case::of_text(FOG).compare("fog", &settings(5)), None);
+    let case = Case::of_text(FOG);
+    assert_eq!(case.compare("fog", &settings(5)), None);
+    let simple = Algorithm::SimpleVolPath(SimpleVolPathDesc { max_depth: 5 });
+    assert_eq!(case.compare("fog without light sampling", &simple), None);
+}
+
+/// Paths that do not know media pass interfaces, which occlude lights for some.
+#[test]
+fn paths_without_media_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(FOG);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("path", &path), None);
+    for (sample_lights, sample_bsdf) in [(true, true), (true, false), (false, true), (false, false)] {
+        let desc = SimplePathDesc { max_depth: 3, sample_lights, sample_bsdf };
+        assert_eq!(case.compare("simple path", &Algorithm::SimplePath(desc)), None);
+    }
+    let walk = Algorithm::RandomWalk(RandomWalkDesc { max_depth: 2 });
+    assert_eq!(case.compare("random walk", &walk), None);
 }
 
 /// Collisions with media that vary follow from hashes that are other ones on both sides.
@@ -171,7 +190,7 @@ fn media_that_vary_have_the_mean_of_the_cpu() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Only one algorithm follows paths through media.
+/// Others than paths from the camera do not pass interfaces.
 #[test]
 fn media_are_left_to_the_cpu_by_other_algorithms() {
     let refusals = Case::of_text(FOG).flatten(&Algorithm::RayCasting).err().unwrap_or_default();

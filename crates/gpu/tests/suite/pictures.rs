@@ -7,21 +7,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
-    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, WhittedDesc,
+    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, SimplePathDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
-    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RayCasting,
-    RayIntegrator, Session, SessionState, Sppm, VolPath, Whitted,
+    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
+    RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, VolPath, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PRINCIPLED, PROJECTOR, STRETCHED};
+use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PAN, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
@@ -86,6 +86,12 @@ impl Case {
     fn principled() -> Self {
         let normals = [0.6, 0.5, 0.95, 0.4, 0.4, 0.9, 0.5, 0.65, 0.9, 0.5, 0.5, 1.0];
         Self::with_image(PRINCIPLED, "normals.pfm", normals)
+    }
+
+    /// Surfaces of all shapes that emit an image of four colours.
+    fn panels() -> Self {
+        let panel = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 1.5, 1.2, 0.7];
+        Self::with_image(PANELS, "panel.pfm", panel)
     }
 
     /// A scene that reads an image of 2 × 2 colours.
@@ -169,6 +175,9 @@ impl Case {
             Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
             Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
             Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
+            Algorithm::SimpleVolPath(desc) => self.by_rays(VolPath::simple(desc.max_depth)),
+            Algorithm::SimplePath(desc) => self.by_rays(SimplePath(*desc)),
+            Algorithm::RandomWalk(desc) => self.by_rays(RandomWalk(*desc)),
             Algorithm::LightTracing(desc) => Box::new(LightTracing::new(*desc, sampler, light_sampler)),
             Algorithm::Bdpt(desc) => Box::new(Bdpt::new(*desc, sampler, light_sampler)),
             Algorithm::Mlt(desc, seed) => Box::new(Mlt::new(*desc, sampler, *seed)),
@@ -340,6 +349,13 @@ fn bidirectional_paths_have_the_picture_of_the_cpu() {
 fn a_projector_has_the_picture_of_the_cpu() {
     let path = PathDesc { max_depth: 3, ..PathDesc::default() };
     assert_eq!(Case::projector().compare("projector", &Algorithm::Path(path)), None);
+}
+
+/// Lights with images, which paths hit and choose.
+#[test]
+fn images_of_surfaces_have_the_picture_of_the_cpu() {
+    let path = PathDesc { max_depth: 2, ..PathDesc::default() };
+    assert_eq!(Case::panels().compare("panels", &Algorithm::Path(path)), None);
 }
 
 #[test]
@@ -559,6 +575,22 @@ fn spherical_cameras_have_the_picture_of_the_cpu() {
         let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
         assert_eq!(refusals.expect("a refusal")[0].what, "light paths to camera `spherical`");
     }
+}
+
+#[test]
+fn moving_cameras_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(PAN);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("pan", &path), None);
+    let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+    assert_eq!(refusals.expect("a refusal")[0].what, "light paths to moving cameras");
+}
+
+#[test]
+fn forced_diffuse_surfaces_have_the_picture_of_the_cpu() {
+    let text = format!("Option \"forcediffuse\" true\n{MEDLEY}");
+    let simple = Algorithm::SimplePath(SimplePathDesc { max_depth: 3, ..Default::default() });
+    assert_eq!(Case::of_text(&text).compare("forced diffuse", &simple), None);
 }
 
 #[test]

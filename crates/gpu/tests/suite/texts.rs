@@ -97,6 +97,60 @@ Translate 0 0.3 -2.4
 ObjectInstance "screen"
 "#;
 
+/// Lights of all shapes with an image: triangles with texture coordinates and without, a rectangle,
+/// a patch, one whose points the image chooses, a sphere, a disk and a cylinder.
+pub const PANELS: &str = r#"
+LookAt 0 -6 2  0 0 0.8  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb"
+WorldBegin
+Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
+AreaLightSource "diffuse" "string filename" "panel.pfm" "bool twosided" true
+Shape "trianglemesh" "point3 P" [ -2.6 1 0.2  -1.4 1 0.2  -2.6 1 1.4  -1.4 1 1.4 ] "integer indices" [ 0 1 2  1 3 2 ]
+    "point2 uv" [ 0 0  2 0.1  0 1  1.2 1.5 ]
+Shape "trianglemesh" "point3 P" [ -1.2 1 0.2  -0.2 1 0.2  -0.7 1.2 1.4 ] "integer indices" [ 0 1 2 ]
+Shape "bilinearmesh" "point3 P" [ 0 1 0.2  1 1 0.2  0 1 1.4  1 1 1.4 ]
+Shape "bilinearmesh" "point3 P" [ 1.2 1 0.2  2.4 1 0.4  1.2 1.6 1.4  2.6 0.8 1.2 ]
+AreaLightSource "diffuse" "string filename" "panel.pfm" "float scale" 2
+Shape "bilinearmesh" "point3 P" [ 1 1 1.7  0 1 1.7  1 1 2.4  0 1 2.4 ] "string emissionfilename" "panel.pfm"
+Translate -1.4 -1 0.4
+Rotate 30 1 0.4 0
+Shape "sphere" "float radius" 0.3
+Translate 1 0 0
+Shape "disk" "float radius" 0.4 "float innerradius" 0.1
+Translate 1.4 0 0
+ReverseOrientation
+Shape "cylinder" "float radius" 0.3 "float zmin" -0.3 "float zmax" 0.4 "float phimax" 200
+"#;
+
+/// A camera that turns, moves and stretches while its shutter is open, before the motion is over.
+pub const PAN: &str = r#"
+TransformTimes 1 4
+ActiveTransform EndTime
+Rotate 25 0.1 0.2 1
+Translate 0.4 0.3 0
+Scale 1.2 0.9 1
+ActiveTransform All
+LookAt 0 -6 2  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 40 "float shutteropen" 0.5 "float shutterclose" 3 "float lensradius" 0.1
+    "float focaldistance" 6
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
+Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "diffuse" "texture reflectance" "squares"
+Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
+Translate -0.7 0 0.6
+Material "conductor"
+Shape "sphere" "float radius" 0.6
+Translate 1.4 0 0
+Material "dielectric"
+Shape "sphere" "float radius" 0.6
+"#;
+
 /// Principled surfaces of all kinds: metal with a textured roughness, brushed metal, coats, fuzz,
 /// films, frosted glass, and a window.
 pub const PRINCIPLED: &str = r#"

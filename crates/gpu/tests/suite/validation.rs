@@ -39,18 +39,31 @@ fn traversal_is_valid() {
 
 /// Parts, of which there are those whose bits are set.
 fn parts(bits: u32) -> Parts {
-    let [holes, images, noise, coats, principled, curves, hair, rare_samplers, measured] =
-        [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|i| bits >> i & 1 == 1);
-    Parts { holes, images, noise, coats, principled, curves, hair, measured, rare_samplers, media: false }
+    let [holes, images, noise, coats, principled, curves, hair, rare_samplers, measured, emission_images] =
+        [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|i| bits >> i & 1 == 1);
+    Parts {
+        holes,
+        images,
+        emission_images,
+        noise,
+        coats,
+        principled,
+        curves,
+        hair,
+        measured,
+        rare_samplers,
+        media: false,
+        force_diffuse: false,
+    }
 }
 
 /// No parts, and others so that each two parts are there together, each without the other, and
 /// neither: of the last five each part is in another three.
-const PAIRS: [u32; 6] = [0b000000000, 0b000111111, 0b111000111, 0b011011001, 0b101101010, 0b110110100];
+const PAIRS: [u32; 6] = [0b0000000000, 0b0000111111, 0b0111000111, 0b1011011001, 0b1101101010, 0b1110110100];
 
 #[test]
 fn each_two_parts_are_there_in_all_ways() {
-    for (a, b) in (0..9).flat_map(|a| (0..a).map(move |b| (a, b))) {
+    for (a, b) in (0..10).flat_map(|a| (0..a).map(move |b| (a, b))) {
         let ways: BTreeSet<u32> = PAIRS.iter().map(|bits| 2 * (bits >> a & 1) + (bits >> b & 1)).collect();
         assert_eq!(ways.len(), 4, "{a} {b}");
     }
@@ -61,7 +74,9 @@ fn kernels_are_valid() {
     let occlusion = Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb());
     let path = Algorithm::Path(Default::default());
     let vol_path = Algorithm::VolPath(Default::default());
+    let simple = Algorithm::SimplePath(Default::default());
     let algorithms = [
+        simple.clone(),
         Algorithm::RayCasting,
         Algorithm::Whitted(Default::default()),
         occlusion,
@@ -81,7 +96,10 @@ fn kernels_are_valid() {
                 add(algorithm, shaders::light(algorithm, parts, false));
             }
         }
-        add(&"media", shaders::pixels(&vol_path, Parts { media: true, ..parts }));
+        for algorithm in [&path, &vol_path, &simple] {
+            add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
+        }
+        add(&"forced diffuse", shaders::pixels(&simple, Parts { force_diffuse: true, ..parts }));
         add(&"chains", shaders::chains(parts));
         shaders::wavefront(parts).into_iter().for_each(|source| add(&"wavefront", source));
         add(&"other light", shaders::light(&path, parts, true));
