@@ -95,7 +95,10 @@ impl IntegratorDesc {
 
     /// Whether the algorithm makes layers of parts of the light.
     pub fn makes_parts(&self) -> bool {
-        matches!(self, Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::Bdpt(_))
+        matches!(
+            self,
+            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::Bdpt(_) | Self::Vcm(_)
+        )
     }
 
     /// Whether the algorithm estimates pixels one by one, with nothing else.

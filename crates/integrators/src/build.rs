@@ -145,7 +145,7 @@ impl Builder<'_> {
             let message =
                 format!("integrator `{}` does not make the layer `{}`", integrator.name(), name.value);
             let error = Diagnostic::error("invalid-film", message, name.span);
-            error.with_help("`path`, `vol-path` and `bdpt` make it")
+            error.with_help("`path`, `vol-path`, `bdpt` and `vcm` make it")
         };
         let errors: Vec<_> = self.parts_of_film().map(error).collect();
         self.diagnostics.extend(errors);

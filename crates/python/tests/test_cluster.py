@@ -16,8 +16,11 @@ import alhazen
 import numpy
 import pytest
 
-ray = pytest.importorskip("ray", reason="the tests of clusters need `pip install ray`")
 os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
+# Nodes of the test have no token; a driver with one that was left in the home folder would not
+# answer them.
+os.environ["RAY_AUTH_MODE"] = "disabled"
+ray = pytest.importorskip("ray", reason="the tests of clusters need `pip install ray`")
 
 import alhazen.cluster  # noqa: E402
 from ray.cluster_utils import Cluster  # noqa: E402

@@ -163,11 +163,13 @@ fn lay_out(folder: &Path, package: &Path, architecture: &str) -> std::io::Result
         let page = page?.file_name().to_string_lossy().into_owned();
         place(&format!("man/{page}"), &format!("usr/share/man/man1/{page}"))?;
     }
-    let size = fs::metadata(folder.join("alhazen"))?.len() / 1024;
+    let program = fs::read(folder.join("alhazen"))?;
+    let size = program.len() / 1024;
+    let glibc = newest_glibc(&program).map_or(String::new(), |minor| format!(" (>= 2.{minor})"));
     fs::create_dir_all(package.join("DEBIAN"))?;
     let control = format!(
         "Package: alhazen\nVersion: {VERSION}\nArchitecture: {architecture}\nSection: graphics\n\
-         Priority: optional\nInstalled-Size: {size}\nDepends: libc6, libgcc-s1\n\
+         Priority: optional\nInstalled-Size: {size}\nDepends: libc6{glibc}, libgcc-s1\n\
          Recommends: libvulkan1, mesa-vulkan-drivers, libxkbcommon-x11-0, libxcursor1, libxi6\n\
          Maintainer: The authors of alhazen <alhazen@localhost>\n\
          Description: physically based renderer\n Renders pbrt-v4 scenes and meshes by every \
@@ -176,7 +178,31 @@ fn lay_out(folder: &Path, package: &Path, architecture: &str) -> std::io::Result
     fs::write(package.join("DEBIAN/control"), control)
 }
 
+/// The minor version of the newest glibc, 2.x, whose functions a program calls.
+fn newest_glibc(program: &[u8]) -> Option<u32> {
+    const NAME: &[u8] = b"GLIBC_2.";
+    let names = program.windows(NAME.len()).enumerate().filter(|(_, window)| *window == NAME);
+    let minors = names.filter_map(|(start, _)| {
+        let rest = &program[start + NAME.len()..];
+        let digits = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        std::str::from_utf8(&rest[..digits]).ok()?.parse().ok()
+    });
+    minors.max()
+}
+
 /// Runs a task on files; the error names the path.
 fn io(path: &Path, task: impl FnOnce() -> std::io::Result<()>) -> Result<(), String> {
     task().map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::newest_glibc;
+
+    #[test]
+    fn a_package_asks_for_the_glibc_of_its_program() {
+        let symbols = b"\0GLIBC_2.2.5\0GLIBC_2.34\0GLIBC_2.9\0GLIBC_PRIVATE\0GLIBC_2.";
+        assert_eq!(newest_glibc(symbols), Some(34));
+        assert_eq!(newest_glibc(b"GLIBC_PRIVATE"), None);
+    }
 }

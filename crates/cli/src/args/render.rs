@@ -176,9 +176,9 @@ pub struct Changes {
     /// Layers of the picture beside its colours, written to .exr files: alpha, depth, normal,
     /// albedo, position, uv, motion, object-id, material-id, asset-id, samples, variance (of the
     /// mean luminance; splats are not part of it), camera-position, camera-normal,
-    /// geometric-normal, camera-geometric-normal, slope, camera-slope, color-variance; of `path`
-    /// and `vol-path` parts of the light, too: diffuse, specular, transmission, volume, emission,
-    /// direct, indirect, light-groups. [default: the scene's]
+    /// geometric-normal, camera-geometric-normal, slope, camera-slope, color-variance; of `path`,
+    /// `vol-path`, `bdpt` and `vcm` parts of the light, too: diffuse, specular, transmission,
+    /// volume, emission, direct, indirect, light-groups. [default: the scene's]
     #[arg(long, value_name = "LAYER,LAYER,…", value_delimiter = ',')]
     pub aov: Vec<String>,
     /// Seed of all random numbers: the same seed gives the same picture, bit for bit.

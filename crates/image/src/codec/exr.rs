@@ -73,7 +73,7 @@ fn choose_layer(headers: &[Header]) -> Result<usize, ImageError> {
             .channels
             .list
             .iter()
-            .any(|c| c.name.eq("R") || c.name.eq("Y") || c.name.to_string().ends_with(".R"))
+            .any(|c| c.name.eq("R") || c.name.eq("Y") || c.name.as_slice().ends_with(b".R"))
     };
     let flat = || headers.iter().enumerate().filter(|(_, header)| !header.deep);
     let chosen = flat().find(|(_, header)| has_color(header)).or_else(|| flat().next());
@@ -84,7 +84,7 @@ fn choose_layer(headers: &[Header]) -> Result<usize, ImageError> {
 /// name; an image has the colours first, and in each layer red, green, blue and alpha in this
 /// order.
 fn channel_order(header: &Header) -> (Vec<String>, Vec<usize>) {
-    let in_file: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
+    let in_file: Vec<String> = header.channels.list.iter().map(|channel| from_text(&channel.name)).collect();
     let rank = |name: &str| {
         ["R", "G", "B", "A"].iter().position(|usual| usual.eq_ignore_ascii_case(name)).unwrap_or(4)
     };
@@ -198,7 +198,7 @@ pub(super) fn metadata(header: &Header) -> ImageMetadata {
     let own = &header.own_attributes;
     for (name, value) in header.shared_attributes.other.iter().chain(&own.other) {
         if let Some(attribute) = from_attribute(value) {
-            metadata.set(&name.to_string(), attribute);
+            metadata.set(&from_text(name), attribute);
         }
     }
     let typed = [
@@ -210,8 +210,8 @@ pub(super) fn metadata(header: &Header) -> ImageMetadata {
             ImageMetadata::WORLD_TO_NDC,
             own.world_to_normalized_device.map(|m| Attribute::Matrix(Mat4::from_cols_array(&m))),
         ),
-        (ImageMetadata::SOFTWARE, own.software_name.as_ref().map(|text| Attribute::Text(text.to_string()))),
-        (ImageMetadata::COMMENTS, own.comments.as_ref().map(|text| Attribute::Text(text.to_string()))),
+        (ImageMetadata::SOFTWARE, own.software_name.as_ref().map(|text| Attribute::Text(from_text(text)))),
+        (ImageMetadata::COMMENTS, own.comments.as_ref().map(|text| Attribute::Text(from_text(text)))),
     ];
     for (name, attribute) in typed {
         if let Some(attribute) = attribute {
@@ -228,8 +228,8 @@ pub(super) fn from_bounds(bounds: IntegerBounds) -> Window {
 
 fn from_attribute(value: &AttributeValue) -> Option<Attribute> {
     Some(match value {
-        AttributeValue::Text(text) => Attribute::Text(text.to_string()),
-        AttributeValue::TextVector(texts) => Attribute::TextList(texts.iter().map(Text::to_string).collect()),
+        AttributeValue::Text(text) => Attribute::Text(from_text(text)),
+        AttributeValue::TextVector(texts) => Attribute::TextList(texts.iter().map(from_text).collect()),
         AttributeValue::I32(number) => Attribute::Integer(*number),
         AttributeValue::F32(number) => Attribute::Float(*number),
         AttributeValue::F64(number) => Attribute::Float(*number as f32),
@@ -258,7 +258,7 @@ pub fn encode(
         .iter()
         .map(|&c| {
             let Channel { name, depth } = &channels[c];
-            Ok(ChannelDescription::named(to_text(name)?, sample_type(*depth)?))
+            Ok(ChannelDescription::named(to_text(name), sample_type(*depth)?))
         })
         .collect::<Result<_, ImageError>>()?;
 
@@ -379,10 +379,10 @@ fn attributes(image: &dyn PixelSource) -> Result<(ImageAttributes, LayerAttribut
             (ImageMetadata::WORLD_TO_NDC, Attribute::Matrix(m)) => {
                 own.world_to_normalized_device = Some(m.to_cols_array())
             }
-            (ImageMetadata::SOFTWARE, Attribute::Text(text)) => own.software_name = Some(to_text(text)?),
-            (ImageMetadata::COMMENTS, Attribute::Text(text)) => own.comments = Some(to_text(text)?),
+            (ImageMetadata::SOFTWARE, Attribute::Text(text)) => own.software_name = Some(to_text(text)),
+            (ImageMetadata::COMMENTS, Attribute::Text(text)) => own.comments = Some(to_text(text)),
             _ => {
-                own.other.insert(to_text(name)?, to_attribute(name, value)?);
+                own.other.insert(to_text(name), to_attribute(name, value)?);
             }
         }
     }
@@ -391,9 +391,9 @@ fn attributes(image: &dyn PixelSource) -> Result<(ImageAttributes, LayerAttribut
 
 fn to_attribute(name: &str, value: &Attribute) -> Result<AttributeValue, ImageError> {
     Ok(match value {
-        Attribute::Text(text) => AttributeValue::Text(to_text(text)?),
+        Attribute::Text(text) => AttributeValue::Text(to_text(text)),
         Attribute::TextList(texts) => {
-            AttributeValue::TextVector(texts.iter().map(|text| to_text(text)).collect::<Result<_, _>>()?)
+            AttributeValue::TextVector(texts.iter().map(|text| to_text(text)).collect())
         }
         Attribute::Integer(number) => AttributeValue::I32(*number),
         Attribute::Float(number) => AttributeValue::F32(*number),
@@ -411,9 +411,14 @@ fn to_attribute(name: &str, value: &Attribute) -> Result<AttributeValue, ImageEr
     })
 }
 
-fn to_text(text: &str) -> Result<Text, ImageError> {
-    Text::new_or_none(text)
-        .ok_or_else(|| ImageError::Unsupported(format!("{text:?} has characters that EXR cannot hold")))
+/// Texts and names of a file are UTF-8.
+fn to_text(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+/// What is no UTF-8 is read as Latin-1, as some programs write it.
+pub(super) fn from_text(text: &Text) -> String {
+    std::str::from_utf8(text.as_slice()).map_or_else(|_| text.to_string(), str::to_owned)
 }
 
 pub(super) fn from_library(error: exr::error::Error) -> ImageError {

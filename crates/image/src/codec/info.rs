@@ -139,10 +139,10 @@ fn exr_info(bytes: &[u8]) -> Result<ImageInfo, ImageError> {
         }
     }
     for part in &meta.headers {
-        let part_name = part.own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
+        let part_name = part.own_attributes.layer_name.as_ref().map(open_exr::from_text).unwrap_or_default();
         let first = layers.len();
         for channel in &part.channels.list {
-            let full = channel.name.to_string();
+            let full = open_exr::from_text(&channel.name);
             let prefix = full.rsplit_once('.').map_or("", |(layer, _)| layer);
             let name = match (part_name.as_str(), prefix) {
                 ("", name) | (name, "") => name.to_owned(),

@@ -134,6 +134,26 @@ fn exr_keeps_windows_names_and_attributes() {
 }
 
 #[test]
+fn texts_of_exr_are_utf_8() {
+    let values = Pixels::F32(vec![0.5; 12]);
+    let mut image = Image::new(2, 2, ["lights.木.R", "lights.木.G", "lights.木.B"], values).unwrap();
+    image.metadata.set("names", Attribute::Text("gl#s, 木".into()));
+    let bytes = encode(&image, Format::Exr, &WriteOptions::default()).unwrap();
+    let place = |bytes: &[u8], text: &[u8]| bytes.windows(text.len()).position(|window| window == text);
+    assert!(place(&bytes, "\0lights.木.R\0".as_bytes()).is_some());
+    let read_back = read(&bytes, "x.exr", &ReadOptions::default()).unwrap();
+    assert_eq!(read_back.channels(), image.channels());
+    assert_eq!(read_back.metadata.attributes, image.metadata.attributes);
+    // What some programs write is Latin-1.
+    image.metadata.set("names", Attribute::Text("gl#s".into()));
+    let mut bytes = encode(&image, Format::Exr, &WriteOptions::default()).unwrap();
+    let start = place(&bytes, b"gl#s").unwrap();
+    bytes[start + 2] = 0xe4;
+    let read_back = read(&bytes, "x.exr", &ReadOptions::default()).unwrap();
+    assert_eq!(read_back.metadata.get("names"), Some(&Attribute::Text("gläs".into())));
+}
+
+#[test]
 fn a_window_of_the_wrong_size_is_refused() {
     let mut image = gradient(3);
     image.metadata.data_window = Some(Window { min: [0, 0], max: [3, 3] });

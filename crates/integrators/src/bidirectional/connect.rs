@@ -231,7 +231,7 @@ impl Bidirectional<'_> {
 
     /// s, t ≥ 2: a photon near the vertex, on a surface like it or in a medium like it, is merged
     /// with it, as if it had arrived there.
-    pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
+    pub fn merge(&self, camera: &Vertex, photon: &LightVertex, tracer: &Tracer) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
         let of_camera = camera.merges();
@@ -240,7 +240,8 @@ impl Bidirectional<'_> {
             self.balance.merging_back(&photon.partial, camera.pdf(wi), of_light),
             self.balance.merging_back(&camera.partial, camera.pdf_back(wi), of_camera),
         );
-        self.found(l, false, weight, (photon.depth.into(), camera.depth + 1), (None, FirstEvent::None))
+        let part = (photon.light(), camera.first_event(wi, tracer));
+        self.found(l, false, weight, (photon.depth.into(), camera.depth + 1), part)
     }
 
     /// The unweighted contribution of [`Self::merge`].

@@ -319,7 +319,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     if balance.merging > 0.0 && light.can_merge() {
                         let stepped = stepped(&paths.balance, &vertex, light);
                         if stepped.can_merge() {
-                            let merged = paths.merge(&stepped, &LightVertex::from(light));
+                            let merged = paths.merge(&stepped, &LightVertex::from(light), tracer);
                             check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
                         }
                     }

@@ -125,6 +125,7 @@ mod tests {
             cos_theta: 1.0,
             beta: SampledSpectrum::ONE,
             partial: Partial::default(),
+            light: 0,
             depth: i as u16,
             hero_only: false,
             is_in_medium: false,

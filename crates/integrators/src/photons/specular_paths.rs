@@ -31,13 +31,13 @@ use crate::transport::pixel_samples::{PixelSample, PixelSamples};
 const FURTHER_RAYS: u32 = 4;
 
 /// The initial specular vertices of a camera subpath, and the light found through them.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SpecularChain {
     /// Whether its first vertex is specular.
     is_specular: bool,
     /// Whether a vertex was not specular.
     is_over: bool,
-    l: SampledSpectrum,
+    found: Vec<Found>,
 }
 
 impl SpecularChain {
@@ -52,7 +52,7 @@ impl SpecularChain {
     pub fn add(&mut self, found: &Found) -> bool {
         let belongs = self.is_specular && !self.is_over;
         if belongs {
-            self.l += found.weighted();
+            self.found.push(*found);
         }
         belongs
     }
@@ -82,19 +82,18 @@ impl SpecularPaths {
     /// The radiance of purely specular paths of a sample whose camera subpath began with `first`.
     pub fn radiance(
         &self,
-        first: &SpecularChain,
+        first: SpecularChain,
         sample: &PixelSample,
         pixels: &PixelSamples,
         shutter: &ShutterSample,
         paths: &Bidirectional,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        let (mut l, mut rays) = (first.l, 1.0);
-        if !(first.is_specular && self.are_possible) {
-            return l;
-        }
-        let mut sampler = self.sampler.clone();
-        for i in 0..FURTHER_RAYS {
+        let more = if first.is_specular && self.are_possible { FURTHER_RAYS } else { 0 };
+        // Light with its weight in the sum.
+        let mut all: Vec<(Found, f32)> = first.found.into_iter().map(|found| (found, 1.0)).collect();
+        let (mut rays, mut sampler) = (1.0, self.sampler.clone());
+        for i in 0..more {
             let pixels =
                 PixelSamples { index: pixels.index * FURTHER_RAYS + i, sampler: &self.sampler, ..*pixels };
             let again = pixels.begin(Some(shutter), sample.pixel, &mut sampler);
@@ -108,10 +107,17 @@ impl SpecularPaths {
                 });
             });
             if chain.is_specular {
-                l += chain.l * (again.filter_weight / sample.filter_weight);
+                let weight = again.filter_weight / sample.filter_weight;
+                all.extend(chain.found.into_iter().map(|found| (found, weight)));
                 rays += 1.0;
             }
         }
-        l / rays
+        let mut sum = SampledSpectrum::ZERO;
+        for (found, weight) in all {
+            let l = found.weighted() * weight;
+            sum += l;
+            tracer.take_part(found.light, &found.first, found.events(), l / rays);
+        }
+        sum / rays
     }
 }

@@ -41,7 +41,7 @@
 //! leaves a third of the variance; behind a door, light then leaks under it.
 //!
 //! At most [`MAX_PHOTON_PATHS`] paths of a pass store photons, which bounds memory: some hundred
-//! bytes for each of at most `max_depth` vertices of a path, and 64 to 68 for its photon, 60 more
+//! bytes for each of at most `max_depth` vertices of a path, and 68 to 72 for its photon, 64 more
 //! while they are sorted. In larger pictures the other pixels sample their light subpaths on
 //! demand.
 //!
@@ -58,11 +58,11 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Found, Lights, Vertex};
 use crate::photons::merging::Merging;
 use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError};
+use crate::{Cancelled, Control, Integrator, PassError, Tracer};
 
 /// The radius of the first pass as a fraction of that of the scene, as in [Georgiev 2012]. Light
 /// through a narrow gap leaks with a larger one: behind a door, 2.4 times this radius has 70 times
@@ -173,35 +173,39 @@ impl Integrator for Vcm {
             });
             for (vertex, u) in light_subpath {
                 if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), lambda, tracer) {
-                    seen.splat(&splatter, &seen.found.weighted(), lambda);
+                    seen.splat_parts(&splatter, lambda, scene);
                 }
             }
             splatter.add_paths(1);
 
             let (mut l, mut chain) = (SampledSpectrum::ZERO, SpecularChain::default());
             let Some(camera_ray) = &sample.camera_ray else { return l };
+            let mut add = |found: &Found, tracer: &mut Tracer| {
+                l += found.weighted();
+                tracer.take_part(found.light, &found.first, found.events(), found.weighted());
+            };
             paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| {
                 if let Encounter::Vertex(vertex) = encounter {
                     chain.visit(vertex);
                 }
                 match encounter {
                     Encounter::Light(found) if chain.add(&found) => (),
-                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Light(found) => add(&found, tracer),
                     Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let depths = paths.max_depth - vertex.depth;
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
-                            l += found.weighted();
+                            add(&found, tracer);
                         }
                         let lights = light_subpath.iter().map(|(light, _)| light);
                         for light in lights.filter(|light| light.depth <= depths) {
                             if let Some(found) = paths.connect(vertex, light, lambda, tracer) {
-                                l += found.weighted();
+                                add(&found, tracer);
                             }
                         }
                         if vertex.can_merge() {
                             photons.within(vertex.p.p, |photon| {
                                 if paths.may_merge(vertex, photon) {
-                                    l += paths.merge(vertex, photon).weighted();
+                                    add(&paths.merge(vertex, photon, tracer), tracer);
                                 }
                             });
                         }
@@ -209,7 +213,7 @@ impl Integrator for Vcm {
                     Encounter::Vertex(_) => (),
                 }
             });
-            l + self.specular_paths.radiance(&chain, sample, &pixels, &shutter, &paths, tracer)
+            l + self.specular_paths.radiance(chain, sample, &pixels, &shutter, &paths, tracer)
         })?;
         Ok(stats)
     }

@@ -5,6 +5,7 @@ use description::{
     BdptDesc, CoatedDiffuseDesc, CoefficientsDesc, Handle, InfiniteRadiance, IntegratorDesc, LightDesc,
     LightKind, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, OpenPbrDesc, PathDesc,
     RoughnessDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, Span, Spanned, SubsurfaceScattering,
+    VcmDesc,
 };
 use film::Layer;
 use image::{Format, Image, ReadOptions, WriteOptions, encode, read};
@@ -40,6 +41,10 @@ fn vol_path(max_depth: u32) -> IntegratorDesc {
 
 fn bdpt(max_depth: u32) -> IntegratorDesc {
     IntegratorDesc::Bdpt(BdptDesc { max_depth, ..BdptDesc::default() })
+}
+
+fn vcm(max_depth: u32) -> IntegratorDesc {
+    IntegratorDesc::Vcm(VcmDesc { max_depth, ..VcmDesc::default() })
 }
 
 fn sky(desc: &mut SceneDesc) {
@@ -122,9 +127,9 @@ fn mean(image: &Image, part: &str) -> f64 {
 
 #[test]
 fn parts_sum_to_the_picture() {
-    for (integrator, in_fog) in
-        [(path(5), false), (vol_path(5), true), (vol_path(5), false), (bdpt(5), true), (bdpt(5), false)]
-    {
+    let [bdpt, vcm] = [bdpt(5), vcm(5)].map(|both| [(both.clone(), true), (both, false)]);
+    let others = [(path(5), false), (vol_path(5), true), (vol_path(5), false)];
+    for (integrator, in_fog) in others.into_iter().chain(bdpt).chain(vcm) {
         let mut desc = settings(integrator, 16, 1);
         still_life(&mut desc);
         sky(&mut desc);
@@ -152,7 +157,7 @@ fn parts_sum_to_the_picture() {
 
 #[test]
 fn the_light_of_a_group_is_that_of_the_scene_with_this_group_alone() {
-    [vol_path(4), bdpt(4)].into_iter().for_each(check_groups);
+    [vol_path(4), bdpt(4), vcm(4)].into_iter().for_each(check_groups);
 }
 
 fn check_groups(integrator: IntegratorDesc) {
@@ -208,6 +213,7 @@ fn expect(image: &Image, expected: &[(&str, f64)], what: &str) {
 fn events_are_told_apart() {
     check_events(path, vol_path);
     check_events(bdpt, bdpt);
+    check_events(vcm, vcm);
 }
 
 fn check_events(integrator: fn(u32) -> IntegratorDesc, in_media: fn(u32) -> IntegratorDesc) {
