@@ -8,15 +8,19 @@ use alhazen::integrators::Control;
 use alhazen::{Job, Overrides, render_file};
 
 /// The mean red, green and blue of what an orthographic camera at z = 5 sees of 1/50 × 1/50 units
-/// around the origin. `nodes` place the quadrilateral (±1, ±1, 0), which is mesh 0, 1, … with the
-/// material 0, 1, ….
-fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
+/// around the origin. `nodes` place the quadrilateral (±1, ±1, 0), whose tangent is along x, which is
+/// mesh 0, 1, … with the material 0, 1, ….
+pub fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
     let vertices = [[-1.0_f32, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
-    let bytes: Vec<u8> = vertices.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
+    let coordinates = [[0.0_f32, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]];
+    let numbers = vertices.as_flattened().iter().chain(coordinates.as_flattened());
+    let bytes: Vec<u8> = numbers.flat_map(|v| v.to_le_bytes()).collect();
     let meshes: Vec<_> = (0..materials.len())
         .map(|index| {
             format!(
-                r#"{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": 5, "material": {index}}}]}}"#
+                r#"{{"primitives": [{{
+                    "attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "mode": 5, "material": {index}
+                }}]}}"#
             )
         })
         .collect();
@@ -26,9 +30,14 @@ fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
         r#"{{
         "asset": {{"version": "2.0"}},
         "extensions": {{"KHR_lights_punctual": {{"lights": [{lights}]}}}},
-        "buffers": [{{"uri": "a.bin", "byteLength": 48}}],
-        "bufferViews": [{{"buffer": 0, "byteLength": 48}}],
-        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}}],
+        "buffers": [{{"uri": "a.bin", "byteLength": 80}}],
+        "bufferViews": [
+            {{"buffer": 0, "byteLength": 48}}, {{"buffer": 0, "byteOffset": 48, "byteLength": 32}}
+        ],
+        "accessors": [
+            {{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}},
+            {{"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"}}
+        ],
         "materials": [{}],
         "meshes": [{}],
         "cameras": [{{"type": "orthographic", "orthographic": {{"xmag": 0.01, "ymag": 0.01}}}}],
@@ -52,7 +61,7 @@ fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
     sum
 }
 
-fn close(found: [f32; 3], expected: [f32; 3]) {
+pub fn close(found: [f32; 3], expected: [f32; 3]) {
     for (found_one, expected_one) in found.into_iter().zip(expected) {
         assert!((found_one - expected_one).abs() < 0.02 * expected_one + 1e-4, "{found:?}, not {expected:?}");
     }

@@ -10,6 +10,7 @@ mod documents;
 mod engines;
 mod furnaces;
 mod gltf;
+mod gltf_materials;
 mod malformed;
 mod minray;
 mod mitsuba;

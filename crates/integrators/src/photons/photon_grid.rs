@@ -182,7 +182,7 @@ mod tests {
         let mut found = Vec::new();
         grid.within(Point3::ONE, |photon| found.push(photon.depth));
         assert!(found.len() == 100 && found.is_sorted());
-        assert_eq!(size_of::<LightVertex>(), 60);
-        assert_eq!(grid.bytes(), 100 * 60 + 129 * 4);
+        assert_eq!(size_of::<LightVertex>(), 64);
+        assert_eq!(grid.bytes(), 100 * 64 + 129 * 4);
     }
 }

@@ -127,6 +127,12 @@ fn packed_views_are_unpacked() {
     // A vertex stream and an index stream by the encoder of meshoptimizer.
     let decode = |text: &str| base64::engine::general_purpose::STANDARD.decode(text).unwrap();
     let packed = [decode(VERTICES), decode(TRIANGLES)];
+    for extension in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        views_are_unpacked(extension, &packed);
+    }
+}
+
+fn views_are_unpacked(name: &str, packed: &[Vec<u8>; 2]) {
     let mut file = File::quad(json!({}));
     for (accessor, (bytes, count, stride, mode)) in
         [(0, (&packed[0], 4, 12, "ATTRIBUTES")), (3, (&packed[1], 6, 2, "TRIANGLES"))]
@@ -138,7 +144,7 @@ fn packed_views_are_unpacked() {
             "byteStride": stride, "count": count, "mode": mode,
         });
         *place = json!({
-            "buffer": 0, "byteLength": count * stride, "extensions": {"EXT_meshopt_compression": extension},
+            "buffer": 0, "byteLength": count * stride, "extensions": {name: extension},
         });
         file.json["accessors"][accessor]["bufferView"] = json!(view);
     }

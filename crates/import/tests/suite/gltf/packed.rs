@@ -130,6 +130,21 @@ fn packed_images_have_their_pixels() {
 }
 
 #[test]
+fn an_image_of_webp_goes_before_that_of_other_programs() {
+    let mut file = File::quad(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}))
+        .textured(&[[255, 0, 0, 255]]);
+    let green = image::Pixels::U8(vec![0, 255, 0], image::ColorEncoding::Srgb);
+    let green = image::Image::new(1, 1, ["R", "G", "B"], green).unwrap();
+    let webp = image::encode(&green, image::Format::Webp, &image::WriteOptions::default()).unwrap();
+    let view = file.view(&webp);
+    let images = file.json["images"].as_array_mut().unwrap();
+    images.push(json!({"bufferView": view, "mimeType": "image/webp"}));
+    assert_eq!(base(&file.scene()).rgb(0, 0), [1.0, 0.0, 0.0]);
+    file.json["textures"] = json!([{"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}}]);
+    assert_eq!(base(&file.scene()).rgb(0, 0), [0.0, 1.0, 0.0]);
+}
+
+#[test]
 fn damaged_packed_images_are_refused() {
     for picture in PICTURES.map(decode) {
         for length in (0..picture.len()).step_by(3) {
