@@ -8,7 +8,7 @@ use alhazen::integrators::Control;
 use alhazen::{Job, Overrides, render_file};
 
 /// The mean red, green and blue of what an orthographic camera at z = 5 sees of 1/50 × 1/50 units
-/// around the origin. `nodes` place the quadrilateral (±1, ±1, 0), whose tangent is along x, which is
+/// around the origin. `nodes` place the quadrilateral (±1, ±1, 0), whose tangent is along x. It is
 /// mesh 0, 1, … with the material 0, 1, ….
 pub fn seen(materials: &[&str], lights: &str, nodes: &str) -> [f32; 3] {
     let vertices = [[-1.0_f32, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
