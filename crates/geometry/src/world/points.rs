@@ -64,7 +64,7 @@ impl PointColumns {
 
     /// Changes the shading normals and tangents of points.
     #[inline(always)]
-    pub fn turn<R: Real>(&mut self, first: usize, ns: Normal3<R>, ss: Vector3<R>) {
+    pub fn set_normals<R: Real>(&mut self, first: usize, ns: Normal3<R>, ss: Vector3<R>) {
         for (column, x) in [(9, ns.x), (10, ns.y), (11, ns.z), (18, ss.x), (19, ss.y), (20, ss.z)] {
             x.store(&mut self.values[column][first..]);
         }

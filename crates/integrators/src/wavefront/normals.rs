@@ -35,7 +35,7 @@ impl Kernel for Perturb<'_, '_> {
             let surface = points.get::<R>(first);
             if let Some(map) = &entry.normal_map {
                 let frame = map.rotate(&Frame::from_z_and_x(surface.ns, surface.ss), surface.uv);
-                points.turn(first, face_forward(frame.z, surface.n), frame.x);
+                points.set_normals(first, face_forward(frame.z, surface.n), frame.x);
             } else if let Some(map) = &entry.bump_map {
                 let footprint = if with_footprints {
                     segments.footprint(view, Rows::first(turns), &surface)
@@ -44,7 +44,7 @@ impl Kernel for Perturb<'_, '_> {
                 };
                 let context = TextureContext { p: surface.p.p, n: surface.n, uv: surface.uv, footprint };
                 let shading = map.perturb(&points.shading(first), &context, scene.textures());
-                points.turn(first, shading.n, shading.dpdu);
+                points.set_normals(first, shading.n, shading.dpdu);
             }
         }
     }
