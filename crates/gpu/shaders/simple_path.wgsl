@@ -12,8 +12,8 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     var direct: DirectLight;
     var goes_on = true;
     let samples_lights = has_setting(SAMPLES_LIGHTS);
-    // Each turn follows the last vertex's shadow ray, or the ray to the next vertex, at one place of
-    // the program, because traversal is long.
+    // Each turn follows the last vertex's shadow ray, or the ray to the next vertex, at one place
+    // of the program, because traversal is long.
     loop {
         let is_shadow = !is_black(direct.l);
         if (!is_shadow && !goes_on) {
@@ -39,7 +39,8 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         if (HAS_INTERFACES && is_interface(s.material)) {
             pass_through(&next, &beside, s, hit.t);
-            // Interfaces occlude shadow rays here, so that only the path itself finds lights beyond.
+            // Interfaces occlude shadow rays here, so that only the path itself finds lights
+            // beyond.
             counts = true;
             continue;
         }

@@ -263,9 +263,10 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\nconst HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\n\
-        const HAS_MEASURED = {measured};\n\
-        const FORCES_DIFFUSE = {force_diffuse};\nconst HAS_INTERFACES = {media};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
+        const HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\nconst HAS_MEASURED = {measured};\n\
+        const HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
+        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")
