@@ -231,10 +231,18 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         s = curve_point(hit, o, d, side);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
-        let inward = Rows(row[0].xyz, row[1].xyz, row[2].xyz);
-        let center = vec3f(row[0].w, row[1].w, row[2].w);
+        var inward = Rows(row[0].xyz, row[1].xyz, row[2].xyz);
+        var center = vec3f(row[0].w, row[1].w, row[2].w);
+        var kind = ids.x;
+        var numbers = bitcast<vec4f>(items[at + 3]);
+        if (kind == BALL) {
+            inward = Rows(vec3f(1, 0, 0), vec3f(0, 1, 0), vec3f(0, 0, 1));
+            center = row[0].xyz;
+            kind = SPHERE;
+            numbers = whole_sphere(row[0].w);
+        }
         let p = times(inward, o - center) + times(inward, d) * hit.t;
-        s = revolved_point(ids.x, p, bitcast<vec4f>(items[at + 3]));
+        s = revolved_point(kind, p, numbers);
         let outward = inverse(inward);
         let reach = abs(center) + times(absolute(outward), abs(s.p.p));
         s.p = Point3Error(center + times(outward, s.p.p), POINT_ERROR * reach);

@@ -38,6 +38,11 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
     if (tables[at] == TEXTURE_SPECTRUM) {
         return spectrum(tables[at + 1], lambda);
     }
+    return program(at, context, lambda);
+}
+
+// The result of a program. A function of its own, because all slots are set to zero where it begins.
+fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
     var slots: array<vec4f, 32>;
     for (var i = 0u; i < tables[at + 1]; i++) {
         let operation = at + 2 + 4 * i;

@@ -4,13 +4,19 @@
 // their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts;
 // `HAS_CURVES`, whether there are curves; and `ribbon_normal`, the normal of one.
 
-const STACK = 128;
+// The entries of a ray's stack. They are few, because all are set to zero before each ray.
+const STACK = 24u;
+
 const NO_HIT = 0xffffffffu;
 
 // The bits of references: leaves, leaves of items, the number of primitives.
 const LEAF = 0x80000000u;
 const ITEMS = 0x40000000u;
 const COUNT_BITS = 5u;
+
+// The bit of a node on the stack of which some children wait together: those of some bits, instead
+// of a distance.
+const TOGETHER = 0x40000000u;
 
 struct Hit {
     t: f32,
@@ -24,6 +30,15 @@ struct Hit {
     // The index of the instance's item; `NO_HIT` outside of instances.
     instance: u32,
     found: bool,
+}
+
+// What is kept of a hit while a ray is traced; `place` is `NO_HIT` where nothing is found.
+struct Nearest {
+    t: f32,
+    uv: vec2f,
+    place: u32,
+    is_triangle: bool,
+    instance: u32,
     // Whether it is to be accepted.
     is_cut_out: bool,
 }
@@ -81,7 +96,7 @@ fn edge_function(p: vec2f, q: vec2f) -> f32 {
 
 // Takes the hit on a triangle if it is the nearest so far: at 0 < t < `best.t`, or at the same
 // distance as another hit and before it.
-fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<function, Hit>) {
+fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<function, Nearest>) {
     let corner = array(triangles[3 * index], triangles[3 * index + 1], triangles[3 * index + 2]);
     let a = sheared_point(ray, bitcast<vec3f>(corner[0].xyz));
     let b = sheared_point(ray, bitcast<vec3f>(corner[1].xyz));
@@ -111,12 +126,19 @@ fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<functio
     if (!(t > error)) {
         return;
     }
-    let is_first = instance == (*best).instance && (corner[0].w < (*best).geometry
-        || (corner[0].w == (*best).geometry && corner[1].w < (*best).primitive));
-    if (t < (*best).t || ((*best).found && t == (*best).t && is_first)) {
-        let is_cut_out = corner[2].w == 1;
-        *best = Hit(t, e.yz * inverse, corner[0].w, corner[1].w, index, true, instance, true, is_cut_out);
+    if (t == (*best).t) {
+        let before = (*best).place;
+        if (before == NO_HIT || !(*best).is_triangle || instance != (*best).instance) {
+            return;
+        }
+        let geometry = triangles[3 * before].w;
+        let is_first = corner[0].w < geometry
+            || (corner[0].w == geometry && corner[1].w < triangles[3 * before + 1].w);
+        if (!is_first) {
+            return;
+        }
     }
+    *best = Nearest(t, e.yz * inverse, index, true, instance, corner[2].w == 1);
 }
 
 // The kinds of items.
@@ -126,15 +148,17 @@ const SPHERE = 2u;
 const CYLINDER = 3u;
 const DISK = 4u;
 const PLANE = 5u;
-const FLAT_CURVE = 6u;
-const TUBE = 7u;
-const RIBBON = 8u;
+// A whole sphere that is not rotated, for spheres by the million.
+const BALL = 6u;
+const FLAT_CURVE = 7u;
+const TUBE = 8u;
+const RIBBON = 9u;
 
 // The bits of the last word of a shape.
 const CUT_OUT = 2u;
 
 // Takes the hit on a shape if it is the nearest so far of those beyond `after`.
-fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, best: ptr<function, Hit>) {
+fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, best: ptr<function, Nearest>) {
     let at = 5 * index;
     let ids = items[at + 4];
     var uv = vec2f();
@@ -143,6 +167,9 @@ fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, be
         t = hit_patch(o, d, at, after, (*best).t, &uv);
     } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {
         t = hit_curve(o, d, at, after, (*best).t, &uv);
+    } else if (ids.x == BALL) {
+        let ball = bitcast<vec4f>(items[at]);
+        t = hit_round(o - ball.xyz, d, true, whole_sphere(ball.w), after, (*best).t);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
         // Relative to the object's origin, so that little is lost near it.
@@ -157,8 +184,13 @@ fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, be
         }
     }
     if (t > after) {
-        *best = Hit(t, uv, ids.y, ids.z, index, false, instance, true, (ids.w & CUT_OUT) != 0);
+        *best = Nearest(t, uv, index, false, instance, (ids.w & CUT_OUT) != 0);
     }
+}
+
+// The numbers of a whole sphere.
+fn whole_sphere(radius: f32) -> vec4f {
+    return vec4f(radius, -radius, radius, 6.2831855);
 }
 
 // Errors of distances, relative to the numbers that they come from.
@@ -392,20 +424,37 @@ fn hit_curve(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<functi
     return found;
 }
 
-// The distances of four planes, whose numbers of steps are bytes. Children are tested four at a time
-// by vectors, because what is in arrays with indices that vary is in memory, and loops are not
-// unrolled.
-fn planes(bytes: u32, origin: f32, step: f32) -> vec4f {
-    return vec4f(unpack4xU8(bytes)) * step + origin;
+// The distances of four planes across each axis, whose numbers of steps are bytes. Children are
+// tested four at a time by vectors, because what is in arrays with indices that vary is in memory,
+// and loops are not unrolled.
+fn planes(bytes: vec3u, origin: vec3f, step: vec3f) -> array<vec4f, 3> {
+    return array(
+        vec4f(unpack4xU8(bytes.x)) * step.x + origin.x,
+        vec4f(unpack4xU8(bytes.y)) * step.y + origin.y,
+        vec4f(unpack4xU8(bytes.z)) * step.z + origin.z,
+    );
+}
+
+// Where a ray enters four boxes, and which of them it hits.
+struct FourBoxes {
+    begin: vec4f,
+    are_hit: vec4<bool>,
+}
+
+// The boxes of children with these planes, before `t_max`.
+fn four_boxes(enter: array<vec4f, 3>, leave: array<vec4f, 3>, children: vec4u, t_max: f32) -> FourBoxes {
+    let begin = max(max(enter[0], enter[1]), max(enter[2], vec4f()));
+    let end = min(min(leave[0], leave[1]), min(leave[2], vec4f(t_max)));
+    return FourBoxes(begin, (begin <= end) & (children != vec4u(LEAF)));
 }
 
 // Takes a child that is hit: the nearest one of the node is next, and the others wait on the stack.
 // Both are a reference with the distance where the ray enters its box.
 fn take(
     child: u32, distance: f32, is_hit: bool,
-    next: ptr<function, vec2u>, stack: ptr<function, array<vec2u, STACK>>, top: ptr<function, i32>,
+    next: ptr<function, vec2u>, stack: ptr<function, array<vec2u, STACK>>, top: ptr<function, u32>,
 ) {
-    if (!is_hit || child == LEAF) {
+    if (!is_hit) {
         return;
     }
     // Distances are not negative, so that their bits have their order.
@@ -421,6 +470,22 @@ fn take(
     (*top)++;
 }
 
+fn take_four(
+    children: vec4u, boxes: FourBoxes,
+    next: ptr<function, vec2u>, stack: ptr<function, array<vec2u, STACK>>, top: ptr<function, u32>,
+) {
+    take(children.x, boxes.begin.x, boxes.are_hit.x, next, stack, top);
+    take(children.y, boxes.begin.y, boxes.are_hit.y, next, stack, top);
+    take(children.z, boxes.begin.z, boxes.are_hit.z, next, stack, top);
+    take(children.w, boxes.begin.w, boxes.are_hit.w, next, stack, top);
+}
+
+// A bit for each of four that are set.
+fn bits(are_set: vec4<bool>) -> u32 {
+    let bits = select(vec4u(), vec4u(1, 2, 4, 8), are_set);
+    return (bits.x | bits.y) | (bits.z | bits.w);
+}
+
 // The id of the instance that is hit; `NO_HIT` outside of instances.
 fn instance_id(hit: Hit) -> u32 {
     if (hit.instance == NO_HIT) {
@@ -429,23 +494,41 @@ fn instance_id(hit: Hit) -> u32 {
     return items[5 * hit.instance + 3].w;
 }
 
+// All of a hit.
+fn whole(hit: Nearest) -> Hit {
+    var whole = Hit(hit.t, hit.uv, 0, 0, hit.place, hit.is_triangle, hit.instance, true);
+    if (hit.place == NO_HIT) {
+        whole.found = false;
+    } else if (hit.is_triangle) {
+        whole.geometry = triangles[3 * hit.place].w;
+        whole.primitive = triangles[3 * hit.place + 1].w;
+    } else {
+        let ids = items[5 * hit.place + 4];
+        whole.geometry = ids.y;
+        whole.primitive = ids.z;
+    }
+    return whole;
+}
+
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
-    var best = Hit(t_max, vec2f(), 0, 0, 0, false, NO_HIT, false, false);
+    var best = Nearest(t_max, vec2f(), NO_HIT, false, NO_HIT, false);
     // What is next, if anything, and what waits.
     var next = vec2u(LEAF, 0);
     var stack: array<vec2u, STACK>;
     stack[0] = vec2u(world.roots.y, 0);
     stack[1] = vec2u(world.roots.x, 0);
     stack[2] = vec2u(world.unbounded, 0);
-    var top = 3;
+    var top = 3u;
     // Within an instance the ray is another one; `outside` is the top of the stack there.
     var ray = slabs(o, d, world.size);
     var shear = sheared(o, d);
     var inner_o = o;
     var inner_d = d;
     var instance = NO_HIT;
-    var outside = 0;
+    var outside = 0u;
+    // What a shape is to be hit beyond.
+    var after = 0.0;
     loop {
         if (next.x == LEAF) {
             if (top == 0) {
@@ -461,47 +544,57 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             top--;
             next = stack[top];
         }
-        let reference = next.x;
-        let is_beyond = bitcast<f32>(next.y) > best.t;
+        let entry = next;
         next.x = LEAF;
-        if (is_beyond) {
+        // The bits of children that wait together are a distance of almost 0.
+        if (bitcast<f32>(entry.y) > best.t) {
+            continue;
+        }
+        let reference = entry.x;
+        if ((reference & (LEAF | TOGETHER)) == TOGETHER) {
+            // The first of them is next, and the others wait on.
+            let others = entry.y & (entry.y - 1);
+            if (others != 0) {
+                stack[top] = vec2u(reference, others);
+                top++;
+            }
+            let child = firstTrailingBit(entry.y);
+            next = vec2u(nodes[6 * (reference & ~TOGETHER) + 4 + child / 4][child % 4], 0);
             continue;
         }
         if ((reference & LEAF) != 0) {
-            var first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
-            var count = reference & ((1u << COUNT_BITS) - 1);
-            let are_items = (reference & ITEMS) != 0;
-            var after = 0.0;
-            while (count > 0) {
+            let first = (reference & ~(LEAF | ITEMS)) >> COUNT_BITS;
+            let count = reference & ((1u << COUNT_BITS) - 1);
+            if (count == 0) {
+                continue;
+            }
+            // The primitives after the first one.
+            let rest = reference + (1u << COUNT_BITS) - 1;
+            let are_items = (reference & ITEMS) == ITEMS;
+            if (!are_items || items[5 * first + 4].x != INSTANCE) {
                 var hit = best;
                 hit.is_cut_out = false;
-                if (!are_items) {
-                    intersect_triangle(shear, first, instance, &hit);
-                } else if (items[5 * first + 4].x != INSTANCE) {
+                if (are_items) {
                     intersect_shape(inner_o, inner_d, after, first, instance, &hit);
                 } else {
-                    break;
+                    intersect_triangle(shear, first, instance, &hit);
                 }
-                if (!hit.is_cut_out || accepts(hit, o, d)) {
+                after = 0;
+                next = vec2u(select(LEAF, rest, count > 1), 0);
+                if (!hit.is_cut_out || accepts(whole(hit), o, d)) {
                     best = hit;
+                    if (is_any && best.place != NO_HIT) {
+                        break;
+                    }
                 } else if (are_items) {
                     // The same shape may be hit beyond.
                     after = hit.t;
-                    continue;
+                    next.x = reference;
                 }
-                after = 0;
-                first++;
-                count--;
-            }
-            if (is_any && best.found) {
-                return best;
-            }
-            if (count == 0) {
                 continue;
             }
             // The instance that the ray enters; the others wait.
             if (count > 1) {
-                let rest = LEAF | ITEMS | ((first + 1) << COUNT_BITS) | (count - 1);
                 stack[top] = vec2u(rest, 0);
                 top++;
             }
@@ -527,29 +620,36 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
         let origin = (bitcast<vec3f>(head.xyz) - ray.o) * ray.inverse;
         let exponents = vec3u(head.w, head.w >> 8, head.w >> 16) & vec3u(255);
         let step = bitcast<vec3f>(exponents << vec3u(23)) * ray.inverse;
+        let near = origin - ray.margin;
+        let far = origin + ray.margin;
+        // Where the ray goes down along an axis, it enters boxes by their high planes.
+        let is_down = ray.inverse < vec3f();
         let q = array(nodes[at + 1], nodes[at + 2], nodes[at + 3]);
-        for (var half = 0u; half < 2; half++) {
-            let children = nodes[at + 4 + half];
-            if (children.x == LEAF) {
-                break;
-            }
-            let is_last = half == 1;
-            let low_x = planes(select(q[0].x, q[0].y, is_last), origin.x, step.x);
-            let low_y = planes(select(q[0].z, q[0].w, is_last), origin.y, step.y);
-            let low_z = planes(select(q[1].x, q[1].y, is_last), origin.z, step.z);
-            let high_x = planes(select(q[1].z, q[1].w, is_last), origin.x, step.x);
-            let high_y = planes(select(q[2].x, q[2].y, is_last), origin.y, step.y);
-            let high_z = planes(select(q[2].z, q[2].w, is_last), origin.z, step.z);
-            let near_xy = max(min(low_x, high_x) - ray.margin.x, min(low_y, high_y) - ray.margin.y);
-            let far_xy = min(max(low_x, high_x) + ray.margin.x, max(low_y, high_y) + ray.margin.y);
-            let enter = max(max(near_xy, min(low_z, high_z) - ray.margin.z), vec4f());
-            let leave = min(min(far_xy, max(low_z, high_z) + ray.margin.z), vec4f(best.t));
-            let are_hit = enter <= leave;
-            take(children.x, enter.x, are_hit.x, &next, &stack, &top);
-            take(children.y, enter.y, are_hit.y, &next, &stack, &top);
-            take(children.z, enter.z, are_hit.z, &next, &stack, &top);
-            take(children.w, enter.w, are_hit.w, &next, &stack, &top);
+        let enter_x = select(q[0].xy, q[1].zw, is_down.x);
+        let enter_y = select(q[0].zw, q[2].xy, is_down.y);
+        let enter_z = select(q[1].xy, q[2].zw, is_down.z);
+        let leave_x = select(q[1].zw, q[0].xy, is_down.x);
+        let leave_y = select(q[2].xy, q[0].zw, is_down.y);
+        let leave_z = select(q[2].zw, q[1].xy, is_down.z);
+        let first = four_boxes(
+            planes(vec3u(enter_x.x, enter_y.x, enter_z.x), near, step),
+            planes(vec3u(leave_x.x, leave_y.x, leave_z.x), far, step), nodes[at + 4], best.t,
+        );
+        let second = four_boxes(
+            planes(vec3u(enter_x.y, enter_y.y, enter_z.y), near, step),
+            planes(vec3u(leave_x.y, leave_y.y, leave_z.y), far, step), nodes[at + 5], best.t,
+        );
+        // Children have entries of their own where the stack has enough for what is below.
+        if (top + 7 + (head.w >> 24) <= STACK) {
+            take_four(nodes[at + 4], first, &next, &stack, &top);
+            take_four(nodes[at + 5], second, &next, &stack, &top);
+            continue;
+        }
+        let together = bits(first.are_hit) | (bits(second.are_hit) << 4);
+        if (together != 0) {
+            stack[top] = vec2u(reference | TOGETHER, together);
+            top++;
         }
     }
-    return best;
+    return whole(best);
 }

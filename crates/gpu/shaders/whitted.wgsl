@@ -1,7 +1,6 @@
 // Whitted's ray tracing: the light of all lights with shadows, perfect reflection and refraction.
 
-// The rays that may wait: one for each scattering event before.
-const MOST_RAYS = 17u;
+// `MOST_RAYS` is how many rays may wait: one for each scattering event of a path, and one more.
 
 // A ray of the tree.
 struct Branch {

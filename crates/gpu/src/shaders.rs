@@ -1,6 +1,8 @@
 //! The sources of the shaders. WGSL has no modules: a shader is the concatenation of texts, in any
 //! order.
 
+use std::borrow::Cow;
+
 use crate::Algorithm;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.
@@ -131,10 +133,10 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         | Algorithm::RandomWalk(_)
         | Algorithm::Mlt(..) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
-            return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, radiance(algorithm, parts), pixels]);
+            return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, &radiance(algorithm, parts), pixels]);
         }
     };
-    let own = [RANDOM_NUMBERS, &constants, radiance(algorithm, parts)];
+    let own = [RANDOM_NUMBERS, &constants, &radiance(algorithm, parts)];
     traced(parts, &[&SUBPATHS[..], &own].concat())
 }
 
@@ -173,7 +175,7 @@ pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> Strin
     let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
     let light = include_str!("../shaders/realtime/light.wgsl");
     let radiance = radiance(algorithm, parts);
-    traced(parts, &[RANDOM_NUMBERS, reservoirs, radiance, FRAME, CAMERA_HIT, SENSOR, light])
+    traced(parts, &[RANDOM_NUMBERS, reservoirs, &radiance, FRAME, CAMERA_HIT, SENSOR, light])
 }
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
@@ -218,10 +220,13 @@ pub fn filters() -> [String; 4] {
 
 /// The function `radiance` of an algorithm, or the whole of one whose paths begin at lights, which
 /// is not for real-time frames.
-fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
-    match algorithm {
+fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
+    let text = match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
-        Algorithm::Whitted(_) => include_str!("../shaders/whitted.wgsl"),
+        Algorithm::Whitted(desc) => {
+            let most_rays = format!("const MOST_RAYS = {}u;\n", desc.max_depth + 1);
+            return (most_rays + include_str!("../shaders/whitted.wgsl")).into();
+        }
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
         Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.media => {
@@ -241,7 +246,8 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> &'static str {
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
         Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),
         Algorithm::Sppm(..) => include_str!("../shaders/photons.wgsl"),
-    }
+    };
+    text.into()
 }
 
 /// A kernel that traces rays through a scene.

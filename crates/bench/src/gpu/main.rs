@@ -13,6 +13,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use alhazen::device::{Device, Kernels};
 use clap::Parser;
@@ -47,6 +48,8 @@ pub struct Size {
     /// The square root of the number of camera rays, and how often they are traced.
     rays: usize,
     repeats: u32,
+    /// How long they are traced before they are timed.
+    warming: Duration,
     /// Spheres that move.
     spheres: usize,
     /// Frames that are the reference of many lights.
@@ -60,6 +63,7 @@ const FULL: Size = Size {
     frames: 60,
     rays: 1920,
     repeats: 20,
+    warming: Duration::from_millis(400),
     spheres: 1_000_000,
     reference: 100,
     passes: [16, 2],
@@ -70,6 +74,7 @@ const QUICK: Size = Size {
     frames: 3,
     rays: 128,
     repeats: 2,
+    warming: Duration::ZERO,
     spheres: 10_000,
     reference: 20,
     passes: [2, 1],

@@ -11,7 +11,10 @@ use gpu::{Bvh, GpuError, shaders};
 use math::Ray;
 use serde_json::{Map, Value, json};
 
-use crate::Size;
+use crate::{Size, median};
+
+/// Of how many runs the median is reported.
+const RUNS: usize = 5;
 
 /// A kernel that traces rays, of eight numbers each, to distances: 0 where nothing is hit. An end
 /// below 0 is that of a ray which any hit ends.
@@ -66,15 +69,23 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
                     device.zeros("hits", 4 * set.rays.len() as u64)?,
                 ];
                 let groups = [set.rays.len().div_ceil(64) as u32, 1, 1];
-                // Once to warm up.
-                device.run(&kernel, &buffers.each_ref(), groups)?;
-                let hits = device.read::<f32>(&buffers[5])?.iter().filter(|t| **t > 0.0).count();
+                let run = || {
+                    let begin = Instant::now();
+                    for _ in 0..size.repeats {
+                        device.run(&kernel, &buffers.each_ref(), groups)?;
+                    }
+                    device.read_part::<f32>(&buffers[5], 0, 1)?;
+                    Ok(begin.elapsed())
+                };
+                // The clock of a GPU that had nothing to do rises for some tenths of a second.
                 let begin = Instant::now();
-                for _ in 0..size.repeats {
-                    device.run(&kernel, &buffers.each_ref(), groups)?;
+                while begin.elapsed() < size.warming {
+                    run()?;
                 }
-                device.read_part::<f32>(&buffers[5], 0, 1)?;
-                Ok((hits, begin.elapsed().as_secs_f64()))
+                let times = (0..RUNS).map(|_| run().map(|time| time.as_secs_f64()));
+                let seconds = median(times.collect::<Result<_, _>>()?);
+                let hits = device.read::<f32>(&buffers[5])?.iter().filter(|t| **t > 0.0).count();
+                Ok((hits, seconds))
             })();
             let (hits, seconds) = made.map_err(|error: GpuError| error.to_string())?;
             let traced = set.rays.len() as f64 * f64::from(size.repeats);

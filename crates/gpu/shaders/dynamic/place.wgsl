@@ -10,7 +10,7 @@
 // Codes of the highest coordinates along each axis, and complements of those of the lowest.
 @group(0) @binding(5) var<storage, read_write> ends: array<atomic<u32>, 6>;
 
-const SPHERE = 2u;
+const BALL = 6u;
 const AT_REST = 0xffffffffu;
 
 var<workgroup> ends_of_group: array<atomic<u32>, 6>;
@@ -27,13 +27,11 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         let at = 5 * (plan.first_item + id.x);
         let ids = items[at + 4];
         let first = spheres[ids.y];
-        if (ids.x == SPHERE && first != AT_REST) {
+        if (ids.x == BALL && first != AT_REST) {
             let base = 3 * (first + ids.z);
             let center = vec3f(centers[base], centers[base + 1], centers[base + 2]);
-            for (var axis = 0u; axis < 3; axis++) {
-                items[at + axis].w = bitcast<u32>(center[axis]);
-            }
-            let radius = bitcast<f32>(items[at + 3].x);
+            let radius = bitcast<f32>(items[at].w);
+            items[at] = bitcast<vec4u>(vec4f(center, radius));
             // More than the rounding errors of the planes.
             let reach = vec3f(radius) + (abs(center) + radius) * 2.4e-7;
             boxes[id.x] = Box(center - reach, center + reach);

@@ -16,7 +16,10 @@ const COUNT_BITS = 5u;
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var count = 0u;
+    // The levels of nodes below it.
+    var below = 0u;
     for (var level = 0u; level < arrayLength(&levels); level++) {
+        below += select(0u, 1u, count > id.x && levels[level] > 0);
         count += levels[level];
     }
     if (id.x >= count) {
@@ -57,7 +60,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             words[6 + 2 * axis + i / 4] |= high[axis] << (8 * (i % 4));
         }
     }
-    let packed = exponents.x | (exponents.y << 8) | (exponents.z << 16);
+    let packed = exponents.x | (exponents.y << 8) | (exponents.z << 16) | (below << 24);
     nodes[at] = vec4u(bitcast<vec3u>(all.low), packed);
     for (var i = 0u; i < 3; i++) {
         nodes[at + 1 + i] = vec4u(words[4 * i], words[4 * i + 1], words[4 * i + 2], words[4 * i + 3]);

@@ -5,9 +5,7 @@ fn kept_hit(path: u32) -> Hit {
     let ids = row(HIT_IDS, path);
     let uv = bitcast<vec2f>(found.yz);
     let is_triangle = (ids.w & IS_TRIANGLE) != 0;
-    return Hit(
-        bitcast<f32>(found.x), uv, found.w, ids.x, ids.y, is_triangle, ids.z, (ids.w & FOUND) != 0, false,
-    );
+    return Hit(bitcast<f32>(found.x), uv, found.w, ids.x, ids.y, is_triangle, ids.z, (ids.w & FOUND) != 0);
 }
 
 @compute @workgroup_size(64)

@@ -5,13 +5,16 @@
 //! | instance | the rows of the matrix that takes rays inside; the references of its triangles and of its items, the size of its group, its id |
 //! | patch | its corner, its sides and its twist |
 //! | curve | its control points, with the widths and the u of its ends |
+//! | ball | its centre and its radius |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
 //! turned over, 2 where it is cut out.
 
+use std::f32::consts::TAU;
+
 use geometry::{CurveKind, GeometryId, InstanceId, PlainShape, RevolvedKind, World};
-use math::{DVec3, Vec3};
+use math::{DMat3, DVec3, Vec3};
 
 use super::{BvhError, Group, Words};
 
@@ -25,9 +28,10 @@ const SPHERE: u32 = 2;
 const CYLINDER: u32 = 3;
 const DISK: u32 = 4;
 const PLANE: u32 = 5;
-const FLAT_CURVE: u32 = 6;
-const TUBE: u32 = 7;
-const RIBBON: u32 = 8;
+const BALL: u32 = 6;
+const FLAT_CURVE: u32 = 7;
+const TUBE: u32 = 8;
+const RIBBON: u32 = 9;
 
 /// An instance of a group.
 pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Words; QUADRUPLES], BvhError> {
@@ -76,7 +80,14 @@ pub fn shape(
                 let vector = inverse.row(i).truncate();
                 [vector.x, vector.y, vector.z, origin[i]].map(|x| (x as f32).to_bits())
             };
-            Ok([row(0), row(1), row(2), numbers.map(f32::to_bits), ids(kind, flips)])
+            let [x, y, z] = [0, 1, 2].map(row);
+            let [radius, low, high, angle] = numbers;
+            let is_whole = [low, high] == [-radius, radius] && angle >= TAU;
+            if kind == SPHERE && is_whole && DMat3::from_mat4(render_from_object) == DMat3::IDENTITY {
+                let ball = [x[3], y[3], z[3], radius.to_bits()];
+                return Ok([ball, [0; 4], [0; 4], [0; 4], ids(BALL, flips)]);
+            }
+            Ok([x, y, z, numbers.map(f32::to_bits), ids(kind, flips)])
         }
         PlainShape::Curve { kind, points: [a, b, c, d], widths, range, normals: _, flips } => {
             let kind = match kind {

@@ -20,7 +20,7 @@ use math::Bounds3;
 use node::Writer;
 
 /// The entries of the stack of `shaders/trace.wgsl`.
-pub(crate) const STACK: usize = 128;
+pub(crate) const STACK: usize = 24;
 
 /// How many bits of a leaf's reference are the number of its primitives.
 const COUNT_BITS: u32 = 5;
@@ -99,7 +99,7 @@ impl Bvh {
     ) -> Result<Group, BvhError> {
         let (tree, mut triangles) = world.triangle_tree(group);
         let mut size = largest_coordinate(&tree);
-        let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3);
+        let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3, 0);
         let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
         let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         let of_triangles = writer.stack;
@@ -119,13 +119,14 @@ impl Bvh {
         let tree = tree.and(&Binary::new(&spheres, &mut more, bounds), items.len());
         items.extend(more);
         let first = self.items.len() / item::QUADRUPLES;
-        let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first);
-        let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
-        // Triangles are done before items. What waits among these does so while a ray is within an
-        // instance, too; and three roots wait together.
+        // A ray within an instance has the two roots there on its stack, and the rest of the leaf
+        // waits.
         let instances = if group == GroupId::TOP { &groups[1..] } else { &[] };
-        let inner = instances.iter().map(|group| group.stack).max().unwrap_or(0);
-        let stack = 3 + of_triangles.max(writer.stack + inner);
+        let of_leaf = instances.iter().map(|group| group.stack).max().unwrap_or(0);
+        let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first, of_leaf);
+        let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
+        // Three roots wait together.
+        let stack = 3 + of_triangles.max(writer.stack);
         self.bounded = first..first + items.len();
         let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
         if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {

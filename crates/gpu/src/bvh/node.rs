@@ -5,10 +5,13 @@
 //! | words | what |
 //! |---|---|
 //! | 0–2 | the low corner of the node's box, as floats |
-//! | 3 | a byte for each axis: the biased exponent of the size 2ᵉ of a step |
+//! | 3 | a byte for each axis: the biased exponent of the size 2ᵉ of a step; and the stack's entries |
 //! | 4–9 | a byte for each child, two words for each of the low planes of x, y and z in steps |
 //! | 10–15 | the same of the high planes |
 //! | 16–23 | the references of the children |
+//!
+//! The stack's entries are those that a ray needs below one of the children, however many others
+//! wait: for each node below one, of which all children wait together.
 
 use math::Bounds3;
 
@@ -45,13 +48,13 @@ pub struct Writer<'a> {
     leaf: u32,
     /// The index of the first primitive.
     first: usize,
-    /// The entries that a ray's stack needs for the root and what is below.
+    /// The entries that a ray's stack needs for a leaf; and, when a tree is written, for its root.
     pub stack: usize,
 }
 
 impl<'a> Writer<'a> {
-    pub fn new(nodes: &'a mut Vec<Words>, leaf: u32, first: usize) -> Self {
-        Self { nodes, leaf, first, stack: 0 }
+    pub fn new(nodes: &'a mut Vec<Words>, leaf: u32, first: usize, stack: usize) -> Self {
+        Self { nodes, leaf, first, stack }
     }
 
     /// Writes a tree; the reference of its root. `None` where there are too many primitives.
@@ -68,7 +71,7 @@ impl<'a> Writer<'a> {
         let halves = match &tree.node(index).below {
             Below::Primitives(range) => {
                 let leaf = leaf(self.leaf, self.first + range.start, range.len());
-                return leaf.map(|leaf| (leaf, 1));
+                return leaf.map(|leaf| (leaf, self.stack));
             }
             Below::Nodes(halves) => halves,
         };
@@ -95,15 +98,15 @@ impl<'a> Writer<'a> {
             *reference = written;
             stack = stack.max(needed);
         }
-        let words = quantised(&tree.node(index).bounds, &boxes, references);
+        let words = quantised(&tree.node(index).bounds, &boxes, references, stack);
         self.nodes[6 * node..].iter_mut().zip(words).for_each(|(place, words)| *place = words);
-        // The last child is taken from the stack while the others wait.
-        Some((node as u32, children.len() - 1 + stack))
+        // All children wait together at least.
+        Some((node as u32, 1 + stack))
     }
 }
 
-/// A node with these children.
-fn quantised(bounds: &Bounds3, boxes: &[Bounds3], references: [u32; WIDTH]) -> [Words; 6] {
+/// A node with these children, of which one needs so many entries of a ray's stack.
+fn quantised(bounds: &Bounds3, boxes: &[Bounds3], references: [u32; WIDTH], stack: usize) -> [Words; 6] {
     let steps = [0, 1, 2].map(|axis| step(bounds.min[axis], bounds.max[axis]));
     let mut planes = [[[0u8; WIDTH]; 3]; 2];
     for axis in 0..3 {
@@ -116,6 +119,7 @@ fn quantised(bounds: &Bounds3, boxes: &[Bounds3], references: [u32; WIDTH]) -> [
     let mut words = [0; 24];
     words[..3].copy_from_slice(&bounds.min.to_array().map(f32::to_bits));
     words[3] = (0..3).map(|axis| steps[axis].to_bits() >> 23 << (8 * axis)).sum();
+    words[3] |= (stack.min(255) as u32) << 24;
     for (word, bytes) in words[4..16].iter_mut().zip(planes.as_flattened().as_flattened().chunks_exact(4)) {
         *word = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     }

@@ -49,8 +49,8 @@ const fn most_levels(count: u32) -> u32 {
     (CODE_BITS + u32::BITS - (count - 1).leading_zeros()).div_ceil(LEVELS)
 }
 
-// A ray's stack has room for the siblings of all nodes of a path.
-const _: () = assert!((WIDTH - 1) * most_levels(MOST_ITEMS) < STACK as u32);
+// A ray's stack has an entry for each node of a path, beside those of three roots.
+const _: () = assert!(3 + most_levels(MOST_ITEMS) <= STACK as u32);
 
 /// The tree, and what builds it.
 pub struct Tree {

@@ -193,6 +193,18 @@ fn random_rays_meet_the_triangles_that_they_meet_on_the_cpu() {
 }
 
 #[test]
+fn rays_with_small_stacks_meet_the_same_triangles() {
+    let Some(device) = crate::device() else { return };
+    let (stack, small) = ("const STACK = 24u;", "const STACK = 12u;");
+    assert!(shaders::TRACE.contains(stack), "{stack}");
+    let kernel = device.kernel("trace", &(shaders::TRACE.replace(stack, small) + KERNEL));
+    let kernel = kernel.unwrap_or_else(|error| panic!("{error}"));
+    let world = world([soup(20_000)]);
+    let found = compare(&(Kernels::new(device), kernel), &world, &random_rays(20_000, 4.0));
+    assert!(found.other <= 2 && found.distance < 1e-5, "{found:?}");
+}
+
+#[test]
 fn rays_through_edges_and_vertices_do_not_leak() {
     let Some(tracer) = tracer() else { return };
     let mesh = ball(40);

@@ -10,6 +10,6 @@ mod on_device;
 mod outing;
 mod report;
 
-pub use outing::{Outing, STEP, Spent};
+pub use outing::{Moment, Outing, STEP, Spent};
 pub use planet::Input;
 pub use report::PlanetReport;

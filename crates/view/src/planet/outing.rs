@@ -41,6 +41,8 @@ pub struct Spent {
     pub moving: Duration,
     /// Rendering and developing.
     pub rendering: Duration,
+    /// Of rendering, what a GPU spends on rays, and on what is computed where they hit.
+    pub tracing: Option<Duration>,
 }
 
 impl Spent {
@@ -48,6 +50,13 @@ impl Spent {
     pub fn sum(&self) -> Duration {
         self.simulating + self.moving + self.rendering
     }
+}
+
+/// Where the spheres of a planet and its walker's eyes are at a time.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    spheres: Vec<(GeometryId, Arc<[Point3]>)>,
+    camera: CameraDesc,
 }
 
 /// A planet, its walker, and the scene that is rendered of them.
@@ -144,30 +153,50 @@ impl Outing {
         control: &Control,
     ) -> Result<(Frame, Spent), StepError> {
         let begin = Instant::now();
+        self.pass(input, steps);
+        let simulating = begin.elapsed();
+        let moment = self.moment();
+        let copying = begin.elapsed() - simulating;
+        let (mut frame, mut spent) = self.show(&moment, control)?;
+        spent.simulating = simulating;
+        spent.moving += copying;
+        frame.time = spent.sum();
+        Ok((frame, spent))
+    }
+
+    /// Lets time pass, by some steps.
+    pub fn pass(&mut self, input: &Input, steps: u32) {
         for _ in 0..steps {
             self.walker.step(&self.planet, input, STEP);
             self.planet.step(Some(self.walker.body()), STEP);
         }
-        let simulating = begin.elapsed();
-        let moved = self.moved();
-        self.shot.camera = self.camera();
+    }
+
+    /// Where everything is by now.
+    pub fn moment(&self) -> Moment {
+        Moment { spheres: self.moved(), camera: self.camera() }
+    }
+
+    /// Renders a picture of a moment of this outing.
+    pub fn show(&mut self, moment: &Moment, control: &Control) -> Result<(Frame, Spent), StepError> {
+        let begin = Instant::now();
+        self.shot.camera = moment.camera.clone();
         #[cfg(feature = "gpu")]
         if let Some(device) = &mut self.device {
-            let copying = begin.elapsed() - simulating;
-            let (mut frame, moving) = device.frame(&self.world, &self.shot, &moved)?;
-            let moving = copying + moving;
-            let rendering = begin.elapsed().saturating_sub(simulating + moving);
-            let spent = Spent { simulating, moving, rendering };
+            let (mut frame, moving) = device.frame(&self.world, &self.shot, &moment.spheres)?;
+            let rendering = begin.elapsed().saturating_sub(moving);
+            let tracing = frame.stages.map(|stages| stages.trace);
+            let spent = Spent { moving, rendering, tracing, ..Spent::default() };
             frame.time = spent.sum();
             return Ok((frame, spent));
         }
-        self.world.move_spheres(moved).map_err(|error| StepError::Problem(error.to_string()))?;
-        let moving = begin.elapsed() - simulating;
+        let moved = self.world.move_spheres(moment.spheres.clone());
+        moved.map_err(|error| StepError::Problem(error.to_string()))?;
+        let moving = begin.elapsed();
         let mut session = self.world.draft(&self.shot, 1)?;
         session.run(0..self.shot.samples, &Limits::default(), control, &mut |_| ())?;
         let mut frame = Frame::of(&session, 1, self.shot.layer);
-        let rendering = begin.elapsed() - simulating - moving;
-        let spent = Spent { simulating, moving, rendering };
+        let spent = Spent { moving, rendering: begin.elapsed() - moving, ..Spent::default() };
         frame.time = spent.sum();
         Ok((frame, spent))
     }

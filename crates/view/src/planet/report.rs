@@ -5,7 +5,8 @@ use std::time::Duration;
 use alhazen::integrators::Control;
 use serde_json::{Value, json};
 
-use super::{Input, Outing, Spent};
+use super::{Input, Moment, Outing, Spent};
+use crate::Frame;
 use crate::step::StepError;
 
 /// The steps of a frame: it shows a thirtieth of a second.
@@ -36,8 +37,41 @@ impl PlanetReport {
     /// Renders a number of frames, each of a thirtieth of a second, of one who runs over the planet
     /// in curves, jumps, and throws about what is in the way.
     pub fn of_walk(outing: &mut Outing, frames: u32, control: &Control) -> Result<Self, StepError> {
+        let mut report = Self::new(outing);
+        for frame in 0..frames {
+            let input = input(outing, frame);
+            let (picture, spent) = outing.frame(&input, STEPS, control)?;
+            report.add(outing, &picture, spent);
+        }
+        Ok(report)
+    }
+
+    /// The same walk in two parts: its first frames are simulated, and then a number of frames is
+    /// rendered that show them forwards and backwards. So a GPU does not wait for the simulation.
+    pub fn of_moments(
+        outing: &mut Outing,
+        simulated: u32,
+        frames: u32,
+        control: &Control,
+    ) -> Result<Self, StepError> {
+        let moment = |frame| {
+            let input = input(outing, frame);
+            outing.pass(&input, STEPS);
+            outing.moment()
+        };
+        let moments: Vec<Moment> = (0..simulated).map(moment).collect();
+        let mut report = Self::new(outing);
+        for moment in moments.iter().chain(moments.iter().rev()).cycle().take(frames as usize) {
+            let (picture, spent) = outing.show(moment, control)?;
+            report.add(outing, &picture, spent);
+        }
+        Ok(report)
+    }
+
+    /// No frames yet.
+    fn new(outing: &Outing) -> Self {
         let bounds = outing.world().bounds();
-        let mut report = Self {
+        Self {
             spheres: outing.planet().bodies().len(),
             resolution: [bounds.width() as u32, bounds.height() as u32],
             samples: outing.shot().samples,
@@ -46,19 +80,13 @@ impl PlanetReport {
             frames: Vec::new(),
             moving: Vec::new(),
             rays: 0,
-        };
-        for frame in 0..frames {
-            let input = Input { forward: 1.0, right: 0.0, runs: true, jumps: frame % 45 == 20 };
-            outing.turn(0.012 * alhazen::lanes::sin(0.05 * frame as f32), 0.0);
-            if frame % 60 == 40 {
-                outing.blast();
-            }
-            let (picture, spent) = outing.frame(&input, STEPS, control)?;
-            report.frames.push(spent);
-            report.moving.push(outing.planet().moving());
-            report.rays += picture.rays;
         }
-        Ok(report)
+    }
+
+    fn add(&mut self, outing: &Outing, picture: &Frame, spent: Spent) {
+        self.frames.push(spent);
+        self.moving.push(outing.planet().moving());
+        self.rays += picture.rays;
     }
 
     /// The time of a part of frames that this share of them does not exceed.
@@ -107,10 +135,20 @@ impl PlanetReport {
             "simulate_ms": times(|spent| spent.simulating),
             "move_ms": times(|spent| spent.moving),
             "render_ms": times(|spent| spent.rendering),
+            "trace_ms": self.device.as_ref().map(|_| times(|spent| spent.tracing.unwrap_or_default())),
             "fps": self.fps(),
             "resolution": self.resolution,
             "samples_per_pixel": self.samples,
             "rays_per_second": self.rays_per_second(),
         })
     }
+}
+
+/// What the walker does in a frame.
+fn input(outing: &mut Outing, frame: u32) -> Input {
+    outing.turn(0.012 * alhazen::lanes::sin(0.05 * frame as f32), 0.0);
+    if frame % 60 == 40 {
+        outing.blast();
+    }
+    Input { forward: 1.0, right: 0.0, runs: true, jumps: frame % 45 == 20 }
 }
