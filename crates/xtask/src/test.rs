@@ -73,7 +73,7 @@ const STEPS: [Step; 5] = [
 
 /// What steps find in their environment. Vulkan in software takes most of the GPU's tests for
 /// compiling kernels that run for a moment; Mesa's does that faster without optimising them.
-const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), ("GALLIVM_PERF", "nopt")];
+pub const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), ("GALLIVM_PERF", "nopt")];
 
 /// Runs all steps in the workspace at `root`.
 pub fn run(root: &Path) -> Result<(), String> {

@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::command::target;
 use crate::scenes::Size;
+use crate::test::ENVIRONMENT;
 
 /// What a command has drawn.
 pub struct Drawn {
@@ -70,6 +71,7 @@ fn run_and_keep(
     match (*name, size) {
         ("render" | "view", Size::Small) => {
             command.args(without_size(rest)).args(["--resolution", "36x24", "--spp", "1", "--json"]);
+            command.envs(ENVIRONMENT);
         }
         ("render" | "view", Size::Whole) => {
             command.args(rest).arg("--json");
