@@ -75,6 +75,11 @@ const STEPS: [Step; 5] = [
 /// compiling kernels that run for a moment; Mesa's does that faster without optimising them.
 pub const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), ("GALLIVM_PERF", "nopt")];
 
+/// One more than there are cores, because a test may wait for a kernel that another one compiles.
+fn test_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, |cores| cores.get()) + 1
+}
+
 /// Runs all steps in the workspace at `root`.
 pub fn run(root: &Path) -> Result<(), String> {
     let start = Instant::now();
@@ -82,7 +87,9 @@ pub fn run(root: &Path) -> Result<(), String> {
     install_vulkan();
     step("source rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
-        step(name, || succeed(cargo(root).args(arguments).envs(ENVIRONMENT)))?;
+        let mut cargo = cargo(root);
+        cargo.args(arguments).envs(ENVIRONMENT).env("RUST_TEST_THREADS", test_threads().to_string());
+        step(name, || succeed(&mut cargo))?;
     }
     step("gallery", || gallery::check(root))?;
     step("tests of the Python package", || python::test(root))?;
