@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use super::command::{cargo, succeed};
+use super::command::{QUICK_KERNELS, cargo, succeed};
 use super::{gallery, python, tidy};
 
 /// A step that cargo runs.
@@ -71,9 +71,8 @@ const STEPS: [Step; 5] = [
     },
 ];
 
-/// What steps find in their environment. Vulkan in software takes most of the GPU's tests for
-/// compiling kernels that run for a moment; Mesa's does that faster without optimising them.
-pub const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), ("GALLIVM_PERF", "nopt")];
+/// What steps find in their environment.
+const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), QUICK_KERNELS];
 
 /// One more than there are cores, because a test may wait for a kernel that another one compiles.
 fn test_threads() -> usize {
