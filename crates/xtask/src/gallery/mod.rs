@@ -53,17 +53,19 @@ pub fn check(root: &Path) -> Result<(), String> {
     let pages = pages(root)?;
     make_scenes(root, pages.iter(), Size::Small)?;
     let commands: Vec<String> = pages.iter().flat_map(Page::commands).collect();
-    let next = AtomicUsize::new(0);
-    let run = |name: &str| {
-        while let Some(command) = commands.get(next.fetch_add(1, Ordering::Relaxed)) {
+    let taken = AtomicUsize::new(0);
+    let run = |from: &mut dyn Iterator<Item = &String>, name: &str| {
+        while taken.fetch_add(1, Ordering::Relaxed) < commands.len() {
+            let Some(command) = from.next() else { break };
             command::run(root, &program, command, Size::Small, name)?;
         }
         Ok(())
     };
+    // From both ends: neighbours use the same kernels, which are compiled once.
     thread::scope(|scope| {
-        let other = scope.spawn(|| run("picture-2"));
-        let first = run("picture-1");
-        first.and(other.join().map_err(|_| "a panic".to_string())?)
+        let last = scope.spawn(|| run(&mut commands.iter().rev(), "picture-2"));
+        let first = run(&mut commands.iter(), "picture-1");
+        first.and(last.join().map_err(|_| "a panic".to_string())?)
     })
 }
 
