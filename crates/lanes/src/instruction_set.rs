@@ -103,7 +103,7 @@ impl InstructionSet {
     ///
     /// # Panics
     /// If the processor does not have it.
-    #[inline]
+    // Not inlined, which would copy the code of one lane to each part of a crate that calls it.
     pub fn dispatch_large<K: Kernel>(self, kernel: K) -> K::Output {
         assert!(self.is_available(), "{self:?} on a processor without it");
         let task = Widest(kernel);

@@ -3,6 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// What tests find in their environment. Vulkan in software takes most of the time of a test for
+/// compiling kernels that run for a moment; Mesa's does that faster without optimising them.
+pub const QUICK_KERNELS: (&str, &str) = ("GALLIVM_PERF", "nopt");
+
 /// The cargo that runs this program, so that one toolchain does all, in the workspace at `root`.
 pub fn cargo(root: &Path) -> Command {
     let mut command = Command::new(std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));

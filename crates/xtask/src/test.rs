@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use super::command::{cargo, succeed};
+use super::command::{QUICK_KERNELS, cargo, succeed};
 use super::{gallery, python, tidy};
 
 /// A step that cargo runs.
@@ -71,9 +71,13 @@ const STEPS: [Step; 5] = [
     },
 ];
 
-/// What steps find in their environment. Vulkan in software takes most of the GPU's tests for
-/// compiling kernels that run for a moment; Mesa's does that faster without optimising them.
-const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), ("GALLIVM_PERF", "nopt")];
+/// What steps find in their environment.
+const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), QUICK_KERNELS];
+
+/// One more than there are cores, because a test may wait for a kernel that another one compiles.
+fn test_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, |cores| cores.get()) + 1
+}
 
 /// Runs all steps in the workspace at `root`.
 pub fn run(root: &Path) -> Result<(), String> {
@@ -82,7 +86,9 @@ pub fn run(root: &Path) -> Result<(), String> {
     install_vulkan();
     step("source rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
-        step(name, || succeed(cargo(root).args(arguments).envs(ENVIRONMENT)))?;
+        let mut cargo = cargo(root);
+        cargo.args(arguments).envs(ENVIRONMENT).env("RUST_TEST_THREADS", test_threads().to_string());
+        step(name, || succeed(&mut cargo))?;
     }
     step("gallery", || gallery::check(root))?;
     step("tests of the Python package", || python::test(root))?;

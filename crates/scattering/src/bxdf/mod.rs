@@ -136,18 +136,17 @@ impl Bxdf<'_> {
     }
 }
 
+// What has the code of all members is not inlined, which would copy it to each crate that calls it.
 impl Scatter for Bxdf<'_> {
     #[inline]
     fn flags(&self) -> BxdfFlags {
         each_bxdf!(self, bxdf => bxdf.flags())
     }
 
-    #[inline]
     fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
         each_bxdf!(self, bxdf => bxdf.f(wo, wi, mode))
     }
 
-    #[inline]
     fn sample_f(
         &self,
         wo: Vector3,
@@ -159,7 +158,6 @@ impl Scatter for Bxdf<'_> {
         each_bxdf!(self, bxdf => bxdf.sample_f(wo, uc, u, mode, directions))
     }
 
-    #[inline]
     fn pdf(&self, wo: Vector3, wi: Vector3, mode: TransportMode, directions: Directions) -> f32 {
         each_bxdf!(self, bxdf => bxdf.pdf(wo, wi, mode, directions))
     }

@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use crate::command::target;
+use crate::command::{QUICK_KERNELS, target};
 use crate::scenes::Size;
 
 /// What a command has drawn.
@@ -25,7 +25,8 @@ pub struct Drawn {
 pub fn compare(root: &Path, program: &Path, lines: &[&str]) -> Result<Vec<Drawn>, String> {
     let folder = target(root).join("gallery");
     let file = |i: usize| folder.join(format!("compared-{i}.exr"));
-    let run = |(i, line): (usize, &&str)| run_and_keep(root, program, line, Size::Whole, Some(&file(i)));
+    let run =
+        |(i, line): (usize, &&str)| run_and_keep(root, program, line, Size::Whole, "picture", Some(&file(i)));
     let mut drawn = lines.iter().enumerate().map(run).collect::<Result<Vec<Drawn>, String>>()?;
     if let Some((_, others)) = drawn.split_last_mut() {
         let reference = file(others.len());
@@ -40,9 +41,10 @@ pub fn compare(root: &Path, program: &Path, lines: &[&str]) -> Result<Vec<Drawn>
     Ok(drawn)
 }
 
-/// Runs a command, as a reader would in the root of the repository.
-pub fn run(root: &Path, program: &Path, line: &str, size: Size) -> Result<Drawn, String> {
-    run_and_keep(root, program, line, size, None)
+/// Runs a command, as a reader would in the root of the repository. What it draws is written to a
+/// file of this name, which no other command at the same time may have.
+pub fn run(root: &Path, program: &Path, line: &str, size: Size, name: &str) -> Result<Drawn, String> {
+    run_and_keep(root, program, line, size, name, None)
 }
 
 /// The same; a picture is also written to another file.
@@ -51,6 +53,7 @@ fn run_and_keep(
     program: &Path,
     line: &str,
     size: Size,
+    file_name: &str,
     also: Option<&Path>,
 ) -> Result<Drawn, String> {
     let failed = |problem: String| format!("`{line}`: {problem}");
@@ -61,7 +64,8 @@ fn run_and_keep(
     };
     let folder = target(root).join("gallery");
     fs::create_dir_all(&folder).map_err(|error| failed(error.to_string()))?;
-    let file = folder.join(if *name == "trace-pixel" { "picture.svg" } else { "picture.jpg" });
+    let extension = if *name == "trace-pixel" { "svg" } else { "jpg" };
+    let file = folder.join(file_name).with_extension(extension);
     let mut command = Command::new(program);
     command.current_dir(root).arg(name).arg("-o").arg(&file);
     if let Some(file) = also {
@@ -70,6 +74,7 @@ fn run_and_keep(
     match (*name, size) {
         ("render" | "view", Size::Small) => {
             command.args(without_size(rest)).args(["--resolution", "36x24", "--spp", "1", "--json"]);
+            command.envs([QUICK_KERNELS]);
         }
         ("render" | "view", Size::Whole) => {
             command.args(rest).arg("--json");

@@ -10,6 +10,8 @@ mod page;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use super::scenes::{self, Size};
 use page::Page;
@@ -44,17 +46,27 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     fs::write(&index, page::index(&pages)).map_err(|error| format!("{}: {error}", index.display()))
 }
 
-/// Runs the commands of all pages with small scenes and pictures, and with the program of tests.
+/// Runs the commands of all pages with small scenes and pictures, and with the program of tests:
+/// two at once, because most of what they do is on one core.
 pub fn check(root: &Path) -> Result<(), String> {
     let program = super::command::target(root).join("checked/alhazen");
     let pages = pages(root)?;
     make_scenes(root, pages.iter(), Size::Small)?;
-    for page in pages {
-        for command in page.commands() {
-            command::run(root, &program, &command, Size::Small)?;
+    let commands: Vec<String> = pages.iter().flat_map(Page::commands).collect();
+    let taken = AtomicUsize::new(0);
+    let run = |from: &mut dyn Iterator<Item = &String>, name: &str| {
+        while taken.fetch_add(1, Ordering::Relaxed) < commands.len() {
+            let Some(command) = from.next() else { break };
+            command::run(root, &program, command, Size::Small, name)?;
         }
-    }
-    Ok(())
+        Ok(())
+    };
+    // From both ends: neighbours use the same kernels, which are compiled once.
+    thread::scope(|scope| {
+        let last = scope.spawn(|| run(&mut commands.iter().rev(), "picture-2"));
+        let first = run(&mut commands.iter(), "picture-1");
+        first.and(last.join().map_err(|_| "a panic".to_string())?)
+    })
 }
 
 /// Makes the scenes of formulas that pages draw.

@@ -77,7 +77,7 @@ impl Page {
                     let drawn = if compared {
                         command::compare(root, program, &lines)?
                     } else {
-                        let run = |line: &&str| command::run(root, program, line, Size::Whole);
+                        let run = |line: &&str| command::run(root, program, line, Size::Whole, "picture");
                         lines.iter().map(run).collect::<Result<Vec<Drawn>, String>>()?
                     };
                     let figures: String =

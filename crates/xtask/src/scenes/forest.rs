@@ -42,10 +42,34 @@ const TREES: [(&str, f32); 7] = [
 /// Effective triangles of the smaller forests.
 const SMALLER: [(&str, u64); 3] = [("6", 1_000_000), ("7", 10_000_000), ("8", 100_000_000)];
 
-pub fn make(folder: &Path) -> io::Result<()> {
-    let oak = Broadleaf { trunk: 2.2, crown: [3.6, 3.6], points: 15000, leaf: [0.1, 0.06], leaves: 4 };
-    let birch = Broadleaf { trunk: 2.6, crown: [1.9, 4.2], points: 8000, leaf: [0.065, 0.048], leaves: 5 };
-    let bush = Broadleaf { trunk: 0.3, crown: [1.1, 0.9], points: 1800, leaf: [0.06, 0.035], leaves: 5 };
+/// How much there is of everything.
+pub struct Detail {
+    /// How large plants are, whose leaves are not smaller.
+    pub growth: f32,
+    /// How finely ground and water are cut.
+    pub cells: f32,
+}
+
+impl Detail {
+    /// Two hundred million triangles.
+    pub const WHOLE: Self = Self { growth: 1.0, cells: 1.0 };
+    /// As many plants, of a tenth of the leaves.
+    pub const SMALL: Self = Self { growth: 0.45, cells: 0.2 };
+}
+
+pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
+    let Detail { growth, cells } = detail;
+    let [oak, birch, bush] = [
+        Broadleaf { trunk: 2.2, crown: [3.6, 3.6], points: 15000, leaf: [0.1, 0.06], leaves: 4 },
+        Broadleaf { trunk: 2.6, crown: [1.9, 4.2], points: 8000, leaf: [0.065, 0.048], leaves: 5 },
+        Broadleaf { trunk: 0.3, crown: [1.1, 0.9], points: 1800, leaf: [0.06, 0.035], leaves: 5 },
+    ]
+    .map(|plant| Broadleaf {
+        trunk: plant.trunk * growth,
+        crown: plant.crown.map(|radius| radius * growth),
+        points: (plant.points as f32 * growth * growth * growth) as u32,
+        ..plant
+    });
     let mut plants = String::new();
     let mut triangles = Vec::new();
     for (i, (name, _)) in TREES.into_iter().enumerate() {
@@ -54,8 +78,8 @@ pub fn make(folder: &Path) -> io::Result<()> {
             "oak-1" | "oak-2" => oak.grow(seed),
             "birch-1" | "birch-2" => birch.grow(seed),
             "bush" => bush.grow(seed),
-            "spruce-1" => spruce(9.0, seed),
-            _ => spruce(6.0, seed),
+            "spruce-1" => spruce(9.0 * growth, seed),
+            _ => spruce(6.0 * growth, seed),
         };
         tree.wood.write(&folder.join(format!("{name}-wood.ply")))?;
         tree.leaves.write(&folder.join(format!("{name}-leaves.ply")))?;
@@ -75,8 +99,8 @@ pub fn make(folder: &Path) -> io::Result<()> {
     plants += "ObjectBegin \"grass\"\n  NamedMaterial \"grass\" Shape \"plymesh\" \"string filename\" \"grass.ply\"\nObjectEnd\n";
     fs::write(folder.join("plants.pbrt"), plants)?;
 
-    ground().write(&folder.join("ground.ply"))?;
-    water().write(&folder.join("water.ply"))?;
+    ground(cells).write(&folder.join("ground.ply"))?;
+    water(cells).write(&folder.join("water.ply"))?;
     fs::write(folder.join("sky.pfm"), sky(256))?;
     fs::write(folder.join("place.pbrt"), PLACE)?;
     fs::write(folder.join("meadow.pbrt"), meadow())?;
@@ -125,15 +149,15 @@ fn slope(x: f32, y: f32) -> Vec3 {
     Vec3::new(-dx, -dy, 1.0).normalize()
 }
 
-fn ground() -> Mesh {
-    const COUNT: u32 = 500;
+fn ground(cells: f32) -> Mesh {
+    let count = (500.0 * cells) as u32;
     let mut mesh = Mesh::default();
     // Finer where the pond is.
     let at = |i: u32| {
-        let t = 2.0 * i as f32 / (COUNT - 1) as f32 - 1.0;
+        let t = 2.0 * i as f32 / (count - 1) as f32 - 1.0;
         GROUND * t * (0.25 + 0.75 * t * t)
     };
-    mesh.grid([COUNT; 2], |i, j| {
+    mesh.grid([count; 2], |i, j| {
         let (x, y) = (at(i), at(j));
         [Vec3::new(x, y, height(x, y)), slope(x, y)]
     });
@@ -141,8 +165,8 @@ fn ground() -> Mesh {
 }
 
 /// The surface of the water: ripples of many lengths and directions, as a faint wind makes them.
-fn water() -> Mesh {
-    const COUNT: [u32; 2] = [900, 640];
+fn water(cells: f32) -> Mesh {
+    let count = [900.0, 640.0].map(|count: f32| (count * cells) as u32);
     let mut rng = Rng::from_sequence(7);
     let waves: Vec<(Vec2, f32, f32)> = (0..24)
         .map(|i| {
@@ -153,9 +177,9 @@ fn water() -> Mesh {
         })
         .collect();
     let mut mesh = Mesh::default();
-    mesh.grid(COUNT, |i, j| {
-        let x = 1.35 * POND[0] * (2.0 * i as f32 / (COUNT[0] - 1) as f32 - 1.0);
-        let y = 1.35 * POND[1] * (2.0 * j as f32 / (COUNT[1] - 1) as f32 - 1.0);
+    mesh.grid(count, |i, j| {
+        let x = 1.35 * POND[0] * (2.0 * i as f32 / (count[0] - 1) as f32 - 1.0);
+        let y = 1.35 * POND[1] * (2.0 * j as f32 / (count[1] - 1) as f32 - 1.0);
         // Calm patches.
         let wind = 0.35 + 0.65 * (0.5 + fbm(0.12 * x, 0.2 * y + 9.0, 2)).clamp(0.0, 1.0);
         let (mut z, mut slope) = (0.0, Vec2::ZERO);

@@ -37,7 +37,9 @@ type Make = fn(&Path, Size) -> io::Result<()>;
 
 const SCENES: [(&str, Make); 4] = [
     ("car", |folder, size| car::make(folder, if size == Size::Whole { 5 } else { 2 })),
-    ("forest", |folder, _| forest::make(folder)),
+    ("forest", |folder, size| {
+        forest::make(folder, if size == Size::Whole { forest::Detail::WHOLE } else { forest::Detail::SMALL })
+    }),
     ("head", |folder, size| {
         head::make(folder, if size == Size::Whole { head::Detail::WHOLE } else { head::Detail::SMALL })
     }),
