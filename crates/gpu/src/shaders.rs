@@ -98,6 +98,8 @@ pub struct Parts {
     pub images: bool,
     /// Lights with surfaces whose images are their emission, or choose their points.
     pub emission_images: bool,
+    /// Infinite lights behind portals.
+    pub portals: bool,
     /// Textures of noise.
     pub noise: bool,
     /// Coated materials.
@@ -273,6 +275,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         holes,
         images,
         emission_images,
+        portals,
         noise,
         coats,
         principled,
@@ -290,7 +293,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
         const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\
-        const HAS_LENSES = {lenses};\n\
+        const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\
         const HAS_MEASURED = {measured};\nconst HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
         const HAS_SUBSURFACE = {subsurface};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
@@ -306,7 +309,12 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     };
     let camera =
         if lenses { include_str!("../shaders/lens.wgsl") } else { include_str!("../shaders/lens_none.wgsl") };
-    let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera];
+    let skies = if portals {
+        include_str!("../shaders/portals.wgsl")
+    } else {
+        include_str!("../shaders/portals_none.wgsl")
+    };
+    let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera, skies];
     with_laws(&[&PLUMBING[..], &of_scene, texts].concat())
 }
 

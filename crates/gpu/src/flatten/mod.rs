@@ -20,6 +20,7 @@ mod materials;
 mod measured;
 mod media;
 mod openpbr;
+mod portals;
 mod samplers;
 mod sensors;
 mod slab;
@@ -167,6 +168,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         follows_bodies: matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_))
             && !has_media(scene)
             && !view.options.force_diffuse,
+        begins_at_lights: algorithm.begins_at_lights(),
         parts: Parts::default(),
         refusals: Vec::new(),
     };
@@ -266,6 +268,8 @@ struct Flattener<'a> {
     largest_buffer: usize,
     /// Whether paths go on under surfaces.
     follows_bodies: bool,
+    /// Whether paths begin at lights.
+    begins_at_lights: bool,
     parts: Parts,
     refusals: Vec<Refusal>,
 }

@@ -110,9 +110,12 @@ Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
 Translate 0 0 0.6
 Shape "sphere" "float radius" 0.6
 "#;
-    let case = Case::of_text(text);
+    let mut case = Case::of_text(text);
     let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
     for algorithm in [path, Algorithm::LightTracing(LightTracingDesc { max_depth: 3 })] {
+        if algorithm.splats() {
+            case.take_sobol();
+        }
         let Some(renderer) = case.renderer(&algorithm) else { return };
         let (gpu, session) = (case.exposed(&renderer), case.session(&algorithm, SAMPLES));
         let [gpu, cpu] = [gpu.development(), session.state().development()].map(|it| values(&it));

@@ -14,6 +14,7 @@ mod motion;
 mod openpbr;
 mod photons;
 mod pictures;
+mod portals;
 mod raster;
 mod realtime;
 mod reservoirs;

@@ -45,6 +45,7 @@ fn parts(bits: u32) -> Parts {
         holes,
         images,
         emission_images,
+        portals: false,
         noise,
         coats,
         principled,
@@ -103,6 +104,7 @@ fn kernels_are_valid() {
             add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
         }
         add(&"motion", shaders::pixels(&path, Parts { motion: true, ..parts }));
+        add(&"portals", shaders::pixels(&path, Parts { portals: true, ..parts }));
         add(&"lenses", shaders::pixels(&path, Parts { lenses: true, ..parts }));
         let bodies = Parts { subsurface: true, ..parts };
         add(&"bodies", shaders::pixels(&path, bodies));
