@@ -6,6 +6,7 @@ const PERSPECTIVE = 0u;
 const ORTHOGRAPHIC = 1u;
 const EQUIRECTANGULAR = 2u;
 const EQUAL_AREA = 3u;
+const REALISTIC = 4u;
 
 // The offset from the centre of a pixel that a filter draws, and the weight of the sample: its sign
 // where the filter is tabulated, which leaves a pixel as it is.
@@ -40,7 +41,7 @@ fn placed_camera() -> PlacedCamera {
     let screen = Screen(vec2f(number(at + 13), number(at + 14)), vec2f(number(at + 15), number(at + 16)));
     let lens = ThinLens(number(at + 17), number(at + 18));
     if (tables[at + 33] == 1) {
-        let placement = placement_at(at + 36, shutter_time);
+        let placement = placement_at(kept_motion(at + 39), shutter_time);
         return PlacedCamera(placement.linear, placement.translation, screen, lens);
     }
     return PlacedCamera(
@@ -49,43 +50,6 @@ fn placed_camera() -> PlacedCamera {
         screen,
         lens,
     );
-}
-
-// An affine transform.
-struct Placement {
-    linear: Rows,
-    translation: vec3f,
-}
-
-// The numbers of a key of a motion.
-const MOTION_KEY = 17u;
-
-// A transform at a time, interpolated between two keys as in `math/src/animated.rs`.
-fn placement_at(first: u32, time: f32) -> Placement {
-    let last = first + MOTION_KEY;
-    let t = clamp((time - number(first)) / (number(last) - number(first)), 0, 1);
-    let angle = number(last + MOTION_KEY);
-    var weights = vec2f(1 - t, t);
-    if (angle > 1e-4) {
-        weights = vec2f(sin_cos((1 - t) * angle).v0, sin_cos(t * angle).v0) / sin_cos(angle).v0;
-    }
-    let start = vec4f(vector(first + 4), number(first + 7));
-    let end = vec4f(vector(last + 4), number(last + 7));
-    let q = start * weights.x + end * weights.y;
-    let twice = 2 * q.xyz;
-    let squares = q.xyz * twice;
-    let products = q.xxy * twice.yzz;
-    let turns = q.w * twice;
-    let stretch = Rows(
-        mix(vector(first + 8), vector(last + 8), t),
-        mix(vector(first + 11), vector(last + 11), t),
-        mix(vector(first + 14), vector(last + 14), t),
-    );
-    let x = vec3f(1 - squares.y - squares.z, products.x - turns.z, products.y + turns.y);
-    let y = vec3f(products.x + turns.z, 1 - squares.x - squares.z, products.z - turns.x);
-    let z = vec3f(products.y - turns.y, products.z + turns.x, 1 - squares.x - squares.y);
-    let linear = Rows(transposed(stretch, x), transposed(stretch, y), transposed(stretch, z));
-    return Placement(linear, mix(vector(first + 1), vector(last + 1), t));
 }
 
 // The direction of a position on the square of a spherical camera.
@@ -108,22 +72,24 @@ fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
         case ORTHOGRAPHIC: { ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens); }
         default: { ray = Tuple_Vec3_Vec3(vec3f(), spherical_ray(film / camera.screen.top_left)); }
     }
-    return Ray(times(camera.rotation, ray.v0) + camera.translation, times(camera.rotation, ray.v1), 0);
+    return placed_ray(camera, ray.v0, ray.v1);
 }
 
-// The time of the sample, of cameras that move.
-var<private> shutter_time: f32;
+fn placed_ray(camera: PlacedCamera, o: vec3f, d: vec3f) -> Ray {
+    return Ray(times(camera.rotation, o) + camera.translation, times(camera.rotation, d), 0);
+}
 
 fn set_shutter_time(u: f32) {
-    if (tables[world.camera + 33] == 1) {
+    if (HAS_MOTION || tables[world.camera + 33] == 1) {
         shutter_time = lerp(u, number(world.camera + 34), number(world.camera + 35));
     }
 }
 
-// A camera ray of unit direction, and its neighbours.
+// A camera ray of unit direction, its neighbours, and the share of its light that reaches the film.
 struct CameraRay {
     ray: Ray,
     near: Differentials,
+    share: f32,
 }
 
 // The ray of a film position; if anything depends on them, also those of the pixels to the right
@@ -132,14 +98,25 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let camera = placed_camera();
     let has_neighbours = world.has_footprints == 1;
     // Of a sphere, on which lines of pixels bend, by rays nearer than a pixel.
-    let step = select(1.0, 0.05, tables[world.camera] >= EQUIRECTANGULAR);
+    let kind = tables[world.camera];
+    let step = select(1.0, 0.05, kind == EQUIRECTANGULAR || kind == EQUAL_AREA);
     var rays_of_film: array<Ray, 3>;
+    var share = 1.0;
+    var seen: array<LensRay, 3>;
+    if (HAS_LENSES) {
+        seen = lens_rays(film, lens, has_neighbours);
+        share = seen[0].share;
+    }
     for (var i = 0u; i < select(1u, 3u, has_neighbours); i++) {
-        rays_of_film[i] = unscaled_ray(camera, film + step * vec2f(f32(i == 1), f32(i == 2)), lens);
+        if (HAS_LENSES) {
+            rays_of_film[i] = placed_ray(camera, seen[i].o, seen[i].d);
+        } else {
+            rays_of_film[i] = unscaled_ray(camera, film + step * vec2f(f32(i == 1), f32(i == 2)), lens);
+        }
     }
     let ray = rays_of_film[0];
     if (!has_neighbours) {
-        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), no_differentials());
+        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), no_differentials(), share);
     }
     let rx = rays_of_film[1];
     let ry = rays_of_film[2];
@@ -150,7 +127,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
     );
-    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), near);
+    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), near, share);
 }
 
 // A sample of a pixel: the camera ray, its wavelengths, and its weight in the pixel.
@@ -162,6 +139,8 @@ struct CameraSample {
     wavelength: f32,
     position: vec2f,
     weight: f32,
+    // The share of the light along the ray that reaches the film.
+    share: f32,
 }
 
 // What kernels find for a pixel: radiance, the number of rays, 1 where only the first wavelength is
@@ -172,6 +151,15 @@ struct Sample {
     is_terminated: u32,
     wavelength: f32,
     weight: f32,
+}
+
+// The wavelengths of a random number: uniform over the range that a spectral film wants.
+fn sampled_wavelengths(u: f32) -> SampledWavelengths {
+    let range = vec2f(number(world.camera + 37), number(world.camera + 38));
+    if (range.y > range.x) {
+        return SampledWavelengths_sample_uniform_in(u, range.x, range.y);
+    }
+    return SampledWavelengths_sample_visible(u);
 }
 
 // The sample of an index. Dimensions are used as on the CPU: wavelengths, position in the pixel's
@@ -191,9 +179,10 @@ fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
     return CameraSample(
         camera.ray,
         camera.near,
-        SampledWavelengths_sample_visible(wavelength),
+        sampled_wavelengths(wavelength),
         wavelength,
         position,
         drawn.z,
+        camera.share,
     );
 }

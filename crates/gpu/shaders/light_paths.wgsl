@@ -152,7 +152,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             e.ray = Ray(e.origin.p, w, 0);
         }
         case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
-            let seen = sample_far_light(at, u_direction, lambda, false);
+            let seen = sample_far_light(at, vec3f(), u_direction, lambda, false);
             share = seen.l;
             let sphere = sphere_of_scene();
             let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);

@@ -13,6 +13,7 @@ const CYLINDER_LIGHT = 9u;
 const GONIOMETRIC_LIGHT = 10u;
 const PROJECTION_LIGHT = 11u;
 const PATCH_LIGHT = 12u;
+const PORTAL_LIGHT = 13u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -100,8 +101,8 @@ fn sample_light(
         case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
             sample = sample_point_light(at, context, lambda);
         }
-        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
-            sample = sample_far_light(at, u, lambda, allow_incomplete);
+        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT, PORTAL_LIGHT: {
+            sample = sample_far_light(at, context.p.p, u, lambda, allow_incomplete);
         }
         default: { sample = sample_surface(at, context, u, lambda); }
     }
@@ -166,7 +167,13 @@ fn position_on_slide(at: u32, local: vec3f) -> vec3f {
     return vec3f(st.x, 1 - st.y, select(0.0, 1.0, is_on_slide));
 }
 
-fn sample_far_light(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incomplete: bool) -> LightSample {
+fn sample_far_light(
+    at: u32,
+    p: vec3f,
+    u: vec2f,
+    lambda: SampledWavelengths,
+    allow_incomplete: bool,
+) -> LightSample {
     var sample = no_light();
     sample.l = vec4f(1);
     sample.is_distant = true;
@@ -177,6 +184,7 @@ fn sample_far_light(at: u32, u: vec2f, lambda: SampledWavelengths, allow_incompl
             sample.valid = true;
         }
         case IMAGE_LIGHT: { sample_sky(at, u, lambda, allow_incomplete, &sample); }
+        case PORTAL_LIGHT: { sample_portal(at, p, u, lambda, &sample); }
         default: {
             sample.wi = sample_uniform_sphere(u);
             sample.pdf = 1 / (4 * 3.1415927);
@@ -396,12 +404,16 @@ struct Sky {
     pdf: f32,
 }
 
-fn sky(light: u32, d: vec3f, lambda: SampledWavelengths) -> Sky {
+fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     let at = light_record(light);
     var seen = Sky(emission(at, lambda), 0);
     if (tables[at] == IMAGE_LIGHT) {
         let st = sky_position(at, d);
         seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, true));
+    }
+    if (HAS_PORTALS && tables[at] == PORTAL_LIGHT) {
+        let through = portal_seen(at, o, d, lambda);
+        seen = Sky(seen.l * through.l, through.pdf);
     }
     return seen;
 }

@@ -12,12 +12,16 @@ const PRINCIPLED = 8u;
 const INTERFACE = 9u;
 const HAIR = 10u;
 const MEASURED = 11u;
+const SUBSURFACE = 12u;
+// Where paths leave bodies, which have the material above.
+const EXIT = 13u;
 
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;
 const COAT_TEXTURES = 5u;
 
-// A BxDF in the frame of a point: `a` and `b` are reflectance and transmittance, or η and k.
+// A BxDF in the frame of a point: `a` and `b` are reflectance and transmittance, or η and k, or
+// extinction and albedo under a surface, whose material has the given record.
 struct Bsdf {
     kind: u32,
     frame: Frame,
@@ -29,6 +33,7 @@ struct Bsdf {
     surface: OpenPbr,
     fibre: Hair,
     measured: Measured,
+    record: u32,
     // What it carries: radiance, unless it is a vertex of a light path.
     mode: u32,
 }
@@ -157,6 +162,14 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     if (HAS_MEASURED && bsdf.kind == MEASURED) {
         bsdf.measured = Measured_new(tables[at + 4], *lambda);
     }
+    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        bsdf.record = at;
+        bsdf.eta = number(at + 9);
+        bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]);
+        let medium = medium_under(at, bsdf.facets, values[2], values[3]);
+        bsdf.a = medium[0];
+        bsdf.b = medium[1];
+    }
     if (is_coated) {
         let facets = facets_of(values[0].x, values[1].x, tables[at + 8]);
         bsdf.coat = Coat(
@@ -213,6 +226,7 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
     switch (bsdf.kind) {
         case HAIR: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
         case MEASURED: { return BxdfFlags_GLOSSY_REFLECTION; }
+        case EXIT: { return BxdfFlags_DIFFUSE_REFLECTION; }
         case DIFFUSE: {
             return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a));
         }
@@ -223,7 +237,7 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
         case CONDUCTOR: {
             return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
         }
-        case DIELECTRIC: {
+        case DIELECTRIC, SUBSURFACE: {
             let is_specular = bsdf.eta == 1 || is_smooth;
             return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
                 | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
@@ -275,6 +289,9 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (HAS_MEASURED && bsdf.kind == MEASURED) {
         return Measured_f(bsdf.measured, wo, wi, bsdf.mode);
     }
+    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+        return exit_f(bsdf, wo, wi);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
         case DIFFUSE_TRANSMISSION: {
@@ -284,8 +301,12 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
             return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
         }
         case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
-        case DIELECTRIC: {
-            return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode);
+        case DIELECTRIC, SUBSURFACE: {
+            var factor = 1.0;
+            if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+                factor = boundary_factor(bsdf, wo, wi, false);
+            }
+            return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
         }
         default: { return vec4f(); }
     }
@@ -310,6 +331,9 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     if (HAS_MEASURED && bsdf.kind == MEASURED) {
         return Measured_pdf(bsdf.measured, wo, wi, mode, Directions_All);
     }
+    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+        return exit_pdf(wo, wi);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
         case DIFFUSE_TRANSMISSION: {
@@ -319,7 +343,7 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         case CONDUCTOR: {
             return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
         }
-        case DIELECTRIC: {
+        case DIELECTRIC, SUBSURFACE: {
             return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
         }
         case PRINCIPLED: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
@@ -350,8 +374,11 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
             let bxdf = Conductor(bsdf.facets, bsdf.a, bsdf.b);
             sample = Conductor_sample_f(bxdf, wo, uc, u, mode, directions);
         }
-        case DIELECTRIC: {
+        case DIELECTRIC, SUBSURFACE: {
             sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
+            if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+                sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
+            }
         }
         case THIN_DIELECTRIC: {
             sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
@@ -372,6 +399,9 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
     }
     if (HAS_MEASURED && bsdf.kind == MEASURED) {
         sample = Measured_sample_f(bsdf.measured, wo, uc, u, mode, directions);
+    }
+    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+        sample = exit_sample(bsdf, wo, u);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);

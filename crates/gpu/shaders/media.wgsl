@@ -28,32 +28,12 @@ fn next_of_collision() -> f32 {
     return unit_interval(mix_quadruple(array(collisions.seeds.x, collisions.seeds.y, collisions.count, 0))[0]);
 }
 
-// The wavelength that chooses collisions, and the probability of each to be it.
-struct Heroes {
-    probabilities: vec4f,
-    hero: u32,
-}
-
-// The mean of densities over the wavelengths that could have chosen a path.
-fn mean_of(heroes: Heroes, densities: vec4f) -> f32 {
-    return dot(densities, heroes.probabilities);
-}
-
 // β, and the densities of the path and of light sampling over that of the hero; of shadow rays
 // their transmittance, and the densities of a flight and of ratio tracking.
 struct Throughput {
     beta: vec4f,
     r_u: vec4f,
     r_l: vec4f,
-}
-
-// exp(−σ·d).
-fn attenuation(sigma: vec4f, distance: f32) -> vec4f {
-    var passed: vec4f;
-    for (var i = 0; i < 4; i++) {
-        passed[i] = exponential_exp(-sigma[i] * distance);
-    }
-    return passed;
 }
 
 // The medium towards which `w` leaves a geometry with the normal `n`.

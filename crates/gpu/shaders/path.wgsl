@@ -58,6 +58,7 @@ fn survives(path: ptr<function, Path>) -> bool {
 
 // A path that begins with a camera ray.
 fn new_path(ray: Ray, near: Differentials) -> Path {
+    stay_above();
     var path: Path;
     path.ray = ray;
     path.near = near;
@@ -76,28 +77,47 @@ fn shade(
     l: ptr<function, vec4f>,
 ) -> bool {
     (*direct).l = vec4f();
-    if (!hit.found) {
-        *l += (*path).beta * escaped(*path, *lambda);
-        return false;
+    var s: Surface;
+    if (hit.found) {
+        s = surface_at(hit, (*path).ray);
     }
-    var s = surface_at(hit, (*path).ray);
-    *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
-    if (HAS_INTERFACES && is_interface(s.material)) {
-        var near = (*path).near;
-        var ray = (*path).ray;
-        pass_through(&ray, &near, s, hit.t);
-        (*path).near = near;
-        (*path).ray = ray;
-        return true;
+    if (HAS_SUBSURFACE && is_under()) {
+        let step = follow_under(path, hit.found, s);
+        if (step != LEAVES) {
+            return step == GOES_ON;
+        }
+    }
+    // Whether the point is where the path leaves a body that it has entered at the vertex before.
+    let is_exit = HAS_SUBSURFACE && emerges();
+    if (!hit.found) {
+        if (!is_exit) {
+            *l += (*path).beta * escaped(*path, *lambda);
+        }
+        return false;
     }
     let textures = texture_context(s, (*path).near);
-    var bsdf = bsdf_at(&s, textures, lambda);
-    if ((*path).depth == world.max_depth) {
-        return false;
-    }
-    (*path).depth++;
-    if (has_setting(REGULARIZES) && (*path).rough_before) {
-        regularize(&bsdf);
+    var bsdf: Bsdf;
+    if (is_exit) {
+        s.wo = s.ns;
+        bsdf = exit_lobe(s);
+    } else {
+        *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
+        if (HAS_INTERFACES && is_interface(s.material)) {
+            var near = (*path).near;
+            var ray = (*path).ray;
+            pass_through(&ray, &near, s, hit.t);
+            (*path).near = near;
+            (*path).ray = ray;
+            return true;
+        }
+        bsdf = bsdf_at(&s, textures, lambda);
+        if ((*path).depth == world.max_depth) {
+            return false;
+        }
+        (*path).depth++;
+        if (has_setting(REGULARIZES) && (*path).rough_before) {
+            regularize(&bsdf);
+        }
     }
     let flags = bsdf_flags(bsdf);
     let context = light_context(s, flags);
@@ -122,5 +142,9 @@ fn shade(
         pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
     }
     scatter(path, s, context, sample, pdf);
+    if (HAS_SUBSURFACE && enters_body(bsdf, s, sample)) {
+        (*path).near = no_differentials();
+        return go_under(path, s, bsdf, *lambda);
+    }
     return survives(path);
 }

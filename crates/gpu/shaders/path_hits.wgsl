@@ -9,7 +9,7 @@ fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
     var sum = vec4f();
     for (var i = 0u; i < world.infinite_count; i++) {
         let light = tables[world.infinite + i];
-        let seen = sky(light, path.ray.d, lambda);
+        let seen = sky(light, path.ray.o, path.ray.d, lambda);
         var weight = 1.0;
         if (path.is_found_twice) {
             weight = hit_weight(path, light, seen.pdf);

@@ -17,7 +17,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             let o = select(path.ray.o, direct.shadow.ray.o, is_shadow);
             let d = select(path.ray.d, direct.shadow.ray.d, is_shadow);
             passes_interfaces = is_shadow && !direct.is_delta;
-            hit = traced(o, d, select(infinity(), direct.shadow.t_max, is_shadow), is_shadow);
+            hit = traced(o, d, select(reach_of_path(), direct.shadow.t_max, is_shadow), is_shadow);
             if (is_shadow && !hit.found) {
                 l += direct.l;
             }

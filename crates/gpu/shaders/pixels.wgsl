@@ -18,7 +18,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let camera = camera_sample(batch.low + id.xy, batch.index);
     var lambda = camera.lambda;
     rays = 0;
-    let l = radiance(camera.ray, camera.near, &lambda);
+    var l: vec4f;
+    if (!HAS_LENSES || camera.share > 0) {
+        l = radiance(camera.ray, camera.near, &lambda) * camera.share;
+    }
     let is_terminated = u32(SampledWavelengths_secondary_terminated(lambda));
     samples[id.y * batch.size.x + id.x] = Sample(l, rays, is_terminated, camera.wavelength, camera.weight);
 }

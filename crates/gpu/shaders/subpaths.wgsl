@@ -181,7 +181,7 @@ fn lights_met(walk: Subpath, before: ShapeSampleContext, hit: Hit, s: Surface) -
         } else {
             point.light = tables[world.infinite + i];
             point.is_distant = true;
-            l = sky(point.light, wi, walk.lambda).l;
+            l = sky(point.light, walk.ray.o, wi, walk.lambda).l;
         }
         var weight = 1.0;
         if (HAS_CAMERA_PATHS && walk.depth > 0 && !is_black(l)) {

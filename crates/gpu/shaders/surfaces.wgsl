@@ -36,33 +36,6 @@ fn spawn(s: Surface, d: vec3f) -> Ray {
     return Ray_spawn(s.p, s.n, d, shutter_time);
 }
 
-// The rows of a matrix.
-struct Rows {
-    x: vec3f,
-    y: vec3f,
-    z: vec3f,
-}
-
-fn times(m: Rows, v: vec3f) -> vec3f {
-    return vec3f(dot(m.x, v), dot(m.y, v), dot(m.z, v));
-}
-
-fn transposed(m: Rows, v: vec3f) -> vec3f {
-    return m.x * v.x + m.y * v.y + m.z * v.z;
-}
-
-fn inverse(m: Rows) -> Rows {
-    let a = cross(m.y, m.z);
-    let b = cross(m.z, m.x);
-    let c = cross(m.x, m.y);
-    let scale = 1 / dot(m.x, a);
-    return Rows(vec3f(a.x, b.x, c.x) * scale, vec3f(a.y, b.y, c.y) * scale, vec3f(a.z, b.z, c.z) * scale);
-}
-
-fn absolute(m: Rows) -> Rows {
-    return Rows(abs(m.x), abs(m.y), abs(m.z));
-}
-
 // The point of a hit by a ray of unit direction.
 fn surface_at(hit: Hit, ray: Ray) -> Surface {
     let geometry = world.geometries + 5 * hit.geometry;
@@ -71,8 +44,7 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
     var d = ray.d;
     var row: array<vec4f, 3>;
     if (hit.instance != NO_HIT) {
-        let at = 5 * hit.instance;
-        row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
+        row = instance_rows(hit.instance);
         o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
         d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
     }

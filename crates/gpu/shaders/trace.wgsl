@@ -2,7 +2,8 @@
 //
 // A kernel that traces declares the buffers `world`, `nodes`, `triangles` and `items`; `bvh/` has
 // their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts;
-// `HAS_CURVES`, whether there are curves; and `ribbon_normal`, the normal of one.
+// `HAS_CURVES`, whether there are curves; `ribbon_normal`, the normal of one; `HAS_MOTION`, whether
+// instances move; and `moved_rows`, the matrix of one at the time of rays.
 
 // The entries of a ray's stack. They are few, because all are set to zero before each ray.
 const STACK = 24u;
@@ -510,6 +511,17 @@ fn whole(hit: Nearest) -> Hit {
     return whole;
 }
 
+// The rows of the matrix that takes rays into an instance.
+fn instance_rows(item: u32) -> array<vec4f, 3> {
+    let motion = items[5 * item + 4].y;
+    if (HAS_MOTION && motion != 0) {
+        return moved_rows(motion);
+    }
+    return array(
+        bitcast<vec4f>(items[5 * item]), bitcast<vec4f>(items[5 * item + 1]), bitcast<vec4f>(items[5 * item + 2]),
+    );
+}
+
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var best = Nearest(t_max, vec2f(), NO_HIT, false, NO_HIT, false);
@@ -598,11 +610,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                 stack[top] = vec2u(rest, 0);
                 top++;
             }
-            let row = array(
-                bitcast<vec4f>(items[5 * first]),
-                bitcast<vec4f>(items[5 * first + 1]),
-                bitcast<vec4f>(items[5 * first + 2]),
-            );
+            let row = instance_rows(first);
             let placed = items[5 * first + 3];
             inner_o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
             inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));

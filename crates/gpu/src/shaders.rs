@@ -39,9 +39,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 16] = plumbing! {
-    "scene" "trace" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps" "materials"
-    "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
+const PLUMBING: [&str; 17] = plumbing! {
+    "scene" "trace" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps"
+    "materials" "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
@@ -67,8 +67,12 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
-/// What a path does at its vertices.
-const PATH: &str = concat!(include_str!("../shaders/path_hits.wgsl"), include_str!("../shaders/path.wgsl"));
+/// What a path does at its vertices, of scenes without bodies under whose surface it goes on.
+const PATH: &str = concat!(
+    include_str!("../shaders/under_none.wgsl"),
+    include_str!("../shaders/path_hits.wgsl"),
+    include_str!("../shaders/path.wgsl")
+);
 
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
@@ -96,6 +100,8 @@ pub struct Parts {
     pub images: bool,
     /// Lights with surfaces whose images are their emission, or choose their points.
     pub emission_images: bool,
+    /// Infinite lights behind portals.
+    pub portals: bool,
     /// Textures of noise.
     pub noise: bool,
     /// Coated materials.
@@ -104,10 +110,16 @@ pub struct Parts {
     pub principled: bool,
     /// Curves.
     pub curves: bool,
+    /// A camera with a system of lenses.
+    pub lenses: bool,
+    /// Instances that move.
+    pub motion: bool,
     /// The material of hair.
     pub hair: bool,
     /// Measured surfaces.
     pub measured: bool,
+    /// Bodies under whose surface light is scattered.
+    pub subsurface: bool,
     /// Samplers other than `independent` and `zsobol`.
     pub rare_samplers: bool,
     /// Participating media, or interfaces, which paths pass.
@@ -231,13 +243,25 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
         Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.media => {
             concat!(
+                include_str!("../shaders/heroes.wgsl"),
                 include_str!("../shaders/media.wgsl"),
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/vol_path.wgsl")
             )
         }
+        Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.subsurface => {
+            concat!(
+                include_str!("../shaders/heroes.wgsl"),
+                include_str!("../shaders/generator.wgsl"),
+                include_str!("../shaders/under_surface.wgsl"),
+                include_str!("../shaders/path_hits.wgsl"),
+                include_str!("../shaders/path.wgsl"),
+                include_str!("../shaders/path_loop.wgsl")
+            )
+        }
         Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
             concat!(
+                include_str!("../shaders/under_none.wgsl"),
                 include_str!("../shaders/path_hits.wgsl"),
                 include_str!("../shaders/path.wgsl"),
                 include_str!("../shaders/path_loop.wgsl")
@@ -257,12 +281,16 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         holes,
         images,
         emission_images,
+        portals,
         noise,
         coats,
         principled,
         curves,
+        lenses,
+        motion,
         hair,
         measured,
+        subsurface,
         rare_samplers,
         media,
         force_diffuse,
@@ -270,16 +298,30 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
-        const HAS_CURVES = {curves};\nconst HAS_HAIR = {hair};\nconst HAS_MEASURED = {measured};\n\
-        const HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
-        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\
+        const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\
+        const HAS_MEASURED = {measured};\nconst HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
+        const HAS_SUBSURFACE = {subsurface};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")
     } else {
         include_str!("../shaders/openpbr_none.wgsl").to_owned()
     };
-    with_laws(&[&PLUMBING[..], &[direct, MEASURED, &has, &surfaces], texts].concat())
+    let bodies = if subsurface {
+        include_str!("../shaders/subsurface_material.wgsl")
+    } else {
+        include_str!("../shaders/subsurface_none.wgsl")
+    };
+    let camera =
+        if lenses { include_str!("../shaders/lens.wgsl") } else { include_str!("../shaders/lens_none.wgsl") };
+    let skies = if portals {
+        include_str!("../shaders/portals.wgsl")
+    } else {
+        include_str!("../shaders/portals_none.wgsl")
+    };
+    let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera, skies];
+    with_laws(&[&PLUMBING[..], &of_scene, texts].concat())
 }
 
 /// The text of a file of `shaders/dynamic/`.

@@ -22,6 +22,11 @@ impl<T> Grid<T> {
         Self((0..ROUGHNESSES * COSINES).map(node).collect())
     }
 
+    /// All values, a row for each roughness.
+    pub fn values(&self) -> &[T] {
+        &self.0
+    }
+
     /// The four nodes around a roughness and a cosine, with their weights.
     pub fn around(&self, roughness: f32, cosine: f32) -> [(f32, &T); 4] {
         let [r, c] = [Place::new(roughness, ROUGHNESSES), Place::new(safe_sqrt(cosine), COSINES)];

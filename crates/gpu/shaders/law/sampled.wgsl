@@ -107,6 +107,21 @@ struct SampledWavelengths {
     pdf: vec4f,
 }
 
+// Wavelengths sampled uniformly over `min..max`, from `u` in [0, 1).
+fn SampledWavelengths_sample_uniform_in(u: f32, min_1: f32, max_1: f32) -> SampledWavelengths {
+    let parts = rotations(u);
+    let u_1 = parts.x;
+    let u_2 = parts.y;
+    let u_3 = parts.z;
+    let u_4 = parts.w;
+    let lambda_0 = min_1 + (u_1 * (max_1 - min_1));
+    let lambda_1 = min_1 + (u_2 * (max_1 - min_1));
+    let lambda_2 = min_1 + (u_3 * (max_1 - min_1));
+    let lambda_3 = min_1 + (u_4 * (max_1 - min_1));
+    let element = 1.0f / (max_1 - min_1);
+    return SampledWavelengths(vec4f(lambda_0, lambda_1, lambda_2, lambda_3), vec4f(element, element, element, element));
+}
+
 // Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
 fn SampledWavelengths_sample_visible(u: f32) -> SampledWavelengths {
     var lambda = rotations(u);

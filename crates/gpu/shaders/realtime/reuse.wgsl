@@ -107,7 +107,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var lambda = common_wavelengths();
         if (is_shading) {
             let offset = f32(step - count - others) / f32(4 * SETS);
-            lambda = SampledWavelengths_sample_visible(fract(camera.wavelength + offset));
+            lambda = sampled_wavelengths(fract(camera.wavelength + offset));
         }
         if (step == 0 || !is_choice) {
             var near = camera.near;

@@ -10,10 +10,10 @@ const GUIDES = vec4f(610, 550, 460, 550);
 // The least share of the largest component of a guide, so that others may be divided by it.
 const LEAST_GUIDE = 0.02;
 
-fn guide_of_sky(d: vec3f, lambda: SampledWavelengths) -> vec3f {
+fn guide_of_sky(o: vec3f, d: vec3f, lambda: SampledWavelengths) -> vec3f {
     var l = vec3f();
     for (var i = 0u; i < world.infinite_count; i++) {
-        l += sky(tables[world.infinite + i], d, lambda).l.xyz;
+        l += sky(tables[world.infinite + i], o, d, lambda).l.xyz;
     }
     return l;
 }
@@ -51,7 +51,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             found.id = 0x80000000u | s.light;
         }
     } else {
-        found.guide = guide_of_sky(camera.ray.d, lambda);
+        found.guide = guide_of_sky(camera.ray.o, camera.ray.d, lambda);
     }
     let largest = max(found.guide.x, max(found.guide.y, found.guide.z));
     found.guide = select(vec3f(1), max(found.guide, vec3f(LEAST_GUIDE * largest)), largest > 1e-6);

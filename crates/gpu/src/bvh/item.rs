@@ -3,18 +3,20 @@
 //! | kind | quadruples |
 //! |---|---|
 //! | instance | the rows of the matrix that takes rays inside; the references of its triangles and of its items, the size of its group, its id |
+//! | key of a motion | the translation with the time; the unit quaternion of the rotation; the rows of the stretch, the first with the angle between both quaternions |
 //! | patch | its corner, its sides and its twist |
 //! | curve | its control points, with the widths and the u of its ends |
 //! | ball | its centre and its radius |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
-//! turned over, 2 where it is cut out.
+//! turned over, 2 where it is cut out. That of an instance has the index of its first key instead
+//! of a geometry, or 0 at rest. Keys follow all that rays hit in the group.
 
 use std::f32::consts::TAU;
 
 use geometry::{CurveKind, GeometryId, InstanceId, PlainShape, RevolvedKind, World};
-use math::{DMat3, DVec3, Vec3};
+use math::{DMat3, DVec3, MotionKeys, Vec3};
 
 use super::{BvhError, Group, Words};
 
@@ -33,17 +35,31 @@ const FLAT_CURVE: u32 = 7;
 const TUBE: u32 = 8;
 const RIBBON: u32 = 9;
 
-/// An instance of a group.
-pub fn instance(world: &World, id: InstanceId, groups: &[Group]) -> Result<[Words; QUADRUPLES], BvhError> {
+/// An instance of a group; `keys` is the index of its first key, or 0 at rest.
+pub fn instance(world: &World, id: InstanceId, groups: &[Group], keys: u32) -> [Words; QUADRUPLES] {
     let motion = world.render_from_instance(id);
-    if motion.is_moving() {
-        return Err(BvhError::Moving(id));
-    }
     let inverse = motion.start().matrix().as_dmat4().inverse();
     let [x, y, z] = [0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits));
     let group = &groups[world.group_of_instance(id).0 as usize];
     let inside = [group.roots[0], group.roots[1], group.size.to_bits(), id.0];
-    Ok([x, y, z, inside, [INSTANCE, 0, 0, 0]])
+    [x, y, z, inside, [INSTANCE, keys, 0, 0]]
+}
+
+/// The angle between the quaternions of a motion, at most π/2.
+pub(crate) fn angle(keys: &MotionKeys) -> f32 {
+    keys.rotations[0].dot(keys.rotations[1]).clamp(-1.0, 1.0).acos() as f32
+}
+
+/// Both keys of a motion, an item each.
+pub fn motion(keys: &MotionKeys) -> [[Words; QUADRUPLES]; 2] {
+    let angle = angle(keys);
+    [0, 1].map(|i| {
+        let [translation, rotation] =
+            [keys.translations[i].extend(keys.times[i].into()), keys.rotations[i].into()];
+        let [x, y, z] = [0, 1, 2].map(|row| keys.stretches[i].row(row).extend(0.0));
+        [translation, rotation, x.with_w(f64::from(angle)), y, z]
+            .map(|v| v.as_vec4().to_array().map(f32::to_bits))
+    })
 }
 
 /// The geometry and the primitive of the first of some items; `None` for an instance.

@@ -16,6 +16,7 @@ use std::ops::Range;
 
 use binary::Binary;
 use geometry::{GeometryId, GroupId, InstanceId, PlainItem, PlainTree, World};
+pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
 
@@ -43,6 +44,8 @@ pub struct Bvh {
     pub items: Vec<Words>,
     /// Where rays begin.
     pub top: Top,
+    /// Whether any instance moves.
+    pub has_motion: bool,
     /// The items of the top group that have bounds.
     pub(crate) bounded: Range<usize>,
 }
@@ -66,8 +69,6 @@ pub enum BvhError {
     Shape(GeometryId),
     /// An instance is within another.
     Nested(InstanceId),
-    /// An instance moves.
-    Moving(InstanceId),
     /// An instanced geometry has no bounds.
     Unbounded(GeometryId),
     /// A tree is too deep for the stack of rays, or has too many primitives for references.
@@ -75,8 +76,8 @@ pub enum BvhError {
 }
 
 impl Bvh {
-    /// The buffers of a world at rest, of meshes, single shapes, sets of spheres, and instances of
-    /// groups of them. Hits on geometries that are cut out count if the kernel's `accepts` says so.
+    /// The buffers of a world of meshes, single shapes, sets of spheres, and instances of groups of
+    /// them. Hits on geometries that are cut out count if the kernel's `accepts` says so.
     pub fn new(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
         let mut groups = vec![Group::default(); world.groups()];
@@ -135,15 +136,26 @@ impl Bvh {
                 PlainItem::Instance(id) => BvhError::Nested(id),
             });
         }
+        let mut keys = Vec::new();
+        let first_key = first + items.len() + unbounded.len();
         for item in items.into_iter().chain(unbounded) {
             self.items.extend(match item {
                 PlainItem::Shape(geometry, primitive) => {
                     item::shape(world, geometry, primitive, is_cut_out(geometry))?
                 }
                 PlainItem::Instance(id) if group != GroupId::TOP => return Err(BvhError::Nested(id)),
-                PlainItem::Instance(id) => item::instance(world, id, groups)?,
+                PlainItem::Instance(id) => {
+                    let mut at = 0;
+                    if let Some(moves) = world.render_from_instance(id).keys() {
+                        at = (first_key + keys.len()) as u32;
+                        keys.extend(item::motion(&moves));
+                    }
+                    item::instance(world, id, groups, at)
+                }
             });
         }
+        self.has_motion |= !keys.is_empty();
+        self.items.extend(keys.into_iter().flatten());
         Ok(Group { roots: [root, item_root], unbounded: open, size, stack })
     }
 

@@ -1,23 +1,28 @@
 //! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
-//! (top left and pixel; of a sphere its width and height in pixels) and the lens (radius and focal
-//! distance); then the factors on differences to rays of neighbouring pixels, of rays that have
-//! them and of others, and the smallest of these differences, of origins and of directions; then 1
-//! if it moves. The matrix is then that of the first key, and there follow the times at which the
-//! shutter opens and closes, for both keys the time, the translation, the unit quaternion of the
-//! rotation, and the rows of the stretch, and the angle between these quaternions.
+//! (top left and pixel; of a sphere its width and height in pixels; behind lenses the sides of a
+//! pixel and half those of the film) and the lens (radius and focal distance; behind lenses the
+//! greatest distance of a point of the film from the axis); then the factors on differences to rays
+//! of neighbouring pixels, of rays that have them and of others, and the smallest of these
+//! differences, of origins and of directions; then 1 if it moves, the times at which the shutter
+//! opens and closes, the offset of the lenses, and the least and the largest wavelength of a
+//! spectral film, or zeros. The matrix of one that moves is that of the first key, and there follow
+//! for both keys the time, the translation, the unit quaternion of the rotation, and the rows of
+//! the stretch, and the angle between these quaternions.
 
 use description::{Span, SphericalMapping};
 use math::MotionKeys;
 use scene::View;
-use scene::camera::{Projection, Screen, ThinLens, differential_scale};
+use scene::camera::{PlainLens, Projection, Screen, ThinLens, differential_scale};
 
 use super::Flattener;
 use crate::Algorithm;
+use crate::bvh::angle;
 
 const PERSPECTIVE: u32 = 0;
 const ORTHOGRAPHIC: u32 = 1;
 const EQUIRECTANGULAR: u32 = 2;
 const EQUAL_AREA: u32 = 3;
+const REALISTIC: u32 = 4;
 
 impl Flattener<'_> {
     /// The camera of a view; its offset.
@@ -25,19 +30,19 @@ impl Flattener<'_> {
         if algorithm.splats() && matches!(view.camera.projection(), Projection::Spherical(_)) {
             self.refuse("light paths to camera `spherical`", Span::NONE);
         }
+        if algorithm.begins_at_lights() && matches!(view.camera.projection(), Projection::Realistic(_)) {
+            self.refuse("light paths to camera `realistic`", Span::NONE);
+        }
         if algorithm.begins_at_lights() && view.camera.is_moving() {
             self.refuse("light paths to moving cameras", Span::NONE);
         }
-        let words = words(view).unwrap_or_else(|what| {
-            self.refuse(what, Span::NONE);
-            Vec::new()
-        });
-        self.slab.add(words)
+        let lenses = self.lenses(view.camera.projection());
+        self.slab.add(words(view, lenses))
     }
 }
 
-/// The record of a view's camera; the error is what kernels do not draw.
-pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
+/// The record of a view's camera, given the offset of its lenses.
+pub fn words(view: &View, lenses: u32) -> Vec<u32> {
     let motion = view.camera.transform().animated();
     let flat = |screen: &Screen, lens: ThinLens| {
         let &Screen { top_left, per_pixel } = screen;
@@ -53,7 +58,10 @@ pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
             };
             (kind, [p.resolution().x, p.resolution().y, 1.0, 1.0, 0.0, 1.0])
         }
-        Projection::Realistic(_) => return Err("camera `realistic`"),
+        Projection::Realistic(p) => {
+            let PlainLens { pixel, half, radius, .. } = p.plain();
+            (REALISTIC, [pixel.x, pixel.y, half.x, half.y, radius, 1.0])
+        }
     };
     let matrix = motion.start().matrix();
     let mut numbers: Vec<f32> = [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect();
@@ -63,15 +71,19 @@ pub fn words(view: &View) -> Result<Vec<u32>, &'static str> {
     numbers.extend([samples, least].map(differential_scale));
     let differences = view.camera.minimum_differentials().differences();
     numbers.extend(differences.as_flattened().iter().flat_map(|v| v.to_array()));
-    let keys = motion.keys().map(|keys| [&view.camera.shutter()[..], &interpolated(&keys)].concat());
-    let (moves, moving) = (keys.is_some().into(), keys.unwrap_or_default());
+    let keys = motion.keys().map(|keys| interpolated(&keys));
+    let moves = keys.is_some().into();
     let bits = |numbers: Vec<f32>| numbers.into_iter().map(f32::to_bits);
-    Ok([kind].into_iter().chain(bits(numbers)).chain([moves]).chain(bits(moving)).collect())
+    let mut words = vec![kind];
+    words.extend(bits(numbers).chain([moves]).chain(bits(view.camera.shutter().to_vec())));
+    words.extend([lenses].into_iter().chain(view.wavelengths.unwrap_or_default().map(f32::to_bits)));
+    words.extend(bits(keys.unwrap_or_default()));
+    words
 }
 
 /// The numbers of both keys of a motion, and the angle.
 fn interpolated(keys: &MotionKeys) -> Vec<f32> {
-    let MotionKeys { times, translations, rotations, stretches } = keys;
+    let &MotionKeys { times, translations, rotations, stretches } = keys;
     let mut numbers = Vec::new();
     for i in 0..2 {
         numbers.push(times[i]);
@@ -79,6 +91,6 @@ fn interpolated(keys: &MotionKeys) -> Vec<f32> {
         numbers.extend(rotations[i].as_quat().to_array());
         numbers.extend(stretches[i].transpose().as_mat3().to_cols_array());
     }
-    numbers.push(rotations[0].dot(rotations[1]).clamp(-1.0, 1.0).acos() as f32);
+    numbers.push(angle(keys));
     numbers
 }

@@ -13,6 +13,7 @@
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
 //! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
+//! | 13 infinite behind a portal | those that `portals.rs` describes |
 //! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
 //!
 //! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
@@ -45,6 +46,7 @@ const CYLINDER: u32 = 9;
 const GONIOMETRIC: u32 = 10;
 const PROJECTION: u32 = 11;
 const PATCH: u32 = 12;
+const PORTAL_INFINITE: u32 = 13;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -87,7 +89,12 @@ impl Flattener<'_> {
                 self.at_rest(!l.is_at_rest(), span);
                 self.image_light(l)
             }
-            Light::PortalInfinite(_) => self.no_light("infinite lights with portals", span),
+            Light::PortalInfinite(l) => {
+                if self.begins_at_lights {
+                    self.refuse("light paths from infinite lights with portals", span);
+                }
+                self.portal(PORTAL_INFINITE, l)
+            }
             Light::Goniometric(l) => {
                 let (motion, intensity, distribution) = l.parts();
                 self.at_rest(motion.is_moving(), span);
@@ -116,7 +123,7 @@ impl Flattener<'_> {
     }
 
     /// A light without a surface.
-    fn emitter(&mut self, kind: u32, emission: &Emission, numbers: &[f32]) -> u32 {
+    pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, numbers: &[f32]) -> u32 {
         let spectrum = self.spectrum(&emission.spectrum);
         let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 0]);
         self.slab.add_numbers(numbers.iter().copied());

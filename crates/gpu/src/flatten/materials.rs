@@ -13,6 +13,7 @@
 //! | 9 interface | | |
 //! | 10 hair | what absorption is given by: 0 its coefficient, 1 colour, 2 pigments, and then the colour space | longitudinal and azimuthal roughness, η, angle of the scales, that of the absorption or both pigments |
 //! | 11 measured | offset of its record | |
+//! | 12 subsurface | remap, offset of its table, 1 for random walks, 1 where reflectance is given, factor on what is given, η, asymmetry | roughness along u and v; absorption and scattering, or reflectance and mean free path |
 //! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
@@ -39,6 +40,7 @@ const PRINCIPLED: u32 = 8;
 const INTERFACE: u32 = 9;
 const HAIR: u32 = 10;
 const MEASURED: u32 = 11;
+const SUBSURFACE: u32 = 12;
 
 /// The kind, the words and the textures of a material.
 type Record = (u32, [u32; 8], Vec<u32>);
@@ -78,26 +80,24 @@ impl Flattener<'_> {
     }
 
     fn material(&mut self, material: &Material, span: Span) -> Record {
-        let name = match material {
-            Material::Diffuse(m) => {
-                return (DIFFUSE, [0; 8], vec![self.spectrum_texture(m.reflectance, span)]);
-            }
+        match material {
+            Material::Diffuse(m) => (DIFFUSE, [0; 8], vec![self.spectrum_texture(m.reflectance, span)]),
             Material::DiffuseTransmission(m) => {
                 let textures = [m.reflectance, m.transmittance].map(|id| self.spectrum_texture(id, span));
-                return (DIFFUSE_TRANSMISSION, words([m.scale.to_bits()]), textures.to_vec());
+                (DIFFUSE_TRANSMISSION, words([m.scale.to_bits()]), textures.to_vec())
             }
             Material::Conductor(m) => {
                 let (remap, is_reflectance, textures) = self.conductor(m, span);
-                return (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures);
+                (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures)
             }
             Material::Dielectric(m) => {
                 let (remap, textures) = self.roughness(&m.roughness, span);
                 let [eta, varies] = self.index(&m.eta);
-                return (DIELECTRIC, words([remap, eta, varies]), textures);
+                (DIELECTRIC, words([remap, eta, varies]), textures)
             }
             Material::ThinDielectric(m) => {
                 let [eta, varies] = self.index(&m.eta);
-                return (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new());
+                (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new())
             }
             Material::Mix(m) => {
                 let is_interface = |id: &MaterialId| {
@@ -107,30 +107,31 @@ impl Flattener<'_> {
                     self.refuse("mixes with material `interface`", span);
                 }
                 let pair = m.materials.map(|material| material.0);
-                return (MIX, words(pair), vec![self.number_texture(m.amount, span)]);
+                (MIX, words(pair), vec![self.number_texture(m.amount, span)])
             }
             Material::CoatedDiffuse(m) => {
                 let base = vec![self.spectrum_texture(m.base.reflectance, span)];
-                return self.coated(COATED_DIFFUSE, &m.coat, [0, 0], base, span);
+                self.coated(COATED_DIFFUSE, &m.coat, [0, 0], base, span)
             }
             Material::CoatedConductor(m) => {
                 let (remap, is_reflectance, base) = self.conductor(&m.base, span);
-                return self.coated(COATED_CONDUCTOR, &m.coat, [remap, is_reflectance], base, span);
+                self.coated(COATED_CONDUCTOR, &m.coat, [remap, is_reflectance], base, span)
             }
             Material::OpenPbr(m) => {
                 let (record, textures) = self.principled(m, span);
-                return (PRINCIPLED, words([record]), textures);
+                (PRINCIPLED, words([record]), textures)
             }
-            Material::Interface => return (INTERFACE, [0; 8], Vec::new()),
-            Material::Hair(m) => return self.hair(m, span),
+            Material::Interface => (INTERFACE, [0; 8], Vec::new()),
+            Material::Hair(m) => self.hair(m, span),
             Material::Measured(m) => {
                 self.parts.measured = true;
-                return (MEASURED, words([self.measured(&m.table)]), Vec::new());
+                (MEASURED, words([self.measured(&m.table)]), Vec::new())
             }
-            Material::Subsurface(_) => "subsurface",
-        };
-        self.refuse(format!("material `{name}`"), span);
-        (DIFFUSE, [0; 8], Vec::new())
+            Material::Subsurface(m) => {
+                let (given, textures) = self.subsurface(m, span);
+                (SUBSURFACE, words(given), textures)
+            }
+        }
     }
 
     fn hair(&mut self, hair: &HairMaterial, span: Span) -> Record {
@@ -178,7 +179,7 @@ impl Flattener<'_> {
     }
 
     /// Whether α is the square root, and the textures of roughness.
-    fn roughness(&mut self, roughness: &Roughness, span: Span) -> (u32, Vec<u32>) {
+    pub(super) fn roughness(&mut self, roughness: &Roughness, span: Span) -> (u32, Vec<u32>) {
         let textures = [roughness.u, roughness.v].map(|id| self.number_texture(id, span));
         (roughness.remap.into(), textures.to_vec())
     }

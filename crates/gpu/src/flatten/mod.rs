@@ -12,6 +12,7 @@ mod distributions;
 mod filters;
 mod geometries;
 mod images;
+mod lenses;
 mod light_choices;
 mod light_paths;
 mod lights;
@@ -19,10 +20,12 @@ mod materials;
 mod measured;
 mod media;
 mod openpbr;
+mod portals;
 mod samplers;
 mod sensors;
 mod slab;
 mod spectra;
+mod subsurface;
 mod textures;
 
 use std::collections::HashMap;
@@ -162,6 +165,10 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         pyramids: Default::default(),
         texels: Default::default(),
         largest_buffer,
+        follows_bodies: matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_))
+            && !has_media(scene)
+            && !view.options.force_diffuse,
+        begins_at_lights: algorithm.begins_at_lights(),
         parts: Parts::default(),
         refusals: Vec::new(),
     };
@@ -259,6 +266,10 @@ struct Flattener<'a> {
     pyramids: HashMap<u32, u32>,
     texels: images::Texels,
     largest_buffer: usize,
+    /// Whether paths go on under surfaces.
+    follows_bodies: bool,
+    /// Whether paths begin at lights.
+    begins_at_lights: bool,
     parts: Parts,
     refusals: Vec<Refusal>,
 }
@@ -285,7 +296,6 @@ impl Flattener<'_> {
         self.parts.force_diffuse = view.options.force_diffuse;
         let whole = [
             (!knows_media && has_media(self.scene), "participating media or interfaces"),
-            (view.wavelengths.is_some(), "spectral films"),
             (film.layers() != film::LayerSet::NONE, "layers beside the colour"),
         ];
         for (is, what) in whole {
@@ -305,13 +315,18 @@ impl Flattener<'_> {
             entry.alpha.is_some() || is_open(entry)
         };
         let error = match Bvh::new(self.scene.world(), &is_cut_out) {
-            Ok(bvh) => return bvh,
+            Ok(bvh) => {
+                self.parts.motion = bvh.has_motion;
+                if bvh.has_motion && algorithm.begins_at_lights() {
+                    self.refuse("light paths among shapes that move", Span::NONE);
+                }
+                return bvh;
+            }
             Err(error) => error,
         };
         let (what, span) = match error {
             BvhError::Shape(id) => (self.name_of_shape(id), self.span_of_geometry(id)),
             BvhError::Nested(id) => ("instances within instances", self.span_of_instance(id)),
-            BvhError::Moving(id) => ("motion", self.span_of_instance(id)),
             BvhError::Unbounded(id) => ("instances of infinite planes", self.span_of_geometry(id)),
             BvhError::TooLarge => ("as many primitives", Span::NONE),
         };
@@ -335,7 +350,7 @@ impl Flattener<'_> {
             Some(Shape::Solid(_)) => "shape `csg`",
             Some(Shape::BilinearPatch(_)) => "bilinear patches with normals or texture coordinates",
             Some(Shape::Triangle(_)) => "shape `trianglemesh`",
-            Some(Shape::MovingTriangle(_)) => "meshes that move",
+            Some(Shape::MovingTriangle(_)) => "meshes that change their form",
         }
     }
 

@@ -138,10 +138,11 @@ impl Realtime {
         algorithm: &Algorithm,
         shared: Option<Weights>,
     ) -> Result<Self, GpuError> {
-        // Among media light finds its way through them, or through interfaces.
+        // Among media light finds its way through them, or through interfaces, and where it leaves
+        // bodies it is not that of what is seen.
         let has_direct_light =
             matches!(algorithm, Algorithm::Path(desc) | Algorithm::VolPath(desc) if desc.max_depth > 0);
-        let shared = shared.filter(|_| has_direct_light && !flat.parts.media);
+        let shared = shared.filter(|_| has_direct_light && !(flat.parts.media || flat.parts.subsurface));
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();
@@ -243,10 +244,13 @@ impl Realtime {
         if matches!(view.camera.projection(), Projection::Spherical(_)) {
             return Err(AimError::Refused("frames of camera `spherical`"));
         }
+        if matches!(view.camera.projection(), Projection::Realistic(_)) {
+            return Err(AimError::Refused("frames of camera `realistic`"));
+        }
         if view.camera.is_moving() {
             return Err(AimError::Refused("frames of moving cameras"));
         }
-        let camera = cameras::words(view).map_err(AimError::Refused)?;
+        let camera = cameras::words(view, 0);
         let device = self.kernels.device();
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;
         device.write_at(&self.scene[4], at, &camera)?;

@@ -26,7 +26,7 @@ use spectrum::SampledSpectrum;
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
-use crate::shaders;
+use crate::shaders::{self, Parts};
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
@@ -136,7 +136,9 @@ impl Renderer {
         let strips = strips(film.pixel_bounds(), splats, most_pixels(scene.device()));
         let count = strips.map(|strip| strip.area()).max().unwrap_or(0);
         let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
-        let maker = if schedule == Schedule::Wavefront && is_path && !flat.parts.media {
+        // Its stages do not have what few scenes have.
+        let Parts { media, subsurface, lenses, .. } = flat.parts;
+        let maker = if schedule == Schedule::Wavefront && is_path && !(media || subsurface || lenses) {
             Maker::Wavefront(Wavefront::new(&kernels, flat, count)?)
         } else {
             Maker::Megakernel(kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?)

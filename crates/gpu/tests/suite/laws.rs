@@ -148,7 +148,7 @@ macro_rules! sampled {
     };
 }
 
-pub const LAWS: [Law; 49] = [
+pub const LAWS: [Law; 50] = [
     law!("sin_cos" 1e-6 0.0, x => { let (a, b) = lanes::sin_cos(x[6] * 200.0 - 100.0); vec![a, b] },
         "let t = sin_cos(x[6] * 200.0 - 100.0); y[0] = t.v0; y[1] = t.v1;"),
     law!("exp ln" 1e-6 0.0, x => vec![lanes::exp(x[6] * 20.0 - 10.0), lanes::ln(x[7])],
@@ -188,6 +188,13 @@ pub const LAWS: [Law; 49] = [
         },
         "var w = SampledWavelengths_sample_visible(x[6]);
         if (x[7] < 0.5) { SampledWavelengths_terminate_secondary(&w); }
+        y = array(w.lambda.x, w.lambda.y, w.lambda.z, w.lambda.w, w.pdf.x, w.pdf.y, w.pdf.z, w.pdf.w);"),
+    law!("uniform SampledWavelengths" 1e-5 0.0,
+        x => {
+            let lambda = SampledWavelengths::sample_uniform_in(x[6], 300.0 + 100.0 * x[7], 900.0);
+            [*lambda.lambda(), lambda.pdf().0].concat()
+        },
+        "let w = SampledWavelengths_sample_uniform_in(x[6], 300 + 100 * x[7], 900);
         y = array(w.lambda.x, w.lambda.y, w.lambda.z, w.lambda.w, w.pdf.x, w.pdf.y, w.pdf.z, w.pdf.w);"),
     law!("disk" 1e-5 0.0,
         x => [sample_uniform_disk_polar(u(x)).to_array(), sample_uniform_disk_concentric(u(x)).to_array()].concat(),

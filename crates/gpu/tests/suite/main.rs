@@ -3,15 +3,18 @@
 //! Tests that need a GPU, or a driver that is one in software, end early and say so where there is
 //! none; with `ALHAZEN_GPU=require` in the environment they fail instead.
 
+mod bodies;
 mod chains;
 mod dynamic;
 mod faults;
 mod laws;
 mod measured;
 mod media;
+mod motion;
 mod openpbr;
 mod photons;
 mod pictures;
+mod portals;
 mod raster;
 mod realtime;
 mod reservoirs;

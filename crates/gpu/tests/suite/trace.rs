@@ -15,6 +15,8 @@ pub const KERNEL: &str = "
     fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
     const HAS_CURVES = true;
     fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
+    const HAS_MOTION = false;
+    fn moved_rows(item: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;

@@ -45,12 +45,16 @@ fn parts(bits: u32) -> Parts {
         holes,
         images,
         emission_images,
+        portals: false,
         noise,
         coats,
         principled,
         curves,
+        lenses: false,
+        motion: false,
         hair,
         measured,
+        subsurface: false,
         rare_samplers,
         media: false,
         force_diffuse: false,
@@ -99,6 +103,12 @@ fn kernels_are_valid() {
         for algorithm in [&path, &vol_path, &simple] {
             add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
         }
+        add(&"motion", shaders::pixels(&path, Parts { motion: true, ..parts }));
+        add(&"portals", shaders::pixels(&path, Parts { portals: true, ..parts }));
+        add(&"lenses", shaders::pixels(&path, Parts { lenses: true, ..parts }));
+        let bodies = Parts { subsurface: true, ..parts };
+        add(&"bodies", shaders::pixels(&path, bodies));
+        add(&"bodies", shaders::surfaces(&path, bodies));
         add(&"forced diffuse", shaders::pixels(&simple, Parts { force_diffuse: true, ..parts }));
         add(&"chains", shaders::chains(parts));
         shaders::wavefront(parts).into_iter().for_each(|source| add(&"wavefront", source));

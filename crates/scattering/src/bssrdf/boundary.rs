@@ -53,6 +53,11 @@ impl Boundary {
         nodes.into_iter().map(|(weight, gain)| weight * gain).sum()
     }
 
+    /// The gains of isotropic ones, a row for each roughness.
+    pub fn gains(&self) -> &[f32] {
+        self.gains.values()
+    }
+
     /// The square of the cosine of the critical angle inside; 0 if there is none.
     pub fn critical(&self) -> f32 {
         (1.0 - 1.0 / sqr(self.eta)).max(0.0)

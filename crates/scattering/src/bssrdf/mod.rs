@@ -26,7 +26,7 @@ mod table;
 mod walks;
 
 pub use method::SubsurfaceMethod;
-pub use table::BssrdfTable;
+pub use table::{BssrdfTable, PlainBssrdfTable};
 
 use crate::{HenyeyGreenstein, Interior, NormalizedFresnel, TrowbridgeReitz};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};

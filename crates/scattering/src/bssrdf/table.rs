@@ -37,7 +37,43 @@ pub struct BssrdfTable {
     of_walks: OnceLock<Vec<Vec<f32>>>,
 }
 
+/// The numbers of a table, for engines that look them up elsewhere. Profiles are cubic splines
+/// over both albedo and radius.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainBssrdfTable<'a> {
+    /// One over the share of uniform light from outside that the surface lets in.
+    pub exit_norm: f32,
+    /// Ascending albedos.
+    pub albedos: &'a [f32],
+    /// Ascending radii, in mean free paths.
+    pub radii: &'a [f32],
+    /// 2πr times the profile; a row for each albedo.
+    pub profile: &'a [f32],
+    /// The running integrals of the rows.
+    pub cdf: &'a [f32],
+    /// The integrals of the rows.
+    pub effective_albedos: &'a [f32],
+}
+
 impl BssrdfTable {
+    /// Its numbers.
+    pub fn plain(&self) -> PlainBssrdfTable<'_> {
+        let Self { exit_norm, albedos, radii, profile, cdf, effective_albedos, .. } = self;
+        PlainBssrdfTable { exit_norm: *exit_norm, albedos, radii, profile, cdf, effective_albedos }
+    }
+
+    /// What random walks return, for evenly spaced roughnesses √α of the boundary from 0 to 1; each
+    /// row for all albedos.
+    pub fn of_walks(&self) -> &[Vec<f32>] {
+        self.of_walks.get_or_init(|| walks::effective_albedos(self.g, self.boundary(), &self.albedos))
+    }
+
+    /// The gains of isotropic rough boundaries for random walks: rows for evenly spaced roughnesses
+    /// √α from 0 to 1, each of 19 values for the cosines whose square roots are evenly spaced.
+    pub fn gains(&self) -> &[f32] {
+        self.boundary().gains()
+    }
+
     /// For the asymmetry `g`, in (−1, 1), and the relative index of refraction `eta`, > 0.
     pub fn new(g: f32, eta: f32) -> Self {
         let medium = HalfSpace::new(f64::from(g), f64::from(eta));
@@ -100,8 +136,7 @@ impl BssrdfTable {
         match method {
             SubsurfaceMethod::Diffusion => invert(&self.effective_albedos),
             SubsurfaceMethod::RandomWalk => {
-                let of_walks = || walks::effective_albedos(self.g, self.boundary(), &self.albedos);
-                let rows = self.of_walks.get_or_init(of_walks);
+                let rows = self.of_walks();
                 let place = Place::new(facets.mean_alpha().sqrt(), rows.len());
                 let first = place.index as usize;
                 lerp(place.t, invert(&rows[first]), invert(&rows[first + 1]))

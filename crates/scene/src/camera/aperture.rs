@@ -50,6 +50,12 @@ impl ApertureMask {
         })
     }
 
+    /// The shares, over the square around the stop's disk, the top at y = 1; beyond it all is
+    /// black.
+    pub fn image(&self) -> &Image {
+        &self.0
+    }
+
     /// The share of the light at `p`, in [−1, 1]² over the stop's square, x and y as in camera
     /// space. The top of the picture is at y = 1.
     pub fn share(&self, p: [f64; 2]) -> f32 {

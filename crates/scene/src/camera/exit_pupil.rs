@@ -39,6 +39,16 @@ impl ExitPupils {
         Self { rectangles, radius }
     }
 
+    /// The rectangles of equal intervals of the distance from the axis.
+    pub fn rectangles(&self) -> &[Option<Bounds2>] {
+        &self.rectangles
+    }
+
+    /// The greatest distance of a film point from the axis.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
     /// Whether nothing passes the lens.
     pub fn are_empty(&self) -> bool {
         self.rectangles.iter().all(Option::is_none)

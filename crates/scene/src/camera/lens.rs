@@ -18,6 +18,7 @@
 //! for the distance b from the film to p', which exists for D ≥ 4f.
 
 use description::LensElement;
+use image::Image;
 use math::DVec3;
 
 use super::aperture::ApertureMask;
@@ -112,6 +113,20 @@ impl LensSystem {
     /// Radius of the rear interface's aperture.
     pub fn rear_radius(&self) -> f64 {
         self.interfaces.last().map_or(0.0, |rear| rear.aperture)
+    }
+
+    /// The place of each vertex, the radius of curvature or 0 of a stop, the index of refraction on
+    /// the film's side over that beyond, and the radius of the aperture, from film to scene.
+    pub fn plain(&self) -> impl Iterator<Item = [f32; 4]> {
+        self.interfaces.iter().rev().map(|it| {
+            let curvature = it.curvature.unwrap_or(0.0);
+            [it.z, curvature, it.eta_film / it.eta_scene, it.aperture].map(|x| x as f32)
+        })
+    }
+
+    /// The shares of the light that pass the points of stops.
+    pub fn mask(&self) -> Option<&Image> {
+        self.mask.as_ref().map(ApertureMask::image)
     }
 
     /// Distance from the film to the vertex of the front interface.

@@ -45,7 +45,7 @@ pub use minimum_differentials::{MinimumDifferentials, differential_scale};
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use projection::Projection;
-pub use realistic::Realistic;
+pub use realistic::{PlainLens, Realistic};
 pub use screen::{Screen, ThinLens};
 pub use spherical::Spherical;
 pub use transform::{CameraTransform, world_from_render};

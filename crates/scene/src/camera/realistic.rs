@@ -13,8 +13,9 @@
 
 use super::exit_pupil::ExitPupils;
 use super::lens::{Apertures, LensRay, LensSystem};
+use image::Image;
 use lanes::{Each, MAX_LANES, Real};
-use math::{DVec3, Differentials, Point2, Point3, Vec2, Vec3, Vector3};
+use math::{Bounds2, DVec3, Differentials, Point2, Point3, Vec2, Vec3, Vector3};
 use std::sync::Arc;
 
 /// The step of finite differences, in pixels.
@@ -29,6 +30,27 @@ pub struct Realistic {
     pixel: Vec2,
     /// Half the sides of the film, in metres.
     half: Vec2,
+}
+
+/// The numbers of a lens system and its film, for engines that trace rays through it elsewhere.
+#[derive(Clone, Debug)]
+pub struct PlainLens<'a> {
+    /// The sides of a pixel, in metres.
+    pub pixel: Vec2,
+    /// Half the sides of the film, in metres.
+    pub half: Vec2,
+    /// Interfaces from film to scene: the place of the vertex on the axis, the radius of curvature
+    /// or 0 of a stop, both in metres, the index of refraction on the film's side over that beyond,
+    /// and the radius of the aperture, in metres.
+    pub interfaces: Vec<[f32; 4]>,
+    /// The rectangles of exit pupils in the plane of the rear vertex, for equal intervals of the
+    /// distance of a film point on the positive x axis; `None` where nothing passes.
+    pub pupils: &'a [Option<Bounds2>],
+    /// The greatest distance of a film point from the axis, in metres.
+    pub radius: f32,
+    /// The shares of the light that pass the points of stops, over the squares around them with the
+    /// top at y = 1; `None` of disks.
+    pub mask: Option<&'a Image>,
 }
 
 /// A ray and the share of its radiance that reaches the film, in camera space.
@@ -55,6 +77,18 @@ impl Realistic {
             pixel: size / resolution,
             half: size * 0.5,
         })
+    }
+
+    /// Its numbers.
+    pub fn plain(&self) -> PlainLens<'_> {
+        PlainLens {
+            pixel: self.pixel,
+            half: self.half,
+            interfaces: self.lens.plain().collect(),
+            pupils: self.pupils.rectangles(),
+            radius: self.pupils.radius(),
+            mask: self.lens.mask(),
+        }
     }
 
     /// The same view in pixels `n` times as wide and high.

@@ -55,7 +55,7 @@ pub use geometry::ShapeSampleContext as LightSampleContext;
 pub use goniometric::GoniometricLight;
 pub use image_infinite::ImageInfiniteLight;
 pub use point::PointLight;
-pub use portal_infinite::{Portal, PortalInfiniteLight, PortalRadiance, RectifiedImage};
+pub use portal_infinite::{PlainPortal, Portal, PortalInfiniteLight, PortalRadiance, RectifiedImage};
 pub use projection::{ProjectionLight, Slide};
 pub use scene_sphere::SceneSphere;
 pub use spot::SpotLight;

@@ -57,6 +57,23 @@ pub enum PortalRadiance {
     Image(RectifiedImage),
 }
 
+/// The parts of a light, for engines that sample it elsewhere.
+#[derive(Clone, Debug)]
+pub struct PlainPortal<'a> {
+    /// A corner of the rectangle in render space.
+    pub corner: Point3,
+    /// x and y along its edges from the corner, z out of the scene.
+    pub frame: Frame,
+    /// The lengths of its edges along x and y.
+    pub size: Vec2,
+    /// What is seen through it.
+    pub radiance: &'a PortalRadiance,
+    /// The cells of the density over the rectified square, along each axis.
+    pub resolution: u32,
+    /// Their values, row by row.
+    pub brightness: Vec<f32>,
+}
+
 /// An environment in the rectified square of a portal.
 #[derive(Clone, Debug)]
 pub struct RectifiedImage {
@@ -140,6 +157,21 @@ impl RectifiedImage {
         Self { pixels, resolution, color_space: environment.color_space, scale }
     }
 
+    /// Rows of colours without negative components, t from 0 to 1; as many columns.
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
+    /// The space of the colours.
+    pub fn color_space(&self) -> &'static spectrum::RgbColorSpace {
+        self.color_space
+    }
+
+    /// The factor on the colours.
+    pub fn scale(&self) -> f32 {
+        self.scale
+    }
+
     fn lookup(&self, st: Point2) -> Rgb {
         let [x, y] = st.to_array().map(|s| {
             let pixel = (s * self.resolution as f32) as u32;
@@ -197,6 +229,13 @@ impl PortalInfiniteLight {
         let (resolution, brightness) = radiance.brightness();
         let distribution = WindowedPiecewiseConstant2d::new(brightness, resolution as usize);
         Self { portal, radiance, distribution }
+    }
+
+    /// Its parts.
+    pub fn plain(&self) -> PlainPortal<'_> {
+        let Portal { corner, frame, size } = self.portal;
+        let (resolution, brightness) = self.radiance.brightness();
+        PlainPortal { corner, frame, size, radiance: &self.radiance, resolution, brightness }
     }
 
     /// The density of a position per solid angle, within a window.

@@ -57,7 +57,11 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/math/src/spherical.rs", &["spherical_direction", "spherical_phi", "face_forward"]),
     (
         "crates/spectrum/src/sampled.rs",
-        &["SampledWavelengths::sample_visible", "SampledWavelengths::terminate_secondary"],
+        &[
+            "SampledWavelengths::sample_uniform_in",
+            "SampledWavelengths::sample_visible",
+            "SampledWavelengths::terminate_secondary",
+        ],
     ),
     ("crates/spectrum/src/uplift.rs", &[]),
     ("crates/spectrum/src/rgb_spectrum.rs", &["RgbAlbedoSpectrum::at", "RgbUnboundedSpectrum::at"]),

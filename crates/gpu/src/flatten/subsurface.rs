@@ -1,0 +1,54 @@
+//! Tables of what is scattered under surfaces: one over the share of uniform light that enters, the
+//! numbers of albedos and radii, the offset of the gains of rough boundaries for random walks, and
+//! the number of rows of what these return. There follow albedos, radii, effective albedos, and a
+//! row for each albedo of the profiles and of their integrals; and the rows of what walks return.
+//! Gains and rows of walks are there only where they are needed.
+
+use description::Span;
+use scattering::{BssrdfTable, PlainBssrdfTable, SubsurfaceMethod};
+use scene::material::{Roughness, SubsurfaceInside, SubsurfaceMaterial};
+
+use super::Flattener;
+
+impl Flattener<'_> {
+    /// The words and the textures of a material.
+    pub(super) fn subsurface(&mut self, body: &SubsurfaceMaterial, span: Span) -> ([u32; 7], Vec<u32>) {
+        self.parts.subsurface = true;
+        if !self.follows_bodies {
+            self.refuse("material `subsurface` by this algorithm or among media", span);
+        }
+        let walks = body.method == SubsurfaceMethod::RandomWalk;
+        if walks && !self.is_isotropic(&body.roughness) {
+            self.refuse("random walks under brushed boundaries", span);
+        }
+        let (given, scale, spectra) = match body.inside {
+            SubsurfaceInside::Coefficients { sigma_a, sigma_s, scale } => (0, scale, [sigma_a, sigma_s]),
+            SubsurfaceInside::Reflectance { reflectance, mfp, scale } => (1, scale, [reflectance, mfp]),
+        };
+        let (remap, mut textures) = self.roughness(&body.roughness, span);
+        textures.extend(spectra.map(|id| self.spectrum_texture(id, span)));
+        let table = self.bssrdf_table(&body.table, walks, given == 1);
+        let [scale, eta, g] = [scale, body.table.eta(), body.table.g()].map(f32::to_bits);
+        ([remap, table, walks.into(), given, scale, eta, g], textures)
+    }
+
+    /// Whether the roughness is the same in all directions wherever it is.
+    fn is_isotropic(&self, roughness: &Roughness) -> bool {
+        let constant = |id| self.scene.textures().constant(id);
+        roughness.u == roughness.v || constant(roughness.u).is_some_and(|u| constant(roughness.v) == Some(u))
+    }
+
+    /// The offset of a table, with the gains of walks, and what these return.
+    fn bssrdf_table(&mut self, table: &BssrdfTable, has_gains: bool, has_walks: bool) -> u32 {
+        let PlainBssrdfTable { exit_norm, albedos, radii, profile, cdf, effective_albedos } = table.plain();
+        let gains = if has_gains { self.slab.add_numbers(table.gains().iter().copied()) } else { 0 };
+        let rows = if has_gains && has_walks { table.of_walks() } else { &[] };
+        let counts = [albedos.len() as u32, radii.len() as u32, gains, rows.len() as u32];
+        let at = self.slab.add([exit_norm.to_bits()].into_iter().chain(counts));
+        for numbers in [albedos, radii, effective_albedos, profile, cdf] {
+            self.slab.add_numbers(numbers.iter().copied());
+        }
+        self.slab.add_numbers(rows.iter().flatten().copied());
+        at
+    }
+}

@@ -1,0 +1,73 @@
+//! Pictures of shapes and cameras that move by both engines.
+
+use alhazen_gpu::Algorithm;
+use description::{LightTracingDesc, PathDesc};
+
+use crate::pictures::Case;
+use crate::texts::PAN;
+
+/// Shapes and an instance that move, turn and stretch while the shutter is open, before the motion
+/// is over, one at rest of the same object, and a mesh with normals that is a mirror.
+const TURNING: &str = r#"
+TransformTimes 1 4
+LookAt 0 -6 2  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 40 "float shutteropen" 0.5 "float shutterclose" 3
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
+Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
+    "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Material "diffuse" "texture reflectance" "squares"
+Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
+ObjectBegin "pair"
+    Shape "trianglemesh" "point3 P" [ 0 0 0  0.8 0 0  0 0 0.8 ] "integer indices" [ 0 1 2 ]
+    Translate 0.3 -0.1 0.3
+    Shape "sphere" "float radius" 0.25
+ObjectEnd
+AttributeBegin
+    Translate -1.8 0 0.1
+    ObjectInstance "pair"
+    ActiveTransform EndTime
+    Rotate 80 0.1 0.2 1
+    Translate 0.4 0.3 0.8
+    Scale 1.2 -0.9 1
+    ActiveTransform All
+    ObjectInstance "pair"
+AttributeEnd
+AttributeBegin
+    Translate 0.2 0.4 0.6
+    Material "conductor" "float roughness" 0
+    ActiveTransform EndTime
+    Translate 0.3 0.5 0.2
+    ActiveTransform All
+    Shape "sphere" "float radius" 0.5
+    Shape "trianglemesh" "point3 P" [ -0.5 -1 -0.4  0.6 -1.1 -0.5  0 -0.9 0.4 ] "integer indices" [ 0 1 2 ]
+        "normal N" [ -0.3 -1 0  0.3 -1 0  0 -1 0.3 ]
+AttributeEnd
+AttributeBegin
+    Translate 1.6 0 0.5
+    ActiveTransform EndTime
+    Rotate 150 1 0.5 0
+    ActiveTransform All
+    Shape "cylinder" "float radius" 0.2 "float zmin" -0.4 "float zmax" 0.4
+AttributeEnd
+"#;
+
+#[test]
+fn shapes_in_motion_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(TURNING);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("turning", &path), None);
+    let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+    assert_eq!(refusals.expect("a refusal")[0].what, "light paths among shapes that move");
+}
+
+#[test]
+fn moving_cameras_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(PAN);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("pan", &path), None);
+    let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+    assert_eq!(refusals.expect("a refusal")[0].what, "light paths to moving cameras");
+}
