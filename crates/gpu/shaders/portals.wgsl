@@ -1,7 +1,7 @@
 // Infinite lights behind portals, as `scene/src/light/portal_infinite.rs` has them: densities over
 // what each point sees of the rectified square, by the sums of the values of all cells below and
-// left of each corner (`sampling/src/windowed.rs`). Sums are integers of 64 bits, so that those over
-// a small part of the square are exact.
+// left of each corner (`sampling/src/windowed.rs`). Sums are integers of 64 bits, so that those
+// over a small part of the square are exact.
 
 // The window of the square in which a point sees a portal, and whether it does.
 struct PortalWindow {

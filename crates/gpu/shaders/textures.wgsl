@@ -41,7 +41,7 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
     return program(at, context, lambda);
 }
 
-// The result of a program. A function of its own, because all slots are set to zero where it begins.
+// The result of a program: a function of its own, which sets all slots to zero where it begins.
 fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
     var slots: array<vec4f, 32>;
     for (var i = 0u; i < tables[at + 1]; i++) {

@@ -35,14 +35,14 @@ struct Under {
     sigma_t: vec4f,
     albedo: vec4f,
     heroes: Heroes,
-    // Of a probe the point of entry, the frame there, and the end; of a walk where the flight began.
+    // Of a probe where it enters, the frame there, and the end; of a walk where its flight began.
     p: vec3f,
     frame: Frame,
     end: vec3f,
     // The length of the next ray.
     reach: f32,
     generator: Generator,
-    // The points that a probe has met, and the chosen one: the origin of its ray, it, and its normal.
+    // The points that a probe has met, and the chosen one: its ray's origin, it, and its normal.
     met: u32,
     kept_o: vec3f,
     kept_p: vec3f,

@@ -10,7 +10,8 @@ const BY_HAND: [&str; 2] =
     [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/samplers.wgsl")];
 
 /// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
-pub const TRACE: &str = include_str!("../shaders/trace.wgsl");
+pub const TRACE: &str =
+    concat!(include_str!("../shaders/trace.wgsl"), include_str!("../shaders/shapes.wgsl"));
 
 /// The laws, translated from Rust by `cargo xtask wgsl`.
 macro_rules! laws {
@@ -39,9 +40,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 17] = plumbing! {
-    "scene" "trace" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints" "bumps"
-    "materials" "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
+const PLUMBING: [&str; 18] = plumbing! {
+    "scene" "trace" "shapes" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
+    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare

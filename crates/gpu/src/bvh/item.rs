@@ -23,7 +23,7 @@ use super::{BvhError, Group, Words};
 /// Quadruples of an item.
 pub const QUADRUPLES: usize = 5;
 
-// The kinds of items, as in `shaders/trace.wgsl`.
+// The kinds of items, as in `shaders/shapes.wgsl`.
 const INSTANCE: u32 = 0;
 const PATCH: u32 = 1;
 const SPHERE: u32 = 2;

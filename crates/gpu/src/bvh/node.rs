@@ -5,7 +5,7 @@
 //! | words | what |
 //! |---|---|
 //! | 0–2 | the low corner of the node's box, as floats |
-//! | 3 | a byte for each axis: the biased exponent of the size 2ᵉ of a step; and the stack's entries |
+//! | 3 | a byte for each axis, the biased exponent of a step's size 2ᵉ; and the stack's entries |
 //! | 4–9 | a byte for each child, two words for each of the low planes of x, y and z in steps |
 //! | 10–15 | the same of the high planes |
 //! | 16–23 | the references of the children |
