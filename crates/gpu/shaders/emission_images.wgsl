@@ -35,7 +35,7 @@ fn coordinates_on_light(at: u32, p: vec3f, uv: vec2f) -> vec2f {
             let radius = number(at + 7);
             let rotation = Rows(vector(at + 9), vector(at + 12), vector(at + 15));
             let local = transposed(rotation, p - vector(at + 4));
-            return revolved_point(SPHERE, local, vec4f(radius, -radius, radius, 6.2831855)).uv;
+            return revolved_point(SPHERE, local, whole_sphere(radius)).uv;
         }
         default: {
             let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
