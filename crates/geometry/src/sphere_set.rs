@@ -5,10 +5,10 @@
 //! centre and radius of the set, and its poles on the object's z axis.
 
 use crate::placement::Placement;
-use crate::shape::{Sphere, first_root};
+use crate::shape::Sphere;
 use crate::triples::{triples, vector};
 use lanes::{Int, Real};
-use math::{Bounds3, DMat3, MACHINE_EPSILON, Point3, Ray, Transform, Vector3};
+use math::{Bounds3, DMat3, MACHINE_EPSILON, Point3, Transform, Vector3};
 use std::fmt;
 use std::sync::Arc;
 
@@ -171,13 +171,6 @@ impl SphereSet {
     pub fn moved(&self, centers: Arc<[Point3]>) -> Option<Self> {
         let fits = centers.len() == self.len() && centers.iter().all(|center| center.is_finite());
         fits.then(|| Self { centers, ..self.clone() })
-    }
-
-    /// The first hit on a sphere between two distances, the first ≥ 0.
-    #[inline]
-    pub(crate) fn intersect(center: Point3, radius: f32, ray: &Ray, range: [f32; 2]) -> Option<f32> {
-        let o = ray.o.as_dvec3() - center.as_dvec3();
-        first_root(o, ray.d.as_dvec3(), f64::from(radius), range)
     }
 
     /// Bytes of memory of the arrays.

@@ -99,7 +99,7 @@ impl RaySlabs<f32> {
         let size = size(ray.o, bounds);
         let largest = ray.d.abs().max_element();
         if is_moderate(size, largest) {
-            Self::along(&ray.d, inverse(ray.d, largest), ray.o, size * MARGIN)
+            Self::along(&ray.d, inverse(ray.d, largest), [ray.o; 2], size * MARGIN)
         } else {
             Self::everywhere()
         }
@@ -112,11 +112,12 @@ impl RaySlabs<f32> {
         Self { first, last, inverse: [f32::MIN_POSITIVE; 3], near: [1e30; 3], far: [-1e30; 3] }
     }
 
+    /// A ray that crosses first planes from `front` and last planes from `back`.
     #[inline(always)]
-    fn along(d: &Vec3, inverse: Vec3, o: Vec3, margin: f32) -> Self {
+    fn along(d: &Vec3, inverse: Vec3, [front, back]: [Vec3; 2], margin: f32) -> Self {
         let shift = Vec3::splat(margin).copysign(inverse);
         let [first, last] = planes_along(d);
-        let (near, far) = ((o + shift) * inverse, (o - shift) * inverse);
+        let (near, far) = ((front + shift) * inverse, (back - shift) * inverse);
         Self { first, last, inverse: inverse.into(), near: near.into(), far: far.into() }
     }
 
@@ -133,29 +134,34 @@ impl RaySlabs<f32> {
     }
 }
 
-/// A packet of rays from one point, and an interval around their directions ([Reshetov et al.
-/// 2005]).
+/// A packet of rays, and intervals around their origins and directions ([Reshetov et al. 2005]).
 #[derive(Clone, Copy)]
 pub(crate) struct PacketSlabs<V> {
     /// One ray in each lane.
     rays: RaySlabs<V>,
-    /// The interval as two rays, each in all lanes: their inverse directions have the least and the
-    /// greatest magnitude along each axis, so that they cross each plane before and after all rays.
+    /// The intervals as two rays, each in all lanes: their inverse directions have the least and the
+    /// greatest magnitude along each axis. They cross first planes from the foremost origin and last
+    /// planes from the rearmost one, so that one of both does before and one after all rays.
     least: RaySlabs<V>,
     greatest: RaySlabs<V>,
 }
 
 impl<V: Vector<WIDTH>> PacketSlabs<V> {
-    /// All rays must have the same origin, and all directions the same signs.
+    /// All directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn new(rays: &[(Ray, f32); WIDTH], bounds: &Bounds3) -> Self {
-        let o = rays[0].0.o;
-        let size = size(o, bounds);
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for (ray, _) in rays {
+            low = low.min(ray.o);
+            high = high.max(ray.o);
+        }
+        let size = size(low.abs().max(high.abs()), bounds);
         let margin = size * MARGIN;
         let mut lanes = [[0.0; WIDTH]; 3];
+        let mut origins = [[0.0; WIDTH]; 3];
         let (mut least, mut greatest) = (Vec3::INFINITY, Vec3::ZERO);
         let mut all_moderate = true;
         for (lane, (ray, _)) in rays.iter().enumerate() {
@@ -164,6 +170,7 @@ impl<V: Vector<WIDTH>> PacketSlabs<V> {
             let inverse = inverse(ray.d, largest);
             for axis in 0..3 {
                 lanes[axis][lane] = inverse[axis];
+                origins[axis][lane] = ray.o[axis];
             }
             least = least.min(inverse.abs());
             greatest = greatest.max(inverse.abs());
@@ -176,14 +183,21 @@ impl<V: Vector<WIDTH>> PacketSlabs<V> {
             }
             // Without `map`, which would be called, and call each intrinsic.
             let d = rays[0].0.d;
-            let least = RaySlabs::along(&d, least.copysign(d), o, margin).lanes();
-            let greatest = RaySlabs::along(&d, greatest.copysign(d), o, margin).lanes();
+            let (mut front, mut back) = (high, low);
+            for axis in 0..3 {
+                if d[axis].is_sign_negative() {
+                    (front[axis], back[axis]) = (low[axis], high[axis]);
+                }
+            }
+            let least = RaySlabs::along(&d, least.copysign(d), [front, back], margin).lanes();
+            let greatest = RaySlabs::along(&d, greatest.copysign(d), [front, back], margin).lanes();
             let mut rays: RaySlabs<V> = greatest;
             for axis in 0..3 {
-                let shift = margin.copysign(lanes[axis][0]);
+                let shift = V::splat(margin.copysign(lanes[axis][0]));
+                let o = V::load(&origins[axis]);
                 rays.inverse[axis] = V::load(&lanes[axis]);
-                rays.near[axis] = rays.inverse[axis].mul(V::splat(o[axis] + shift));
-                rays.far[axis] = rays.inverse[axis].mul(V::splat(o[axis] - shift));
+                rays.near[axis] = rays.inverse[axis].mul(o.add(shift));
+                rays.far[axis] = rays.inverse[axis].mul(o.sub(shift));
             }
             Self { rays, least, greatest }
         }

@@ -41,7 +41,7 @@ pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plain::{CurveKind, PlainShape, RevolvedKind};
 pub use plane::Plane;
-pub(crate) use quadric::first_root;
+pub(crate) use quadric::SphereRay;
 pub use sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 pub use solid::{Operation, Solid};
 pub use sphere::Sphere;

@@ -8,7 +8,7 @@ use super::plain::{PlainShape, RevolvedKind};
 use super::sample::ShapeSample;
 use crate::placement::{Placement, ROUNDING};
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec2, Vec3};
 
 /// The placement and orientation of a quadric.
 #[derive(Clone, Debug)]
@@ -147,20 +147,24 @@ fn weingarten(local: &Local) -> [DVec3; 2] {
 }
 
 /// The roots of |o + t·d|² = r² in ascending order, without cancellation.
-///
-/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two
-/// roots the one of larger size is found first; the other is the quotient of their product
-/// ([Pharr 2023 §6.8.3]). A ray that only touches has the root twice.
 pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
-    let a = d.dot(d);
-    let middle = -o.dot(d) / a;
-    let nearest = (o + d * middle).length();
-    let discriminant = (radius + nearest) * (radius - nearest) / a;
+    roots_of(o, d, d.dot(d).recip(), radius)
+}
+
+/// The same, given 1/d².
+///
+/// The discriminant is (r² − m²)/d² with m the least distance from the centre, and of the two roots
+/// the one of larger size is found first; the other is the quotient of their product ([Pharr 2023
+/// §6.8.3]). A ray that only touches has the root twice.
+#[inline(always)]
+fn roots_of(o: DVec3, d: DVec3, inverse: f64, radius: f64) -> Option<[f64; 2]> {
+    let middle = -o.dot(d) * inverse;
+    let discriminant = (radius * radius - (o + d * middle).length_squared()) * inverse;
     if discriminant < 0.0 || discriminant.is_nan() {
         return None;
     }
     let larger = middle + discriminant.sqrt().copysign(middle);
-    let other = if larger == 0.0 { 0.0 } else { (o.dot(o) - radius * radius) / a / larger };
+    let other = if larger == 0.0 { 0.0 } else { (o.dot(o) - radius * radius) * inverse / larger };
     Some(if larger < other { [larger, other] } else { [other, larger] })
 }
 
@@ -186,10 +190,27 @@ pub(super) fn revolved_roots(q: [f64; 3], o: DVec3, d: DVec3, near: DVec3) -> Op
     Some(if first < second { [first, second] } else { [second, first] })
 }
 
-/// The first of these roots at 0 < t < `t_max`.
-#[inline]
-pub(crate) fn first_root(o: DVec3, d: DVec3, radius: f64, [after, t_max]: [f32; 2]) -> Option<f32> {
-    roots(o, d, radius)?.map(|t| t as f32).into_iter().find(|&t| t > after && t < t_max)
+/// A ray prepared for tests against many spheres.
+pub(crate) struct SphereRay {
+    o: DVec3,
+    d: DVec3,
+    /// 1/d².
+    inverse: f64,
+}
+
+impl SphereRay {
+    #[inline(always)]
+    pub fn new(ray: &Ray) -> Self {
+        let d = ray.d.as_dvec3();
+        Self { o: ray.o.as_dvec3(), d, inverse: d.dot(d).recip() }
+    }
+
+    /// Where the ray first meets a sphere between two distances.
+    #[inline]
+    pub fn meets(&self, center: Vec3, radius: f32, [after, t_max]: [f32; 2]) -> Option<f32> {
+        let roots = roots_of(self.o - center.as_dvec3(), self.d, self.inverse, f64::from(radius))?;
+        roots.map(|t| t as f32).into_iter().find(|&t| t > after && t < t_max)
+    }
 }
 
 /// The root that a hit at `t` was rounded from.

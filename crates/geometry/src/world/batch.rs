@@ -87,6 +87,7 @@ impl World {
             return;
         }
         let (group, set) = (self.tables.top(), self.tables.instruction_set);
+        let size = group.bounds().diagonal().length();
         let order = coherent_order(&rays);
         let place = |turn: usize| order.as_ref().map_or(turn, |order| order[turn]);
         for first in (0..rays.len()).step_by(WIDTH) {
@@ -104,9 +105,10 @@ impl World {
             }
             let mut asked: [Q::Of<'_>; WIDTH] = std::array::from_fn(|i| queries.of(&few[i].0, few[i].1));
             stats.rays += turns.len() as u64;
+            let is_packet = are_coherent(&few, size);
             // SAFETY: the processor has the instruction set of a world.
             unsafe {
-                if are_coherent(&few) {
+                if is_packet {
                     set.run(TracePacket { group, rays: &few, queries: &mut asked, stats });
                 } else {
                     set.run(TraceEach { group, rays: &few, queries: &mut asked, stats });
@@ -116,7 +118,11 @@ impl World {
                 if !group.has_only_triangles() && !query.is_answered() && is_valid(ray) {
                     let tables = &self.tables;
                     let mut trace = Trace { tables, ray, instance: InstancePath::TOP, stats };
-                    trace.all_but_triangles(group, query);
+                    if is_packet {
+                        trace.items(group, query);
+                    } else {
+                        trace.all_but_triangles(group, query);
+                    }
                 }
                 queries.answer(place(turn), query.answer());
             }

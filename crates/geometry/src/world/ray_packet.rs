@@ -1,38 +1,42 @@
-//! Packets of sixteen coherent rays, such as those of a camera, that traverse the triangles of a
-//! group together ([Reshetov et al. 2005]).
+//! Packets of sixteen coherent rays, such as those of a camera or towards the sun, that traverse the
+//! triangles and the spheres of a group together ([Reshetov et al. 2005]).
 //!
-//! An interval around the directions finds the boxes that any of the rays may enter; these boxes
-//! and the triangles in them are tested against all rays at once.
+//! Intervals around origins and directions find the boxes that any of the rays may enter; these
+//! boxes and the primitives in them are tested against all rays at once.
 
 #![allow(unsafe_code)]
 
 use super::group::Group;
 use super::instance::InstancePath;
 use super::query::Query;
+use super::spheres::{SphereBlock, UnitRays};
 use super::stats::RayStats;
 use super::trace::{TriangleLeaves, is_valid};
 use super::triangle_block::TriangleBlock;
 use crate::bvh::{Leaves, PacketLeaves, WIDTH};
+use crate::shape::SphereRay;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
 use lanes::{Simd, Task, Vector};
 use math::Ray;
 use std::ops::Range;
 
-/// The largest difference between directions of a packet, relative to their length.
+/// The largest difference between directions of a packet, relative to their length, and between
+/// origins, relative to the size of what is traversed.
 const SPREAD: f32 = 0.1;
 
-/// Whether rays are worth tracing as a packet: they have one origin, and similar directions with
-/// the same signs and the same main axis.
+/// Whether rays are worth tracing as a packet through something of a size: they have similar
+/// origins, and similar directions with the same signs and the same main axis.
 #[inline(always)]
-pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
+pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH], size: f32) -> bool {
     let lead = rays[0].0;
     let axis = main_axis(lead.d);
-    let spread = lead.d.length_squared() * (SPREAD * SPREAD);
+    let of_origins = SPREAD * SPREAD * size * size;
+    let of_directions = lead.d.length_squared() * (SPREAD * SPREAD);
     for (ray, t_max) in rays {
-        let is_coherent = ray.o == lead.o
-            && is_valid(ray)
+        let is_coherent = is_valid(ray)
             && *t_max >= 0.0
-            && ray.d.distance_squared(lead.d) < spread
+            && ray.o.distance_squared(lead.o) <= of_origins
+            && ray.d.distance_squared(lead.d) < of_directions
             && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
             && main_axis(ray.d) == axis;
         if !is_coherent {
@@ -42,7 +46,7 @@ pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
     true
 }
 
-/// Coherent rays that traverse the triangles of the top group together.
+/// Coherent rays that traverse the triangles and the spheres of the top group together.
 pub(super) struct TracePacket<'a, Q> {
     pub group: &'a Group,
     pub rays: &'a [(Ray, f32); WIDTH],
@@ -60,15 +64,28 @@ impl<Q: Query> Task for TracePacket<'_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
         let Self { group, rays, queries, stats } = self;
-        let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i].0));
         let mut t_max = std::array::from_fn(|i| rays[i].1);
-        // SAFETY: the caller promises the instruction set.
-        unsafe {
-            let lanes = Sheared::each(&sheared);
-            let mut leaves =
-                PacketTriangles::<S, Q> { group, sheared: &sheared, lanes, queries, primitives: 0 };
-            stats.extents += group.triangles.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
-            stats.primitives += leaves.primitives;
+        if !group.triangles.is_empty() {
+            let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i].0));
+            // SAFETY: the caller promises the instruction set.
+            unsafe {
+                let lanes = Sheared::each(&sheared);
+                let mut leaves =
+                    PacketTriangles::<S, Q> { group, sheared: &sheared, lanes, queries, primitives: 0 };
+                stats.extents += group.triangles.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
+                stats.primitives += leaves.primitives;
+            }
+        }
+        if !group.spheres.blocks.is_empty() {
+            let (blocks, exact) =
+                (&*group.spheres.blocks, std::array::from_fn(|i| SphereRay::new(&rays[i].0)));
+            // SAFETY: the caller promises the instruction set.
+            unsafe {
+                let lanes = UnitRays::<S::F32x16>::each(rays);
+                let mut leaves = PacketSpheres { blocks, lanes, exact, queries, primitives: 0 };
+                stats.extents += group.spheres.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
+                stats.primitives += leaves.primitives;
+            }
         }
     }
 }
@@ -165,5 +182,49 @@ fn offer<V: Vector<WIDTH>, Q: Query>(
         let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
         let Some(hit) = hit else { continue };
         t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
+    }
+}
+
+/// The spheres of a group, tested against the rays of a packet.
+struct PacketSpheres<'a, V, Q> {
+    blocks: &'a [SphereBlock],
+    lanes: UnitRays<V>,
+    exact: [SphereRay; WIDTH],
+    queries: &'a mut [Q; WIDTH],
+    /// How many were tested, each against one ray.
+    primitives: u64,
+}
+
+impl<V: Vector<WIDTH>, Q: Query> PacketLeaves for PacketSpheres<'_, V, Q> {
+    type Block = SphereBlock;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[SphereBlock] {
+        self.blocks
+    }
+
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, _: u32, t_max: &mut [f32; WIDTH]) {
+        for block in &self.blocks[blocks] {
+            for lane in 0..block.len() {
+                self.primitives += WIDTH as u64;
+                // SAFETY: the caller promises the instruction set.
+                let ends = unsafe { V::load(t_max) };
+                let mut meeting = block.meeting(lane, &self.lanes, ends);
+                while meeting != 0 {
+                    let i = meeting.trailing_zeros() as usize % WIDTH;
+                    meeting &= meeting - 1;
+                    if t_max[i] < 0.0 {
+                        continue;
+                    }
+                    let query = &mut self.queries[i];
+                    t_max[i] = if block.offer(lane, &self.exact[i], InstancePath::TOP, query) {
+                        -1.0
+                    } else {
+                        query.t_max()
+                    };
+                }
+            }
+        }
     }
 }

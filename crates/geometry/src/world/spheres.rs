@@ -1,18 +1,26 @@
 //! The spheres of a group's sets: a tree over blocks of eight.
 //!
 //! A block is tested in floats for the spheres that the ray may hit; these few candidates are then
-//! tested in doubles. With m = c − o, unit direction d and b = m·d, the ray passes the centre at
-//! distance |m − b·d|. A sphere is rejected only where that exceeds r + E, or where the range b ±
-//! (r + E) lies outside of the ray's; E is more than twice the rounding error of m, d, b and the
-//! distance, each of which is a few ε·|m|.
+//! tested in doubles. With m = c − o and unit direction d, the point of the ray that is nearest to
+//! the centre is at m·d, clamped to the ray's range, s. A sphere is rejected only where |m − s·d|,
+//! its distance from the centre, exceeds r + E; E is more than twice the rounding error of m, d, s
+//! and the distance, each of which is a few ε·|m|.
+//!
+//! A single ray is tested against the spheres of a block together, the rays of a packet against one
+//! sphere after another.
 
 #![allow(unsafe_code)]
 
 use super::geometry::{Geometry, GeometryId};
-use crate::bvh::{BuildQuality, Bvh, Extent, Primitives, Reference};
+use super::hit::Hit;
+use super::instance::InstancePath;
+use super::query::Query;
+use super::trace::offer_all;
+use crate::bvh::{BuildQuality, Bvh, Extent, Primitives, Reference, WIDTH};
+use crate::shape::SphereRay;
 use crate::sphere_set::SphereSet;
 use lanes::Vector;
-use math::{Bounds3, MACHINE_EPSILON, Ray, Vec3};
+use math::{Bounds3, MACHINE_EPSILON, Ray, Vec2, Vec3};
 
 /// All spheres of a group.
 #[derive(Clone, Debug)]
@@ -85,26 +93,94 @@ impl Primitives for Sets<'_> {
     }
 }
 
-/// A ray prepared for tests against spheres, the same in every lane.
-pub(super) struct UnitRay<V> {
+/// The largest error of positions and distances, relative to the size of what is computed with.
+const ERROR: f32 = 16.0 * MACHINE_EPSILON;
+
+/// A ray in every lane, or one ray of a packet in each, prepared for tests against spheres.
+pub(super) struct UnitRays<V> {
     o: [V; 3],
     /// Of unit length.
     d: [V; 3],
-    /// The length of the original direction.
-    length: f32,
+    /// The length of the original direction, and more by the error.
+    length: V,
 }
 
-impl<V: Vector<{ SphereBlock::WIDTH }>> UnitRay<V> {
+impl<V> UnitRays<V> {
+    /// A ray in every lane.
+    ///
     /// # Safety
     /// The processor must have the instruction set of `V`.
     #[inline(always)]
-    pub unsafe fn new(ray: &Ray) -> Self {
-        let d = ray.d.as_dvec3();
-        let length = d.length();
+    pub unsafe fn of<const N: usize>(ray: &Ray) -> Self
+    where
+        V: Vector<N>,
+    {
+        let (d, length) = unit(ray.d);
         // SAFETY: as the caller promises.
-        let lanes = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
-        Self { o: lanes(ray.o), d: lanes((d / length).as_vec3().into()), length: length as f32 }
+        unsafe {
+            Self {
+                o: [V::splat(ray.o.x), V::splat(ray.o.y), V::splat(ray.o.z)],
+                d: [V::splat(d.x), V::splat(d.y), V::splat(d.z)],
+                length: V::splat(length),
+            }
+        }
     }
+
+    /// A ray in each lane.
+    ///
+    /// # Safety
+    /// The processor must have the instruction set of `V`.
+    #[inline(always)]
+    pub unsafe fn each<const N: usize>(rays: &[(Ray, f32); N]) -> Self
+    where
+        V: Vector<N>,
+    {
+        let (mut o, mut d, mut length) = ([[0.0; N]; 3], [[0.0; N]; 3], [0.0; N]);
+        for (lane, (ray, _)) in rays.iter().enumerate() {
+            let unit = unit(ray.d);
+            for axis in 0..3 {
+                o[axis][lane] = ray.o[axis];
+                d[axis][lane] = unit.0[axis];
+            }
+            length[lane] = unit.1;
+        }
+        // SAFETY: as the caller promises.
+        unsafe {
+            Self {
+                o: [V::load(&o[0]), V::load(&o[1]), V::load(&o[2])],
+                d: [V::load(&d[0]), V::load(&d[1]), V::load(&d[2])],
+                length: V::load(&length),
+            }
+        }
+    }
+
+    /// A bit for each sphere that a ray may meet up to `t_max`.
+    #[inline(always)]
+    fn meet<const N: usize>(&self, center: [V; 3], radius: V, t_max: V) -> u32
+    where
+        V: Vector<N>,
+    {
+        // SAFETY: a vector is the proof of the instruction set.
+        let splat = |x| unsafe { V::splat(x) };
+        let end = t_max.mul(self.length);
+        let [dx, dy, dz] = self.d;
+        let [mx, my, mz] = [center[0].sub(self.o[0]), center[1].sub(self.o[1]), center[2].sub(self.o[2])];
+        let s = mx.mul_add(dx, my.mul_add(dy, mz.mul(dz))).max(splat(0.0)).min(end);
+        let [px, py, pz] = [s.neg_mul_add(dx, mx), s.neg_mul_add(dy, my), s.neg_mul_add(dz, mz)];
+        let distance2 = px.mul_add(px, py.mul_add(py, pz.mul(pz)));
+        let size = mx.abs().add(my.abs()).add(mz.abs()).add(radius);
+        let reach = size.mul_add(splat(ERROR), radius);
+        // Squares may underflow.
+        distance2.le(reach.mul_add(reach, splat(f32::MIN_POSITIVE)))
+    }
+}
+
+/// A direction of unit length, and its original length, which is larger by the error.
+#[inline(always)]
+fn unit(d: Vec3) -> (Vec3, f32) {
+    let d = d.as_dvec3();
+    let length = d.length();
+    ((d / length).as_vec3().into(), length as f32 * (1.0 + ERROR))
 }
 
 /// Eight spheres of any sets.
@@ -179,23 +255,40 @@ impl SphereBlock {
         (Vec3::from(self.center.map(|axis| axis[lane])), self.radius[lane])
     }
 
+    /// Offers the hits on the sphere of a lane to a query; returns whether it is finished. Their
+    /// parameters are zero: only the surface point has them.
+    #[inline(always)]
+    pub fn offer<Q: Query>(
+        &self,
+        lane: usize,
+        ray: &SphereRay,
+        instance: InstancePath,
+        query: &mut Q,
+    ) -> bool {
+        let (center, radius) = self.sphere(lane);
+        let (geometry, primitive) = self.ids[lane];
+        let geometry = GeometryId(geometry);
+        offer_all(query, |after, query| {
+            let t = ray.meets(center, radius, [after, query.end()])?;
+            Some(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance })
+        })
+    }
+
     /// A bit for each sphere that the ray may meet up to `t_max`.
     #[inline(always)]
-    pub fn candidates<V: Vector<{ Self::WIDTH }>>(&self, ray: &UnitRay<V>, t_max: f32) -> u32 {
-        const ERROR: f32 = 16.0 * MACHINE_EPSILON;
-        let end = t_max * ray.length * (1.0 + ERROR);
+    pub fn met_by<V: Vector<{ Self::WIDTH }>>(&self, ray: &UnitRays<V>, t_max: f32) -> u32 {
         // SAFETY: `ray` is the proof of the instruction set.
         let (splat, load) = (|x| unsafe { V::splat(x) }, |x| unsafe { V::load(x) });
-        let [dx, dy, dz] = ray.d;
-        let [mx, my, mz] = [0, 1, 2].map(|axis| load(&self.center[axis]).sub(ray.o[axis]));
-        let b = mx.mul_add(dx, my.mul_add(dy, mz.mul(dz)));
-        let [px, py, pz] = [b.neg_mul_add(dx, mx), b.neg_mul_add(dy, my), b.neg_mul_add(dz, mz)];
-        let distance2 = px.mul_add(px, py.mul_add(py, pz.mul(pz)));
-        let radius = load(&self.radius);
-        let size = mx.abs().add(my.abs()).add(mz.abs()).add(radius);
-        let reach = size.mul_add(splat(ERROR), radius);
-        // Squares may underflow.
-        let meets = distance2.le(reach.mul_add(reach, splat(f32::MIN_POSITIVE)));
-        meets & splat(0.0).le(b.add(reach)) & b.sub(reach).le(splat(end))
+        let center = [load(&self.center[0]), load(&self.center[1]), load(&self.center[2])];
+        ray.meet(center, load(&self.radius), splat(t_max))
+    }
+
+    /// A bit for each ray of a packet that may meet the sphere of a lane up to its `t_max`.
+    #[inline(always)]
+    pub fn meeting<V: Vector<WIDTH>>(&self, lane: usize, rays: &UnitRays<V>, t_max: V) -> u32 {
+        // SAFETY: `rays` is the proof of the instruction set.
+        let splat = |x: f32| unsafe { V::splat(x) };
+        let center = [splat(self.center[0][lane]), splat(self.center[1][lane]), splat(self.center[2][lane])];
+        rays.meet(center, splat(self.radius[lane]), t_max)
     }
 }

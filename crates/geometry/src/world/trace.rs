@@ -1,22 +1,22 @@
-//! Traversal of a group by one ray: its triangles, then unbounded items, spheres, and the tree of
+//! Traversal of a group by one ray: its triangles, then spheres, unbounded items, and the tree of
 //! other shapes and instances. Instances are entered recursively.
 
 #![allow(unsafe_code)]
 
-use super::geometry::{Geometry, GeometryId};
+use super::geometry::Geometry;
 use super::group::{Group, Item};
 use super::hit::Hit;
 use super::instance::InstancePath;
 use super::query::Query;
-use super::spheres::{SphereBlock, Spheres, UnitRay};
+use super::spheres::{SphereBlock, Spheres, UnitRays};
 use super::stats::RayStats;
 use super::tables::Tables;
 use super::triangle_block::TriangleBlock;
 use crate::bvh::{Bvh, Leaves, RaySlabs, WIDTH};
-use crate::sphere_set::SphereSet;
+use crate::shape::SphereRay;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use lanes::{Real, Simd, Task, Vector};
-use math::{Ray, Vec2};
+use math::Ray;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 
@@ -53,13 +53,15 @@ impl Trace<'_> {
 
     /// The same for everything but triangles.
     pub fn all_but_triangles<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
+        self.spheres(&group.spheres, query) || self.items(group, query)
+    }
+
+    /// The same for everything but triangles and sets of spheres.
+    pub fn items<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
         for &item in &group.unbounded {
             if self.item(item, query) {
                 return true;
             }
-        }
-        if self.spheres(&group.spheres, query) {
-            return true;
         }
         if group.items.is_empty() {
             return false;
@@ -71,7 +73,6 @@ impl Trace<'_> {
         stop
     }
 
-    /// The parameters of these hits are zero: only the surface point has them.
     fn spheres<Q: Query>(&mut self, spheres: &Spheres, query: &mut Q) -> bool {
         if spheres.blocks.is_empty() {
             return false;
@@ -130,7 +131,7 @@ pub(super) fn is_valid(ray: &Ray) -> bool {
 /// Offers the hits of a primitive one after another, until one counts: a filter may reject the
 /// nearest one. `next` gives the first beyond a distance. Returns whether the query is finished.
 #[inline(always)]
-fn offer_all<Q: Query>(query: &mut Q, next: impl Fn(f32, &Q) -> Option<Hit>) -> bool {
+pub(super) fn offer_all<Q: Query>(query: &mut Q, next: impl Fn(f32, &Q) -> Option<Hit>) -> bool {
     let mut after = 0.0;
     while let Some(hit) = next(after, query) {
         after = hit.t;
@@ -410,8 +411,15 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
         let mut t_max = query.t_max();
         // SAFETY: the caller promises the instruction set.
         unsafe {
-            let lanes = UnitRay::<S::F32x8>::new(trace.ray);
-            let mut leaves = SphereLeaves { blocks: &spheres.blocks, trace, lanes, query, primitives: 0 };
+            let lanes = UnitRays::<S::F32x8>::of(trace.ray);
+            let mut leaves = SphereLeaves {
+                blocks: &spheres.blocks,
+                trace,
+                lanes,
+                exact: SphereRay::new(trace.ray),
+                query,
+                primitives: 0,
+            };
             let all = trace.all(spheres.blocks.len());
             let slabs = spheres.tree.prepare(trace.ray);
             let (extents, stop) = traverse::<S, Q>(&spheres.tree, all, &slabs, &mut t_max, &mut leaves);
@@ -424,7 +432,8 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
 struct SphereLeaves<'a, 'b, V, Q> {
     blocks: &'a [SphereBlock],
     trace: &'a Trace<'b>,
-    lanes: UnitRay<V>,
+    lanes: UnitRays<V>,
+    exact: SphereRay,
     query: &'a mut Q,
     /// How many were tested.
     primitives: u64,
@@ -442,18 +451,11 @@ impl<V: Vector<{ SphereBlock::WIDTH }>, Q: Query> Leaves for SphereLeaves<'_, '_
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for block in &self.blocks[blocks] {
             self.primitives += block.len() as u64;
-            let mut candidates = block.candidates(&self.lanes, *t_max);
+            let mut candidates = block.met_by(&self.lanes, *t_max);
             while candidates != 0 {
                 let lane = candidates.trailing_zeros() as usize % SphereBlock::WIDTH;
                 candidates &= candidates - 1;
-                let (center, radius) = block.sphere(lane);
-                let (geometry, primitive) = block.id(lane);
-                let (geometry, instance) = (GeometryId(geometry), self.trace.instance);
-                let finished = offer_all(self.query, |after, query| {
-                    let t = SphereSet::intersect(center, radius, self.trace.ray, [after, query.end()])?;
-                    Some(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance })
-                });
-                if finished {
+                if block.offer(lane, &self.exact, self.trace.instance, self.query) {
                     return true;
                 }
             }

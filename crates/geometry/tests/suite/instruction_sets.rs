@@ -44,6 +44,16 @@ fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
             assert_eq!(bits(hits.get(i)), *expected, "{set:?} {:?} in a batch", rays[i]);
             assert_eq!(occluded[i], expected.is_some(), "{set:?} {:?} in a batch", rays[i]);
         }
+        for share in [0.5, 1.0, 1.0 + f32::EPSILON, 2.0] {
+            let end = |i| hits.get(i).map_or(3.0, |hit| hit.t * share);
+            let ends: Vec<f32> = (0..rays.len()).map(end).collect();
+            let batch: RayBuffer = rays.iter().zip(&ends).map(|((ray, _), end)| (*ray, *end)).collect();
+            world.occluded_batch(batch.columns(), &KEEP_ALL, &mut occluded, &mut RayStats::default());
+            for (i, ((ray, _), end)) in rays.iter().zip(ends).enumerate() {
+                let alone = world.occluded(ray, end, &KEEP_ALL, &mut RayStats::default());
+                assert_eq!(occluded[i], alone, "{set:?} {ray:?} up to {end} in a batch");
+            }
+        }
         assert_eq!(together.rays, alone.rays);
         assert_eq!(
             (together.extents > 0, together.primitives > 0),
@@ -104,7 +114,8 @@ fn degenerate_geometry() {
     }
 }
 
-/// Coherent rays from one point, which a batch traces as packets, and some incoherent ones.
+/// Coherent rays, which a batch traces as packets, and some incoherent ones: from one point, and
+/// from several ones.
 #[test]
 fn coherent_rays() {
     let rng = &mut Rng::new(4, 0);
@@ -115,17 +126,22 @@ fn coherent_rays() {
     let positions = soup.collect();
     let indices = (0..600).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let m = Transform::translate(Vec3::new(0.1, 0.2, 0.3));
+    let centers = (0..500).map(|_| point_in(rng, 1.0)).collect();
+    let radii = (0..500).map(|_| between(rng, 0.01, 0.1)).collect();
     let geometries = vec![
         mesh(positions, indices, &Transform::IDENTITY).into(),
         ball(30, 0.2, &m).into(),
         Shape::from(Sphere::whole(&m, false, 0.3)).into(),
+        SphereSet::new(centers, radii, &Transform::IDENTITY, false).expect("a set").into(),
     ];
     let eye = Vec3::new(0.3, -0.2, 3.0);
-    let mut ray = |i: u32| match i % 100 {
-        77 => Ray::new(point_in(rng, 1.0), direction(rng), 0.0),
-        78 => Ray::new(eye, Vec3::NAN, 0.0),
-        _ => {
-            Ray::new(eye, Vec3::new((i % 150) as f32 / 75.0 - 1.0, (i / 150) as f32 / 75.0 - 1.0, -3.0), 0.0)
+    let mut ray = |i: u32| {
+        let (x, y) = ((i % 150) as f32 / 75.0 - 1.0, (i / 150) as f32 / 75.0 - 1.0);
+        match i % 100 {
+            77 => Ray::new(point_in(rng, 1.0), direction(rng), 0.0),
+            78 => Ray::new(eye, Vec3::NAN, 0.0),
+            _ if i % 2400 < 1200 => Ray::new(eye, Vec3::new(x, y, -3.0), 0.0),
+            _ => Ray::new(Vec3::new(x, y, 0.5 * x * y), Vec3::new(0.5 + 0.01 * x, 0.4, -0.9), 0.0),
         }
     };
     let rays: Vec<_> = (0..150 * 150).map(&mut ray).collect();
