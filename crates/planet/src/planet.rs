@@ -217,7 +217,7 @@ impl Planet {
         self.wake_around(&movers);
         self.sort_moving();
         self.fall(dt);
-        self.sort_stirred();
+        self.sort_stirred(dt);
         let (contacts, ranges) = self.contacts(&movers, dt);
         let struck = self.collide(&contacts, &ranges, dt);
         let before: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
@@ -274,22 +274,26 @@ impl Planet {
         self.stirred.clone_from(&self.moving);
         self.moving.iter().for_each(|&i| self.is_stirred[i as usize] = true);
         let is_settled = |i: &usize| !self.is_stirred[*i] && *i != 0 && Some(*i) != self.moon;
-        let entries: Vec<Entry> = (0..self.bodies.len()).filter(is_settled).map(|i| self.entry(i)).collect();
+        let entries: Vec<Entry> =
+            (0..self.bodies.len()).filter(is_settled).map(|i| self.entry(i, 0.0)).collect();
         self.settled.rebuild(&entries);
     }
 
     /// Puts the others into a grid of their own.
-    fn sort_stirred(&mut self) {
+    fn sort_stirred(&mut self, dt: f32) {
         let resting = self.stirred.len() - self.moving.len();
         if resting > 2000.max(self.bodies.len() / 16) {
             self.settle();
         }
-        let entries: Vec<Entry> = self.stirred.iter().map(|&i| self.entry(i as usize)).collect();
+        let entries: Vec<Entry> = self.stirred.iter().map(|&i| self.entry(i as usize, dt)).collect();
         self.stirred_grid.rebuild(&entries);
     }
 
-    fn entry(&self, body: usize) -> Entry {
-        Entry { center: self.bodies.center[body], radius: self.bodies.radius[body], body: body as u32 }
+    /// A body that is found where it may come to within `dt`.
+    fn entry(&self, body: usize, dt: f32) -> Entry {
+        let Bodies { center, radius, velocity, .. } = &self.bodies;
+        let reach = radius[body] + dt * velocity[body].length();
+        Entry { center: center[body], radius: radius[body], reach, body: body as u32 }
     }
 
     /// The contacts of all bodies that move, one after another, and where those of each begin and
@@ -342,14 +346,14 @@ impl Planet {
         for mover in movers {
             add(NOBODY, mover.center, (mover.radius, 1.0), mover.velocity);
         }
-        let distance = size + NEAR + dt * (v.length() + FASTEST).min(2.0 * v.length() + 1.0);
+        let distance = size + NEAR + dt * v.length();
         self.settled.around(p, distance, |entry| {
             // Those that have moved since are in the other grid.
             if !self.is_stirred[entry.body as usize] {
                 add(entry.body, entry.center, (entry.radius, 1.0), Vector3::ZERO);
             }
         });
-        self.stirred_grid.around(p, size + NEAR + dt * (v.length() + FASTEST), |entry| {
+        self.stirred_grid.around(p, distance, |entry| {
             let other = entry.body as usize;
             if other != body {
                 let moves = self.bodies.state[other] == State::Moving;
