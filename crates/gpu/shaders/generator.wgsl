@@ -1,11 +1,6 @@
 // Random words that follow from a seed: `sampling/src/rng.rs` and `hash.rs`, with 64-bit words as
 // pairs of their low and high half.
 
-fn wide_sum(a: vec2u, b: vec2u) -> vec2u {
-    let low = a.x + b.x;
-    return vec2u(low, a.y + b.y + select(0u, 1u, low < a.x));
-}
-
 fn wide_mixed(v: vec2u, bits: u32) -> vec2u {
     return v ^ shifted_right(v, bits);
 }

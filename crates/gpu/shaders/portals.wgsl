@@ -50,10 +50,6 @@ fn portal_sum(at: u32, corner: vec2u) -> vec2u {
     return vec2u(tables[index], tables[index + 1]);
 }
 
-fn wide_difference(a: vec2u, b: vec2u) -> vec2u {
-    return vec2u(a.x - b.x, a.y - b.y - select(0u, 1u, a.x < b.x));
-}
-
 // The sum of the cells between two corners.
 fn portal_cells(at: u32, base: vec2u, corner: vec2u) -> f32 {
     let above = wide_difference(portal_sum(at, corner), portal_sum(at, vec2u(base.x, corner.y)));

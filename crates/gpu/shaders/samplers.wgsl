@@ -1,4 +1,4 @@
-// Samplers that few scenes have. Words of 64 bits are pairs of a low and a high one.
+// Samplers that few scenes have, and words of 64 bits as pairs of a low and a high one.
 
 const MURMUR = vec2u(0x5bd1e995u, 0xc6a4a793u);
 
@@ -12,6 +12,15 @@ fn wide_product(a: vec2u, b: vec2u) -> vec2u {
     let middle = (low >> 16) + ((al * bh) & 0xffff) + ((ah * bl) & 0xffff);
     let high = ah * bh + ((al * bh) >> 16) + ((ah * bl) >> 16) + (middle >> 16);
     return vec2u((middle << 16) | (low & 0xffff), high + a.x * b.y + a.y * b.x);
+}
+
+fn wide_sum(a: vec2u, b: vec2u) -> vec2u {
+    let low = a.x + b.x;
+    return vec2u(low, a.y + b.y + select(0u, 1u, low < a.x));
+}
+
+fn wide_difference(a: vec2u, b: vec2u) -> vec2u {
+    return vec2u(a.x - b.x, a.y - b.y - select(0u, 1u, a.x < b.x));
 }
 
 // A word and what its bits from 47 on are.

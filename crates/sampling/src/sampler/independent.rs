@@ -3,8 +3,7 @@
 //! A number is a hash of its address, so that any of them can be computed on its own.
 
 use super::address::Address;
-use crate::Rng;
-use crate::hash::{hash, mix_quadruple, mix_word, unit_interval};
+use crate::hash::{mix_quadruple, mix_word, unit_interval};
 use lanes::Int;
 use math::Vec2;
 
@@ -70,12 +69,4 @@ impl Independent {
         let [a, b, ..] = mix_quadruple([x, y, I::splat(index ^ self.key), dimension]);
         [unit_interval(a), unit_interval(b)]
     }
-}
-
-/// A generator for one sample of a pixel: a sequence for the pixel, and 2¹⁶ numbers of it for
-/// the sample.
-pub(super) fn pixel_rng(pixel: [i32; 2], index: u32, dimension: u32, seed: u32) -> Rng {
-    let mut rng = Rng::from_sequence(hash(&[pixel[0] as u32, pixel[1] as u32, seed]));
-    rng.advance(index as u64 * 65536 + dimension as u64);
-    rng
 }

@@ -14,9 +14,8 @@
 //! the proposed path does not use must make the step too, if it is accepted; after a large step
 //! they are dropped, which is the same as drawing them anew.
 
-use super::independent::pixel_rng;
-use crate::Rng;
 use crate::warp::sample_two_normal;
+use crate::{Rng, hash};
 use math::{ONE_MINUS_EPSILON, Vec2};
 
 /// A point of primary sample space.
@@ -128,6 +127,14 @@ impl PrimarySample {
 /// A number wrapped to [0, 1).
 fn wrap(x: f32) -> f32 {
     (x - x.floor()).min(ONE_MINUS_EPSILON)
+}
+
+/// A generator for one sample of a pixel: a sequence for the pixel, and 2¹⁶ numbers of it for
+/// the sample.
+fn pixel_rng(pixel: [i32; 2], index: u32, dimension: u32, seed: u32) -> Rng {
+    let mut rng = Rng::from_sequence(hash(&[pixel[0] as u32, pixel[1] as u32, seed]));
+    rng.advance(index as u64 * 65536 + dimension as u64);
+    rng
 }
 
 #[cfg(test)]
