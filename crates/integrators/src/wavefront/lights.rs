@@ -6,7 +6,7 @@
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use scene::Interfaces;
-use scene::light::{ImageInfiniteLight, Light, LightId, LightLiSample, LightSampleContext};
+use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::pass::Pass;
@@ -181,21 +181,17 @@ impl Kernel for Sample<'_, '_> {
             samples.store(Samples::NORMAL, &sample.n.to_array());
         }
         let mut others = chosen & !in_lanes;
-        for &id in pixels.scene.infinite_lights() {
-            let chosen = others & lights.eq(R::Int::splat(id.0));
-            if let Light::ImageInfinite(sky) = pixels.scene.light(id).row()
-                && sky.is_at_rest()
-                && chosen.any()
-            {
-                others = others & !chosen;
-                self.sample_sky::<R>((id, sky), Vec2::new(x, y), &lambda, chosen);
+        let ids = lights.to_array();
+        while others.any() {
+            let lane = others.bits().trailing_zeros() as usize;
+            let id = LightId(ids[lane]);
+            let same = others & lights.eq(R::Int::splat(id.0));
+            if self.sample_far::<R>(id, Vec2::new(x, y), &lambda, same) {
+                others = others & !same;
+            } else {
+                self.sample_one(id, lane);
+                others = others & R::Mask::from_bits(others.bits() & (others.bits() - 1));
             }
-        }
-        let (mut others, lights) = (others.bits(), lights.to_array());
-        while others != 0 {
-            let lane = others.trailing_zeros() as usize;
-            self.sample_one(LightId(lights[lane]), lane);
-            others &= others - 1;
         }
         let pdf = R::load(&self.samples.columns[Samples::PDF]) * pmf;
         self.samples.store(Samples::PDF, &[pdf]);
@@ -208,20 +204,38 @@ impl Sample<'_, '_> {
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
     }
 
-    /// Samples a sky, in the lanes of a mask.
+    /// Samples a light at rest that is infinitely far away, in the lanes of a mask. Others are left
+    /// to be sampled one by one.
     #[inline(always)]
-    fn sample_sky<R: Real>(
+    fn sample_far<R: Real>(
         &mut self,
-        (id, sky): (LightId, &ImageInfiniteLight),
+        id: LightId,
         u: Vec2<R>,
         lambda: &SampledWavelengths<R>,
         mask: R::Mask,
-    ) {
-        let (l, wi, pdf, is_chosen) = sky.sample_at_rest(u, lambda, self.light.is_none());
-        let mask = mask & is_chosen;
-        let light = self.pass.pixels.scene.light(id);
+    ) -> bool {
+        let (light, is_chosen) = (self.pass.pixels.scene.light(id), self.light.is_none());
+        let (l, wi, pdf, mask) = match light.row() {
+            Light::ImageInfinite(sky) if sky.is_at_rest() => {
+                let (l, wi, pdf, has_light) = sky.sample_at_rest(u, lambda, is_chosen);
+                (l, wi, pdf, mask & has_light)
+            }
+            // Left to the BSDF.
+            Light::UniformInfinite(_) if is_chosen => return true,
+            Light::UniformInfinite(sky) => {
+                let (l, wi, pdf) = sky.sample(u, lambda);
+                (l, wi, pdf, mask)
+            }
+            Light::Distant(sun) if sun.motion.is_none() => (
+                sun.radiance.sample(lambda),
+                Vec3::from_array(sun.w.to_array().each(R::splat)),
+                R::one(),
+                mask,
+            ),
+            _ => return false,
+        };
         let passes = self.direct.interfaces(light) == Interfaces::Pass;
-        let is = [true, false, true, passes];
+        let is = [true, light.is_delta(), true, passes];
         let samples = &mut *self.samples;
         for (lanes, is) in samples.masks.iter_mut().zip(is) {
             *lanes |= if is { mask.bits() } else { 0 };
@@ -229,6 +243,7 @@ impl Sample<'_, '_> {
         samples.blend(0, mask, &l.0);
         samples.blend(Samples::WI, mask, &wi.to_array());
         samples.blend(Samples::PDF, mask, &[pdf]);
+        true
     }
 
     /// Samples the light of one lane.

@@ -6,6 +6,7 @@
 //! to them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
 use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
+use lanes::Real;
 use math::{Point2, Ray, Vec3, Vector3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -21,6 +22,16 @@ pub struct UniformInfiniteLight {
 }
 
 impl UniformInfiniteLight {
+    /// Directions chosen by `u`: radiance, direction and density per solid angle.
+    #[inline(always)]
+    pub fn sample<R: Real>(
+        &self,
+        u: Point2<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> (SampledSpectrum<R>, Vector3<R>, R) {
+        (self.radiance.sample(lambda), warp::sample_uniform_sphere(u), R::splat(Self::pdf(false)))
+    }
+
     fn pdf(allow_incomplete: bool) -> f32 {
         if allow_incomplete { 0.0 } else { 1.0 / (4.0 * PI) }
     }
@@ -54,9 +65,8 @@ impl LightModel for UniformInfiniteLight {
         if allow_incomplete {
             return None;
         }
-        let wi = warp::sample_uniform_sphere(u);
-        let l = self.radiance.sample(lambda);
-        Some(LightLiSample { l, wi, pdf: Self::pdf(false), p: None, n: Vec3::ZERO })
+        let (l, wi, pdf) = self.sample(u, lambda);
+        Some(LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO })
     }
 
     fn pdf_li(
