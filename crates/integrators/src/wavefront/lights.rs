@@ -4,7 +4,7 @@
 //! numbers are (`numbers.rs`).
 
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
-use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
+use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use scene::Interfaces;
 use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
@@ -101,6 +101,7 @@ impl Samples {
     const PDF: usize = N + 3;
     const P: usize = N + 4;
     const P_ERROR: usize = N + 7;
+    /// Follows the error.
     const NORMAL: usize = N + 10;
 
     /// Sets numbers of all lanes.
@@ -186,7 +187,7 @@ impl Kernel for Sample<'_, '_> {
             let lane = others.bits().trailing_zeros() as usize;
             let id = LightId(ids[lane]);
             let same = others & lights.eq(R::Int::splat(id.0));
-            if self.sample_far::<R>(id, Vec2::new(x, y), &lambda, same) {
+            if self.sample_at_rest::<R>(id, (p, Vec2::new(x, y)), &lambda, same) {
                 others = others & !same;
             } else {
                 self.sample_one(id, lane);
@@ -204,38 +205,38 @@ impl Sample<'_, '_> {
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
     }
 
-    /// Samples a light at rest that is infinitely far away, in the lanes of a mask. Others are left
-    /// to be sampled one by one.
+    /// Samples a light at rest from points, in the lanes of a mask. Gives whether it did: lights of
+    /// other kinds are left to be sampled one by one.
     #[inline(always)]
-    fn sample_far<R: Real>(
+    fn sample_at_rest<R: Real>(
         &mut self,
         id: LightId,
-        u: Vec2<R>,
+        (from, u): (Point3<R>, Vec2<R>),
         lambda: &SampledWavelengths<R>,
         mask: R::Mask,
     ) -> bool {
         let (light, is_chosen) = (self.pass.pixels.scene.light(id), self.light.is_none());
-        let (l, wi, pdf, mask) = match light.row() {
-            Light::ImageInfinite(sky) if sky.is_at_rest() => {
-                let (l, wi, pdf, has_light) = sky.sample_at_rest(u, lambda, is_chosen);
-                (l, wi, pdf, mask & has_light)
-            }
-            // Left to the BSDF.
-            Light::UniformInfinite(_) if is_chosen => return true,
+        let (l, wi, pdf, has_light) = match light.row() {
+            Light::ImageInfinite(sky) if sky.is_at_rest() => sky.sample_at_rest(u, lambda, is_chosen),
             Light::UniformInfinite(sky) => {
                 let (l, wi, pdf) = sky.sample(u, lambda);
-                (l, wi, pdf, mask)
+                // A chosen one is left to the BSDF.
+                (l, wi, pdf, R::Mask::splat(!is_chosen))
             }
-            Light::Distant(sun) if sun.motion.is_none() => (
-                sun.radiance.sample(lambda),
-                Vec3::from_array(sun.w.to_array().each(R::splat)),
-                R::one(),
-                mask,
-            ),
+            Light::Distant(sun) if sun.motion.is_none() => {
+                (sun.radiance.sample(lambda), splat(sun.w), R::one(), R::Mask::splat(true))
+            }
+            Light::Point(lamp) if lamp.motion.is_none() => {
+                let (l, wi, is_apart) = lamp.sample_at_rest(from, lambda);
+                self.samples.blend(Samples::P, mask, &splat::<R>(lamp.p).to_array());
+                self.samples.blend(Samples::P_ERROR, mask, &[R::zero(); 6]);
+                (l, wi, R::one(), is_apart)
+            }
             _ => return false,
         };
+        let mask = mask & has_light;
         let passes = self.direct.interfaces(light) == Interfaces::Pass;
-        let is = [true, light.is_delta(), true, passes];
+        let is = [true, light.is_delta(), !matches!(light.row(), Light::Point(_)), passes];
         let samples = &mut *self.samples;
         for (lanes, is) in samples.masks.iter_mut().zip(is) {
             *lanes |= if is { mask.bits() } else { 0 };
@@ -269,6 +270,11 @@ impl Sample<'_, '_> {
         }
         samples.set(lane, Samples::NORMAL, &n.to_array());
     }
+}
+
+#[inline(always)]
+fn splat<R: Real>(v: Vector3) -> Vector3<R> {
+    Vec3::from_array(v.to_array().each(R::splat))
 }
 
 #[inline(always)]

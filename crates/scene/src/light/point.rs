@@ -4,6 +4,7 @@
 //! [Pharr 2023 §12.2].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
+use lanes::{Each, Real};
 use math::{AnimatedTransform, Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vec3, Vector3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -25,6 +26,27 @@ impl PointLight {
     pub fn position(&self, time: f32) -> Point3 {
         self.motion.as_ref().map_or(self.p, |motion| motion.at(time).point(self.p))
     }
+
+    /// Light at rest that arrives at points: irradiance on a perpendicular surface, direction to the
+    /// light, and where there is one.
+    #[inline(always)]
+    pub fn sample_at_rest<R: Real>(
+        &self,
+        from: Point3<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> (SampledSpectrum<R>, Vector3<R>, R::Mask) {
+        let p = Vec3::from_array(self.p.to_array().each(R::splat));
+        let (wi, distance2, is_apart) = towards(p, from);
+        (self.intensity.sample(lambda) / distance2, wi, is_apart)
+    }
+}
+
+/// The direction to a point, the square of its distance, and whether that is above zero.
+#[inline(always)]
+fn towards<R: Real>(p: Point3<R>, from: Point3<R>) -> (Vector3<R>, R, R::Mask) {
+    let way = p - from;
+    let distance2 = way.length_squared();
+    (way / distance2.sqrt(), distance2, distance2.gt(R::zero()))
 }
 
 /// Bounds of the point over all times.
@@ -40,12 +62,10 @@ pub(super) fn sample_point(
     context: &LightSampleContext,
     l: impl FnOnce(Vector3, f32) -> SampledSpectrum,
 ) -> Option<LightLiSample> {
-    let to_light = p - context.p.p;
-    let distance2 = to_light.length_squared();
-    if distance2 == 0.0 {
+    let (wi, distance2, is_apart) = towards(p, context.p.p);
+    if !is_apart {
         return None;
     }
-    let wi = to_light / distance2.sqrt();
     let l = l(-wi, distance2);
     (!l.is_black()).then(|| LightLiSample { l, wi, pdf: 1.0, p: Some(Point3Error::exact(p)), n: Vec3::ZERO })
 }
