@@ -13,7 +13,7 @@ pub use render::{Changes, DisplayOptions, LiveOptions, Render, Resume};
 #[cfg(feature = "gpu")]
 use crate::device::{DeviceChoice, Restir};
 use crate::help;
-use crate::values::{pixel, time};
+use crate::values::{pixel, share, time};
 
 /// A physically based renderer.
 #[derive(Debug, Parser)]
@@ -264,7 +264,7 @@ pub struct View {
     pub frames: u32,
     /// Draw the scene twice with one camera: ray traced on the left of a slider, and rasterised by
     /// the GPU on its right. SHARE is where the slider is, from 0 to 1. [without SHARE: 0.5]
-    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet")]
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet", value_parser = share)]
     pub split: Option<f32>,
     /// Write the last frame of that path, which is the scene's own view; with --split the whole
     /// picture of it, with all samples per pixel on the left of the slider.

@@ -101,4 +101,9 @@ fn a_split_view_reports_both_sides() {
     } else {
         assert!(finished.out.contains("no GPU"), "{}", finished.out);
     }
+    for share in ["2", "-0.1", "nan", "x"] {
+        let split = format!("--split={share}");
+        let wrong = folder.alhazen(&["view", "scene.pbrt", "--headless", "--frames", "1", &split]).expect(2);
+        assert!(wrong.err.contains("expected a number from 0 to 1"), "{wrong:?}");
+    }
 }
