@@ -57,8 +57,8 @@ impl Page {
         commands
     }
 
-    /// The page with what its commands draw, and links to its neighbours. The lines of each block of
-    /// commands are drawn together, and it is told whether they are compared.
+    /// The page with what its commands draw, and links to its neighbours. The lines of a block are
+    /// drawn together, and it is told whether they are compared.
     pub fn to_html(
         &self,
         draw: impl Fn(&[&str], bool) -> Result<Vec<Drawn>, String>,
