@@ -255,6 +255,10 @@ pub struct View {
     /// that needs.
     #[arg(long, value_name = "MS", default_value_t = 33, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub frame_time: u32,
+    /// Samples per pixel of a picture in motion: 4 make its edges smoother than 1, and its pixels
+    /// larger, or frames longer.
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub moving_spp: u32,
     /// Open no window, but render a camera path, once around what the camera looks at, or a walk
     /// over the planet, and report the times of its frames.
     #[arg(long)]

@@ -81,6 +81,10 @@ fn the_last_frame_is_written() {
     let arguments = ["view", "scene.pbrt", "--headless", "--frames", "2", "-o", "frame.png", "--json"];
     assert_eq!(folder.alhazen(&arguments).expect(0).json()["frames"].as_u64(), Some(2));
     assert_eq!(folder.files(), ["frame.png", "scene.pbrt"]);
+    let smooth = ["view", "scene.pbrt", "--headless", "--frames", "1", "--moving-spp", "4", "--json"];
+    let json = folder.alhazen(&smooth).expect(0).json();
+    assert_eq!(json["samples_per_pixel"].as_u64(), Some(4));
+    folder.alhazen(&["view", "scene.pbrt", "--headless", "--moving-spp", "0"]).expect(2);
     let missing = ["view", "scene.pbrt", "--headless", "--frames", "1", "-o", "missing/frame.png"];
     folder.alhazen(&missing).expect(1);
 }
