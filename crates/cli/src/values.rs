@@ -41,6 +41,12 @@ pub fn stops(text: &str) -> Result<f32, String> {
     stops.ok_or_else(|| "expected a number of stops from -64 to 64".into())
 }
 
+/// A share, such as where a slider is.
+pub fn share(text: &str) -> Result<f32, String> {
+    let share = text.parse().ok().filter(|share: &f32| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "expected a number from 0 to 1".into())
+}
+
 /// A light that becomes white: kelvin, or x and y.
 pub fn white(text: &str) -> Result<DisplayWhite, String> {
     let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();

@@ -11,7 +11,7 @@ use alhazen::description::Diagnostic;
 use alhazen::import::Files;
 use alhazen::integrators::Control;
 use view::planet::{Outing, PlanetReport, Spent};
-use view::{Renderer, Report, Stages, World};
+use view::{Renderer, Report, Shot, Stages, World};
 
 use crate::args::View;
 use crate::console::say;
@@ -65,6 +65,7 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     }
     let mut flight = world.flight();
     let mut renderer = Renderer::new(Arc::new(world), Duration::from_millis(arguments.frame_time.into()));
+    renderer.aim(Shot { samples: arguments.moving_spp, ..renderer.shot().clone() });
     #[cfg(feature = "gpu")]
     if let Some(kernels) = kernels {
         renderer.move_to(kernels, arguments.restir.map(Into::into));

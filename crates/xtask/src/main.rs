@@ -35,7 +35,7 @@ usage: cargo xtask TASK
   gallery [NAME…]
              the pages of docs/gallery with these in their names, with their pictures
   scenes [NAME…]
-             large scenes made of formulas, into target/scenes: car, forest,
+             large scenes made of formulas, into target/scenes: car, forest, head,
              planet
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate
   wgsl       translate the laws that the GPU engine shares into its shaders";

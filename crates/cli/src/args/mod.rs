@@ -13,7 +13,7 @@ pub use render::{Changes, DisplayOptions, LiveOptions, Render, Resume};
 #[cfg(feature = "gpu")]
 use crate::device::{DeviceChoice, Restir};
 use crate::help;
-use crate::values::{pixel, time};
+use crate::values::{pixel, share, time};
 
 /// A physically based renderer.
 #[derive(Debug, Parser)]
@@ -255,6 +255,10 @@ pub struct View {
     /// that needs.
     #[arg(long, value_name = "MS", default_value_t = 33, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub frame_time: u32,
+    /// Samples per pixel of a picture in motion: 4 make its edges smoother than 1, and its pixels
+    /// larger, or frames longer.
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub moving_spp: u32,
     /// Open no window, but render a camera path, once around what the camera looks at, or a walk
     /// over the planet, and report the times of its frames.
     #[arg(long)]
@@ -264,7 +268,7 @@ pub struct View {
     pub frames: u32,
     /// Draw the scene twice with one camera: ray traced on the left of a slider, and rasterised by
     /// the GPU on its right. SHARE is where the slider is, from 0 to 1. [without SHARE: 0.5]
-    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet")]
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet", value_parser = share)]
     pub split: Option<f32>,
     /// Write the last frame of that path, which is the scene's own view; with --split the whole
     /// picture of it, with all samples per pixel on the left of the slider.

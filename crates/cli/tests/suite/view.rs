@@ -81,6 +81,10 @@ fn the_last_frame_is_written() {
     let arguments = ["view", "scene.pbrt", "--headless", "--frames", "2", "-o", "frame.png", "--json"];
     assert_eq!(folder.alhazen(&arguments).expect(0).json()["frames"].as_u64(), Some(2));
     assert_eq!(folder.files(), ["frame.png", "scene.pbrt"]);
+    let smooth = ["view", "scene.pbrt", "--headless", "--frames", "1", "--moving-spp", "4", "--json"];
+    let json = folder.alhazen(&smooth).expect(0).json();
+    assert_eq!(json["samples_per_pixel"].as_u64(), Some(4));
+    folder.alhazen(&["view", "scene.pbrt", "--headless", "--moving-spp", "0"]).expect(2);
     let missing = ["view", "scene.pbrt", "--headless", "--frames", "1", "-o", "missing/frame.png"];
     folder.alhazen(&missing).expect(1);
 }
@@ -100,5 +104,10 @@ fn a_split_view_reports_both_sides() {
         assert_eq!(folder.files(), ["both.png", "scene.pbrt"]);
     } else {
         assert!(finished.out.contains("no GPU"), "{}", finished.out);
+    }
+    for share in ["2", "-0.1", "nan", "x"] {
+        let split = format!("--split={share}");
+        let wrong = folder.alhazen(&["view", "scene.pbrt", "--headless", "--frames", "1", &split]).expect(2);
+        assert!(wrong.err.contains("expected a number from 0 to 1"), "{wrong:?}");
     }
 }

@@ -88,7 +88,7 @@ fn plot(costs: &[Cost]) -> String {
         let (at, up) = (x(first.triangles * ratio), y(ratio));
         let _ = writeln!(
             svg,
-            "<path d=\"M60 {up:.1}H{:.1}M{at:.1} 20V{:.1}\" stroke=\"#ddd\"/>\n<text x=\"52\" y=\"{:.1}\" text-anchor=\"end\">× {ratio}</text>\n<text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{:.0e}</text>",
+            "<path d=\"M60 {up:.1}H{:.1}M{at:.1} 20V{:.1}\" stroke=\"#ddd\"/>\n<text x=\"52\" y=\"{:.1}\" text-anchor=\"end\">× {ratio}</text>\n<text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{:.1e}</text>",
             WIDTH - 100.0,
             HEIGHT - 40.0,
             up + 4.0,

@@ -12,6 +12,7 @@ use crate::command::{QUICK_KERNELS, target};
 use crate::scenes::Size;
 
 /// What a command has drawn.
+#[derive(Default)]
 pub struct Drawn {
     /// The picture as a data URI.
     pub picture: String,
@@ -86,7 +87,7 @@ fn run_and_keep(
     let text = match output(&mut command) {
         Err(problem) if size == Size::Small && *name == "view" && problem.contains("no GPU: ") => {
             println!("SKIPPED, not drawn: `{line}`: there is no GPU");
-            return Ok(Drawn { picture: String::new(), cost: String::new(), text: String::new() });
+            return Ok(Drawn::default());
         }
         output => output.map_err(failed)?,
     };

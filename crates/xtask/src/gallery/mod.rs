@@ -6,6 +6,7 @@
 
 mod command;
 mod page;
+mod pages;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -37,8 +38,14 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     make_scenes(root, pages.iter().filter(|page| is_chosen(page)), Size::Whole)?;
     for (i, page) in pages.iter().enumerate().filter(|(_, page)| is_chosen(page)) {
         println!("{}", page.title);
-        let neighbours = [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)));
-        let html = page.to_html(root, &program, neighbours)?;
+        let neighbours = neighbours(&pages, i);
+        let draw = |lines: &[&str], compared: bool| {
+            if compared {
+                return command::compare(root, &program, lines);
+            }
+            lines.iter().map(|line| command::run(root, &program, line, Size::Whole, "picture")).collect()
+        };
+        let html = page.to_html(draw, neighbours)?;
         let path = root.join(PAGES).join(page.file());
         fs::write(&path, html).map_err(|error| format!("{}: {error}", path.display()))?;
     }
@@ -46,11 +53,12 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
     fs::write(&index, page::index(&pages)).map_err(|error| format!("{}: {error}", index.display()))
 }
 
-/// Runs the commands of all pages with small scenes and pictures, and with the program of tests:
-/// two at once, because most of what they do is on one core.
+/// Checks pages as they are, and runs the commands of all with small scenes and pictures, and with
+/// the program of tests: two at once, because most of what they do is on one core.
 pub fn check(root: &Path) -> Result<(), String> {
     let program = super::command::target(root).join("checked/alhazen");
     let pages = pages(root)?;
+    pages::check(root, &pages)?;
     make_scenes(root, pages.iter(), Size::Small)?;
     let commands: Vec<String> = pages.iter().flat_map(Page::commands).collect();
     let taken = AtomicUsize::new(0);
@@ -67,6 +75,11 @@ pub fn check(root: &Path) -> Result<(), String> {
         let first = run(&mut commands.iter(), "picture-1");
         first.and(last.join().map_err(|_| "a panic".to_string())?)
     })
+}
+
+/// The pages before and after one.
+fn neighbours(pages: &[Page], i: usize) -> [Option<&Page>; 2] {
+    [i.checked_sub(1), Some(i + 1)].map(|i| i.and_then(|i| pages.get(i)))
 }
 
 /// Makes the scenes of formulas that pages draw.

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd, html};
 
-use super::command::{self, Drawn};
-use crate::scenes::Size;
+use super::command::Drawn;
 
 /// A text in Markdown, which begins with its title. Its blocks `sh` have a command in each line;
 /// those of `sh compared` are compared with the last one of the block.
@@ -58,11 +57,11 @@ impl Page {
         commands
     }
 
-    /// The page with what its commands draw, and links to its neighbours.
+    /// The page with what its commands draw, and links to its neighbours. The lines of a block are
+    /// drawn together, and it is told whether they are compared.
     pub fn to_html(
         &self,
-        root: &Path,
-        program: &Path,
+        draw: impl Fn(&[&str], bool) -> Result<Vec<Drawn>, String>,
         [before, after]: [Option<&Self>; 2],
     ) -> Result<String, String> {
         let (mut events, mut inside, mut compared) = (Vec::new(), false, false);
@@ -74,12 +73,7 @@ impl Page {
                 Event::End(TagEnd::CodeBlock) if inside => inside = false,
                 Event::Text(lines) if inside => {
                     let lines: Vec<&str> = lines.lines().collect();
-                    let drawn = if compared {
-                        command::compare(root, program, &lines)?
-                    } else {
-                        let run = |line: &&str| command::run(root, program, line, Size::Whole, "picture");
-                        lines.iter().map(run).collect::<Result<Vec<Drawn>, String>>()?
-                    };
+                    let drawn = draw(&lines, compared)?;
                     let figures: String =
                         lines.into_iter().zip(drawn).map(|(line, drawn)| figure(line, drawn)).collect();
                     events.push(Event::Html(format!("<div class=\"pictures\">{figures}</div>\n").into()));

@@ -277,9 +277,9 @@ Film "rgb" "integer xresolution" 960 "integer yresolution" 540 "string filename"
 Sampler "zsobol" "integer pixelsamples" 64
 Integrator "volpath" "integer maxdepth" 16
 
-MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0.0085 0.009 0.0096 ]
+MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0.0048 0.005 0.0053 ]
 MediumInterface "" "mist"
-LookAt 1.5 -13.2 1.5   0.2 0 2.3   0 0 1
+LookAt 1.5 -13.2 0.8   0.2 0 2.2   0 0 1
 Camera "perspective" "float fov" 44
 
 WorldBegin
