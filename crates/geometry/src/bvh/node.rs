@@ -139,9 +139,10 @@ impl RaySlabs<f32> {
 pub(crate) struct PacketSlabs<V> {
     /// One ray in each lane.
     rays: RaySlabs<V>,
-    /// The intervals as two rays, each in all lanes: their inverse directions have the least and the
-    /// greatest magnitude along each axis. They cross first planes from the foremost origin and last
-    /// planes from the rearmost one, so that one of both does before and one after all rays.
+    /// The intervals as two rays, each in all lanes: their inverse directions have the least and
+    /// the greatest magnitude along each axis. They cross first planes from the foremost origin
+    /// and last planes from the rearmost one, so that one of both does before and one after all
+    /// rays.
     least: RaySlabs<V>,
     greatest: RaySlabs<V>,
 }

@@ -31,6 +31,23 @@ pub(super) trait Query {
     fn offer(&mut self, hit: Hit) -> bool;
 }
 
+/// Offers the hits of a primitive one after another, until one counts: a filter may reject the
+/// nearest one. `next` gives the first beyond a distance. Returns whether the query is finished.
+#[inline(always)]
+pub(super) fn offer_all<Q: Query>(query: &mut Q, next: impl Fn(f32, &Q) -> Option<Hit>) -> bool {
+    let mut after = 0.0;
+    while let Some(hit) = next(after, query) {
+        after = hit.t;
+        if query.offer(hit) {
+            return true;
+        }
+        if query.t_max() <= after {
+            break;
+        }
+    }
+    false
+}
+
 /// The nearest hit that the filter accepts.
 pub(super) struct Nearest<'a, F> {
     ray: &'a Ray,

@@ -1,5 +1,5 @@
-//! Packets of sixteen coherent rays, such as those of a camera or towards the sun, that traverse the
-//! triangles and the spheres of a group together ([Reshetov et al. 2005]).
+//! Packets of sixteen coherent rays, such as those of a camera or towards the sun, that traverse
+//! the triangles and the spheres of a group together ([Reshetov et al. 2005]).
 //!
 //! Intervals around origins and directions find the boxes that any of the rays may enter; these
 //! boxes and the primitives in them are tested against all rays at once.

@@ -14,8 +14,7 @@
 use super::geometry::{Geometry, GeometryId};
 use super::hit::Hit;
 use super::instance::InstancePath;
-use super::query::Query;
-use super::trace::offer_all;
+use super::query::{Query, offer_all};
 use crate::bvh::{BuildQuality, Bvh, Extent, Primitives, Reference, WIDTH};
 use crate::shape::SphereRay;
 use crate::sphere_set::SphereSet;

@@ -7,7 +7,7 @@ use super::geometry::Geometry;
 use super::group::{Group, Item};
 use super::hit::Hit;
 use super::instance::InstancePath;
-use super::query::Query;
+use super::query::{Query, offer_all};
 use super::spheres::{SphereBlock, Spheres, UnitRays};
 use super::stats::RayStats;
 use super::tables::Tables;
@@ -126,23 +126,6 @@ impl Trace<'_> {
 #[inline(always)]
 pub(super) fn is_valid(ray: &Ray) -> bool {
     ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
-}
-
-/// Offers the hits of a primitive one after another, until one counts: a filter may reject the
-/// nearest one. `next` gives the first beyond a distance. Returns whether the query is finished.
-#[inline(always)]
-pub(super) fn offer_all<Q: Query>(query: &mut Q, next: impl Fn(f32, &Q) -> Option<Hit>) -> bool {
-    let mut after = 0.0;
-    while let Some(hit) = next(after, query) {
-        after = hit.t;
-        if query.offer(hit) {
-            return true;
-        }
-        if query.t_max() <= after {
-            break;
-        }
-    }
-    false
 }
 
 /// Whether traversal in order of distance is faster.

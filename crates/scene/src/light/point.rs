@@ -27,8 +27,8 @@ impl PointLight {
         self.motion.as_ref().map_or(self.p, |motion| motion.at(time).point(self.p))
     }
 
-    /// Light at rest that arrives at points: irradiance on a perpendicular surface, direction to the
-    /// light, and where there is one.
+    /// Light at rest that arrives at points: irradiance on a perpendicular surface, direction to
+    /// the light, and where there is one.
     #[inline(always)]
     pub fn sample_at_rest<R: Real>(
         &self,
