@@ -37,6 +37,7 @@ pub mod realtime;
 mod schedule;
 mod settings;
 mod sketch;
+mod threads;
 pub mod trace;
 
 pub use clock::system_clock;
@@ -50,3 +51,4 @@ pub use picture::{InSrgb, write_picture};
 pub use schedule::PreviewSchedule;
 pub use settings::{Group, PARTS, Part, integrator_names};
 pub use sketch::draft;
+pub use threads::{available_threads, most_threads};

@@ -5,6 +5,7 @@ use std::path::Path;
 #[cfg(feature = "gpu")]
 use alhazen::device::Device;
 use alhazen::lanes::InstructionSet;
+use alhazen::{available_threads, most_threads};
 use serde_json::{Map, Value, json};
 
 use crate::args::Doctor;
@@ -13,7 +14,6 @@ use crate::failure::Failure;
 use crate::limits::{Memory, MemoryLimit};
 use crate::numbers::bytes;
 use crate::output;
-use crate::threads::{available_threads, most_threads};
 
 /// Less free space than this is reported: a picture of many layers may not fit.
 const LITTLE_SPACE: u64 = 1 << 30;

@@ -5,7 +5,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use alhazen::image::replace_file_with;
-use alhazen::import::Files;
+use alhazen::import::{Files, is_archive};
 use alhazen::{PackError, pack as write_archive};
 use serde_json::json;
 
@@ -21,7 +21,14 @@ pub fn pack(arguments: &Pack) -> Result<(), Failure> {
         return Err(Failure::Usage("a scene of standard input has no folder to pack".into()));
     }
     let path = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "zip"));
+    // Other commands know archives by this extension.
+    if !is_archive(&path) {
+        let problem = format!("the name {} of an archive needs the extension .zip", path.display());
+        return Err(Failure::Usage(problem));
+    }
     output::check_place(&path).map_err(Failure::Usage)?;
+    // Messages about its content have names relative to its folder.
+    std::fs::metadata(&arguments.scene).map_err(|error| about_file(&arguments.scene, error))?;
     let mut packed = None;
     let written = replace_file_with(&path, |file| {
         packed = Some(write_archive(&arguments.scene, &Files, BufWriter::new(file))?);

@@ -1,5 +1,6 @@
 //! Scenes built in Python.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use alhazen::import::{Argument, Placement};
@@ -8,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::scene::Scene;
-use crate::value::{Chosen, Reference, arguments, motion, read};
+use crate::value::{Chosen, Reference, argument, arguments, motion};
 
 /// Builds a scene: each call is a statement of the pbrt-v4 format, with the names of its types and
 /// parameters. Arrays of numpy are copied, so that they may be changed afterwards.
@@ -24,8 +25,11 @@ use crate::value::{Chosen, Reference, arguments, motion, read};
 /// blackbody() state what is meant. A transform is a matrix of 4 × 4 that takes
 /// columns to the world, or two of them for the start and the end of the shutter time.
 #[pyclass(frozen, module = "alhazen")]
-#[derive(Default)]
-pub struct SceneBuilder(Mutex<State>);
+pub struct SceneBuilder {
+    /// Its number: references to things of other builders are refused.
+    id: u64,
+    state: Mutex<State>,
+}
 
 #[derive(Default)]
 struct State {
@@ -35,25 +39,25 @@ struct State {
 }
 
 impl State {
-    fn name(&mut self, kind: &'static str) -> Reference {
+    fn name(&mut self, owner: u64, kind: &'static str) -> Reference {
         self.names += 1;
-        Reference { kind, name: format!("{kind}-{}", self.names) }
+        Reference { kind, name: format!("{kind}-{}", self.names), owner }
     }
 }
 
 impl SceneBuilder {
     fn state(&self) -> MutexGuard<'_, State> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn set(
         &self,
-        directive: &str,
+        (directive, part): (&str, &str),
         kind: &Bound<'_, PyAny>,
         default: &str,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
-        let (kind, arguments) = kind_of(kind, default, parameters)?;
+        let (kind, arguments) = kind_of(part, kind, default, parameters, self.id)?;
         self.state().builder.set(directive, &kind, arguments).map_err(PyValueError::new_err)
     }
 }
@@ -62,7 +66,8 @@ impl SceneBuilder {
 impl SceneBuilder {
     #[new]
     fn new() -> Self {
-        Self::default()
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self { id: NEXT.fetch_add(1, Ordering::Relaxed), state: Mutex::default() }
     }
 
     /// Sets the film: its type, by default "rgb", or alhazen.settings.film(), and parameters, such
@@ -75,34 +80,34 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let kind = kind.map_or_else(|| py.None().into_bound(py), Bound::clone);
-        self.set("Film", &kind, "rgb", parameters)
+        self.set(("Film", "film"), &kind, "rgb", parameters)
     }
 
     /// Sets the sampler: its type, such as "zsobol", or alhazen.settings.sampler.zsobol() and the
     /// like, and parameters, such as pixelsamples.
     #[pyo3(signature = (kind, /, **parameters))]
     fn sampler(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set("Sampler", kind, "", parameters)
+        self.set(("Sampler", "sampler"), kind, "", parameters)
     }
 
     /// Sets the pixel filter: its type, such as "gaussian", or alhazen.settings.filter.gaussian()
     /// and the like, and parameters.
     #[pyo3(signature = (kind, /, **parameters))]
     fn filter(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set("PixelFilter", kind, "", parameters)
+        self.set(("PixelFilter", "filter"), kind, "", parameters)
     }
 
     /// Sets the algorithm: its name, such as "path", or alhazen.settings.integrator.path() and the
     /// like, and parameters, such as maxdepth.
     #[pyo3(signature = (kind, /, **parameters))]
     fn integrator(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set("Integrator", kind, "", parameters)
+        self.set(("Integrator", "integrator"), kind, "", parameters)
     }
 
     /// Sets options of the whole scene, such as seed.
     #[pyo3(signature = (**options))]
     fn options(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        for Argument { name, values, .. } in arguments(options)? {
+        for Argument { name, values, .. } in arguments(options, self.id)? {
             self.state().builder.option(&name, values).map_err(PyValueError::new_err)?;
         }
         Ok(())
@@ -121,8 +126,8 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let kind = kind.map_or_else(|| py.None().into_bound(py), Bound::clone);
-        let (kind, arguments) = kind_of(&kind, "perspective", parameters)?;
-        let (motion, medium) = (motion(transform)?, name(medium, "medium")?);
+        let (kind, arguments) = kind_of("camera", &kind, "perspective", parameters, self.id)?;
+        let (motion, medium) = (motion(transform)?, name(medium, self.id, "medium")?);
         self.state().builder.camera(&kind, arguments, motion, medium);
         Ok(())
     }
@@ -144,9 +149,9 @@ impl SceneBuilder {
                 return Err(PyValueError::new_err(problem));
             }
         };
-        let (arguments, motion) = (arguments(parameters)?, motion(transform)?);
+        let (arguments, motion) = (arguments(parameters, self.id)?, motion(transform)?);
         let mut state = self.state();
-        let reference = state.name("texture");
+        let reference = state.name(self.id, "texture");
         state.builder.texture(&reference.name, is_spectrum, kind, arguments, motion.0[0]);
         Ok(reference)
     }
@@ -154,9 +159,9 @@ impl SceneBuilder {
     /// Adds a material: its type, such as "diffuse", and parameters, such as reflectance.
     #[pyo3(signature = (kind, /, **parameters))]
     fn material(&self, kind: &str, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Reference> {
-        let arguments = arguments(parameters)?;
+        let arguments = arguments(parameters, self.id)?;
         let mut state = self.state();
-        let reference = state.name("material");
+        let reference = state.name(self.id, "material");
         state.builder.material(&reference.name, kind, arguments);
         Ok(reference)
     }
@@ -169,9 +174,9 @@ impl SceneBuilder {
         transform: Option<&Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Reference> {
-        let (arguments, motion) = (arguments(parameters)?, motion(transform)?);
+        let (arguments, motion) = (arguments(parameters, self.id)?, motion(transform)?);
         let mut state = self.state();
-        let reference = state.name("medium");
+        let reference = state.name(self.id, "medium");
         state.builder.medium(&reference.name, kind, arguments, motion);
         Ok(reference)
     }
@@ -187,7 +192,7 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let (arguments, motion, medium) =
-            (arguments(parameters)?, motion(transform)?, name(medium, "medium")?);
+            (arguments(parameters, self.id)?, motion(transform)?, name(medium, self.id, "medium")?);
         self.state().builder.light(kind, arguments, motion, medium);
         Ok(())
     }
@@ -215,16 +220,16 @@ impl SceneBuilder {
         reverse_orientation: bool,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
-        let media = [name(inside, "medium")?, name(outside, "medium")?];
+        let media = [name(inside, self.id, "medium")?, name(outside, self.id, "medium")?];
         let placement = Placement {
             motion: motion(transform)?,
             reverse_orientation,
-            material: name(material, "material")?,
-            area_light: emission.map(area_light).transpose()?,
+            material: name(material, self.id, "material")?,
+            area_light: emission.map(|emission| area_light(emission, self.id)).transpose()?,
             media: media.iter().any(Option::is_some).then(|| media.map(Option::unwrap_or_default)),
-            object: name(object, "object")?,
+            object: name(object, self.id, "object")?,
         };
-        let arguments = arguments(parameters)?;
+        let arguments = arguments(parameters, self.id)?;
         self.state().builder.shape(kind, arguments, placement);
         Ok(())
     }
@@ -233,7 +238,7 @@ impl SceneBuilder {
     /// instances.
     fn object(&self) -> Reference {
         let mut state = self.state();
-        let reference = state.name("object");
+        let reference = state.name(self.id, "object");
         state.builder.object(&reference.name);
         reference
     }
@@ -246,8 +251,9 @@ impl SceneBuilder {
         transform: Option<&Bound<'_, PyAny>>,
         into: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let (object, motion) = (name(Some(object), "object")?.unwrap_or_default(), motion(transform)?);
-        let into = name(into, "object")?;
+        let (object, motion) =
+            (name(Some(object), self.id, "object")?.unwrap_or_default(), motion(transform)?);
+        let into = name(into, self.id, "object")?;
         self.state().builder.instance(&object, motion, into.as_deref());
         Ok(())
     }
@@ -261,16 +267,20 @@ impl SceneBuilder {
     }
 }
 
-/// The type and the parameters of a call: the type is a name, settings, or the default.
+/// The type and the parameters of a call for a part of a scene: the type is a name, settings, or
+/// the default.
 fn kind_of(
+    part: &str,
     kind: &Bound<'_, PyAny>,
     default: &str,
     parameters: Option<&Bound<'_, PyDict>>,
+    owner: u64,
 ) -> PyResult<(String, Vec<Argument>)> {
-    let mut given = arguments(parameters)?;
+    let mut given = arguments(parameters, owner)?;
     let kind = match Chosen::of(kind)? {
-        Some(Chosen { name, values, .. }) => {
-            given.extend(arguments(Some(&values))?);
+        Some(chosen) => {
+            let Chosen { name, values, .. } = chosen.for_part(part)?;
+            given.extend(arguments(Some(&values), owner)?);
             name.unwrap_or_else(|| default.to_owned())
         }
         None if kind.is_none() => default.to_owned(),
@@ -279,11 +289,11 @@ fn kind_of(
     Ok((kind, given))
 }
 
-/// The name that a reference of this kind has.
-fn name(reference: Option<&Bound<'_, PyAny>>, kind: &str) -> PyResult<Option<String>> {
+/// The name that a reference of this kind, to a thing of this builder, has.
+fn name(reference: Option<&Bound<'_, PyAny>>, owner: u64, kind: &str) -> PyResult<Option<String>> {
     let Some(value) = reference else { return Ok(None) };
     match value.cast::<Reference>() {
-        Ok(reference) if reference.get().kind == kind => Ok(Some(reference.get().name.clone())),
+        Ok(reference) if reference.get().kind == kind => reference.get().of(owner).map(Some),
         Ok(reference) => {
             Err(PyTypeError::new_err(format!("expected a {kind}, not a {}", reference.get().kind)))
         }
@@ -292,13 +302,10 @@ fn name(reference: Option<&Bound<'_, PyAny>>, kind: &str) -> PyResult<Option<Str
 }
 
 /// What a shape emits.
-fn area_light(emission: &Bound<'_, PyAny>) -> PyResult<(String, Vec<Argument>)> {
+fn area_light(emission: &Bound<'_, PyAny>, owner: u64) -> PyResult<(String, Vec<Argument>)> {
     let arguments = match emission.cast::<PyDict>() {
-        Ok(parameters) => arguments(Some(parameters))?,
-        Err(_) => {
-            let (type_name, values) = read(emission)?;
-            vec![Argument { name: "L".into(), type_name: type_name.map(str::to_owned), values }]
-        }
+        Ok(parameters) => arguments(Some(parameters), owner)?,
+        Err(_) => vec![argument("L".into(), emission, owner)?],
     };
     Ok(("diffuse".into(), arguments))
 }

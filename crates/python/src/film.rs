@@ -8,11 +8,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use alhazen::SavedRender;
 use alhazen::film::{FilmFileError, ReadLimits};
 use alhazen::image::replace_file_with;
-use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
-use crate::picture::{Picture, image_error};
+use crate::picture::{Picture, image_error, named};
 
 /// The film of a render or of some of its shards, with exact sums: merged in any order, shards give
 /// the bits of the whole. It is what the command line writes with --checkpoint.
@@ -70,7 +70,7 @@ impl Film {
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
         let saved = py.detach(|| {
-            let file = File::open(&path)?;
+            let file = File::open(&path).map_err(|error| named(&path, &error))?;
             let limits = ReadLimits::for_file(file.metadata()?.len());
             SavedRender::read(BufReader::new(file), &limits)
         });
@@ -94,7 +94,13 @@ impl Film {
 
     /// Writes its film file, which replaces one that is there only when it is whole.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
-        self.with(py, |saved| replace_file_with(&path, |file| saved.write(BufWriter::new(file)).map(|_| ())))
+        let at = |error| match error {
+            FilmFileError::Io(error) => FilmFileError::Io(named(&path, &error)),
+            other => other,
+        };
+        self.with(py, |saved| {
+            replace_file_with(&path, |file| saved.write(BufWriter::new(file)).map(|_| ())).map_err(at)
+        })
     }
 
     /// Adds another film of the same render, as a Film or as the bytes of a film file. Raises
@@ -155,7 +161,7 @@ impl Film {
 /// The exception for an error of film files.
 pub fn film_error(error: FilmFileError) -> PyErr {
     match error {
-        FilmFileError::Io(error) => PyOSError::new_err(error),
+        FilmFileError::Io(error) => error.into(),
         FilmFileError::Limits(text) => PyMemoryError::new_err(text),
         error => PyValueError::new_err(error.to_string()),
     }

@@ -68,7 +68,7 @@ pub fn compile(
     };
     if let Some(integrator) = integrator {
         match Chosen::of(integrator)? {
-            Some(chosen) => choose(&mut overrides, chosen)?,
+            Some(chosen) => choose(&mut overrides, chosen.for_part("integrator")?)?,
             None => overrides.integrator = Some(integrator.extract()?),
         }
     }
@@ -154,7 +154,7 @@ impl Job {
     ///
     /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
     /// threads: their number, by default one for each core. progress: called with a Progress after
-    /// passes. preview: called with an Image now and then.
+    /// passes. preview: called with an Image now and then, at last with the result.
     ///
     /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
     #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
@@ -166,10 +166,13 @@ impl Job {
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
         preview: Option<Py<PyAny>>,
-    ) -> PyResult<Picture> {
+    ) -> PyResult<Py<Picture>> {
+        if let Some(noise) = noise.filter(|&noise| !(noise > 0.0 && noise.is_finite())) {
+            return Err(PyValueError::new_err(format!("noise is a number above 0, not {noise}")));
+        }
+        let callbacks = Callbacks::new(py, progress, preview)?;
         let time = time.map(Duration::try_from_secs_f64).transpose();
         let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
-        let callbacks = Callbacks { progress, preview };
         let picture = self.with(py, |job| {
             let passes = 0..self.order.passes;
             job.restart(false).map_err(image_error)?;
@@ -177,7 +180,11 @@ impl Job {
                 Picture::collect(&job.header().development(job.session.state()))
             })
         })?;
-        Picture::new(py, picture)
+        let picture = Py::new(py, Picture::new(py, picture)?)?;
+        if let Some(preview) = &callbacks.preview {
+            preview.call1(py, (&picture,))?;
+        }
+        Ok(picture)
     }
 
     /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
@@ -207,7 +214,7 @@ impl Job {
                 format!("shard {index} of {count} is empty: there are only {} passes", order.passes);
             return Err(PyValueError::new_err(problem));
         }
-        let (limits, callbacks) = (Limits::default(), Callbacks { progress, preview });
+        let (limits, callbacks) = (Limits::default(), Callbacks::new(py, progress, preview)?);
         let bytes = self.with(py, |job| {
             job.restart(alternate).map_err(image_error)?;
             drive(job, passes, &limits, threads, &callbacks, |job| {
@@ -276,7 +283,7 @@ pub fn render(
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
     preview: Option<Py<PyAny>>,
-) -> PyResult<Picture> {
+) -> PyResult<Py<Picture>> {
     let job = compile(py, scene, spp, resolution, integrator, seed, crop, layers, settings)?;
     job.render(py, time, noise, threads, progress, preview)
 }

@@ -1,6 +1,6 @@
 //! Pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use alhazen::image::{
     self, Attribute, DisplaySettings, DisplayView, DisplayWhite, Format, Image, ImageError, ImageMetadata,
@@ -9,7 +9,7 @@ use alhazen::image::{
 use alhazen::{InSrgb, write_picture};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyKeyError, PyMemoryError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PySlice, PyTuple};
 
@@ -132,7 +132,7 @@ impl Picture {
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
         let collected = py.detach(|| Self::collect(&image::open(&path)?));
-        Self::new(py, collected.map_err(image_error)?)
+        Self::new(py, collected.map_err(|error| image_error(at(&path, error)))?)
     }
 
     /// The number of columns.
@@ -197,15 +197,16 @@ impl Picture {
             Some((first, count)) => self.view(py, first, count)?,
             None => self.pixels.bind(py).clone().into_any(),
         };
-        let view = match dtype {
-            Some(dtype) => {
-                let arguments = PyDict::new(py);
-                arguments.set_item("copy", copy.unwrap_or(false))?;
-                view.call_method("astype", (dtype,), Some(&arguments))?
+        let element = view.getattr("dtype")?;
+        let is_same = dtype.as_ref().is_none_or(|dtype| element.eq(dtype).unwrap_or(false));
+        match (dtype, copy) {
+            (Some(_), Some(false)) if !is_same => {
+                Err(PyValueError::new_err(format!("values are {element}, others need a copy")))
             }
-            None => view,
-        };
-        if copy == Some(true) { view.call_method0("copy") } else { Ok(view) }
+            (Some(dtype), _) if !is_same => view.call_method1("astype", (dtype,)),
+            (_, Some(true)) => view.call_method0("copy"),
+            _ => Ok(view),
+        }
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, key: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -239,7 +240,8 @@ impl Picture {
         white_balance: Option<f32>,
     ) -> PyResult<()> {
         let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
-        py.detach(|| write_picture(&image, &path, &display)).map_err(image_error)
+        let written = py.detach(|| write_picture(&image, &path, &display));
+        written.map_err(|error| image_error(at(&path, error)))
     }
 
     /// The bytes of a PNG file that shows the picture through a view.
@@ -294,13 +296,29 @@ fn display(view: &str, exposure: f32, white_balance: Option<f32>) -> PyResult<Di
         }
         other => other.map(DisplayWhite::Kelvin),
     };
+    if !exposure.is_finite() {
+        return Err(PyValueError::new_err("exposure is a finite number"));
+    }
     Ok(DisplaySettings { view, exposure, white })
+}
+
+/// The error with the name of the file.
+fn at(path: &Path, error: ImageError) -> ImageError {
+    match error {
+        ImageError::Io(error) => ImageError::Io(named(path, &error)),
+        other => other,
+    }
+}
+
+/// The error of the system with the name of the file.
+pub fn named(path: &Path, error: &std::io::Error) -> std::io::Error {
+    std::io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
 /// The exception for an error of pictures.
 pub fn image_error(error: ImageError) -> PyErr {
     match error {
-        ImageError::Io(error) => PyOSError::new_err(error),
+        ImageError::Io(error) => error.into(),
         ImageError::Limits(text) => PyMemoryError::new_err(text),
         error => PyValueError::new_err(error.to_string()),
     }

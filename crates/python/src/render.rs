@@ -12,8 +12,8 @@ use std::time::Duration;
 
 use alhazen::image::ImageError;
 use alhazen::integrators::{Control, Limits, PassError, Session};
-use alhazen::{Job, PreviewSchedule, system_clock};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
+use alhazen::{Job, PreviewSchedule, available_threads, most_threads, system_clock};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::picture::{Collected, Picture, image_error};
@@ -58,6 +58,19 @@ pub struct Callbacks {
 }
 
 impl Callbacks {
+    /// Refuses what cannot be called.
+    pub fn new(py: Python, progress: Option<Py<PyAny>>, preview: Option<Py<PyAny>>) -> PyResult<Self> {
+        for (name, callback) in [("progress", &progress), ("preview", &preview)] {
+            if let Some(callback) = callback.as_ref().map(|callback| callback.bind(py))
+                && !callback.is_callable()
+            {
+                let problem = format!("{name} is a function, not {}", callback.repr()?);
+                return Err(PyTypeError::new_err(problem));
+            }
+        }
+        Ok(Self { progress, preview })
+    }
+
     fn call(&self, py: Python, event: Event) -> PyResult<()> {
         match event {
             Event::Pass(progress) => {
@@ -72,9 +85,14 @@ impl Callbacks {
     }
 }
 
-/// A pool of this number of threads; 0 is one for each core.
-fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+/// A pool of this number of threads, by default one for each core.
+fn pool(threads: Option<usize>) -> PyResult<rayon::ThreadPool> {
+    let (cores, most) = (available_threads(), most_threads());
+    if let Some(threads) = threads.filter(|threads| !(1..=most).contains(threads)) {
+        let problem = format!("threads is from 1 to {most} on this machine of {cores} cores, not {threads}");
+        return Err(PyValueError::new_err(problem));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))
 }
 
@@ -88,7 +106,7 @@ pub fn drive<T: Send>(
     callbacks: &Callbacks,
     result: impl FnOnce(&Job) -> Result<T, ImageError> + Send,
 ) -> PyResult<T> {
-    let pool = pool(threads.unwrap_or(0))?;
+    let pool = pool(threads)?;
     let cancel = Arc::new(AtomicBool::new(false));
     let control = Control::new(cancel.clone(), system_clock());
     let (sender, receiver) = mpsc::channel();

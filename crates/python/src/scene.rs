@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::description::schema::Settings;
-use alhazen::description::{Diagnostic, FileId, SourceMap};
+use alhazen::description::{Diagnostic, FileId, SourceMap, Span};
 use alhazen::import::{AssetSource, Files, Imported, MemoryAssets, SceneBuilder, import, is_archive};
 use alhazen::{ConvertError, Fingerprint, PackError, integrator_names, pack, pack_converted};
 use pyo3::create_exception;
@@ -151,6 +151,12 @@ pub fn scene_error(diagnostics: &[Diagnostic], sources: &SourceMap) -> PyErr {
     SceneError::new_err(lines(diagnostics, sources).join("\n"))
 }
 
+/// The statement of a scene that was built: its directive and type.
+fn call(sources: &SourceMap, span: Span) -> Option<String> {
+    let line = (sources.name(span.file) == BUILT).then(|| sources.line(span))?;
+    Some(line.split(' ').take(2).take_while(|word| *word != "at").collect::<Vec<_>>().join(" "))
+}
+
 /// A line for each diagnostic: place, severity, code, message and help.
 pub fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
     let line = |diagnostic: &Diagnostic| {
@@ -159,7 +165,8 @@ pub fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
             String::new()
         } else {
             let at = sources.position(span);
-            format!("{}:{}:{}: ", sources.name(span.file), at.line, at.column)
+            let call = call(sources, span).map_or(String::new(), |call| format!("in {call}: "));
+            format!("{}:{}:{}: {call}", sources.name(span.file), at.line, at.column)
         };
         let severity = if diagnostic.is_error() { "error" } else { "warning" };
         let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));

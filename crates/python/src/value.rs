@@ -23,6 +23,19 @@ pub struct Reference {
     /// Its name in the scene.
     #[pyo3(get)]
     pub name: String,
+    /// The number of its builder.
+    pub owner: u64,
+}
+
+impl Reference {
+    /// Its name in the scene of the builder with this number.
+    pub fn of(&self, builder: u64) -> PyResult<String> {
+        if self.owner != builder {
+            let problem = format!("the {} {:?} is of another SceneBuilder", self.kind, self.name);
+            return Err(PyValueError::new_err(problem));
+        }
+        Ok(self.name.clone())
+    }
 }
 
 #[pymethods]
@@ -68,16 +81,27 @@ pub fn spectrum(values: Py<PyAny>) -> Typed {
     Typed { type_name: "spectrum", values }
 }
 
-/// All parameters of a call.
-pub fn arguments(parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<Argument>> {
+/// All parameters of a call of the builder with this number.
+pub fn arguments(parameters: Option<&Bound<'_, PyDict>>, owner: u64) -> PyResult<Vec<Argument>> {
     let Some(parameters) = parameters else { return Ok(Vec::new()) };
-    let argument = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+    let named = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let name: String = name.extract()?;
-        let (type_name, values) = read(&value)
-            .map_err(|error| PyTypeError::new_err(format!("`{name}`: {}", error.value(value.py()))))?;
-        Ok(Argument { name, type_name: type_name.map(str::to_owned), values })
+        argument(name, &value, owner)
     };
-    parameters.iter().filter(|(_, value)| !value.is_none()).map(argument).collect()
+    parameters.iter().filter(|(_, value)| !value.is_none()).map(named).collect()
+}
+
+/// A parameter of a call; errors name it.
+pub fn argument(name: String, value: &Bound<'_, PyAny>, owner: u64) -> PyResult<Argument> {
+    let py = value.py();
+    let (type_name, values, row) = read(value, owner).map_err(|error| {
+        let problem = format!("`{name}`: {}", error.value(py));
+        match error.is_instance_of::<PyTypeError>(py) {
+            true => PyTypeError::new_err(problem),
+            false => PyValueError::new_err(problem),
+        }
+    })?;
+    Ok(Argument { name, type_name: type_name.map(str::to_owned), values, row })
 }
 
 /// Settings of a part of a scene: an object of the class `alhazen.settings.Settings`.
@@ -105,18 +129,31 @@ impl<'py> Chosen<'py> {
             })
             .transpose()
     }
+
+    /// The settings, if they are those of this part.
+    pub fn for_part(self, part: &str) -> PyResult<Self> {
+        if self.part != part {
+            let problem = format!("expected settings of the {part}, not of the {}", self.part);
+            return Err(PyTypeError::new_err(problem));
+        }
+        Ok(self)
+    }
 }
 
-/// A value, with its type where that is stated.
-pub fn read(value: &Bound<'_, PyAny>) -> PyResult<(Option<&'static str>, ArgumentValues)> {
+/// A value, with its type where that is stated, and the length of its rows where it has some.
+fn read(
+    value: &Bound<'_, PyAny>,
+    owner: u64,
+) -> PyResult<(Option<&'static str>, ArgumentValues, Option<usize>)> {
     if let Ok(typed) = value.cast::<Typed>() {
         let typed = typed.get();
-        return Ok((Some(typed.type_name), read(typed.values.bind(value.py()))?.1));
+        let (_, values, row) = read(typed.values.bind(value.py()), owner)?;
+        return Ok((Some(typed.type_name), values, row));
     }
     if let Ok(reference) = value.cast::<Reference>() {
         let reference = reference.get();
         let type_name = (reference.kind == "texture").then_some("texture");
-        return Ok((type_name, ArgumentValues::Strings(vec![reference.name.clone()])));
+        return Ok((type_name, ArgumentValues::Strings(vec![reference.of(owner)?]), None));
     }
     let plain = if let Ok(flag) = value.cast::<PyBool>() {
         ArgumentValues::Bools(vec![flag.is_true()])
@@ -125,38 +162,51 @@ pub fn read(value: &Bound<'_, PyAny>) -> PyResult<(Option<&'static str>, Argumen
     } else if value.is_instance_of::<PyFloat>() {
         ArgumentValues::Floats([value.extract()?].into())
     } else if value.is_instance_of::<PyString>() || value.hasattr("__fspath__")? {
-        ArgumentValues::Strings(vec![text(value)?])
-    } else if let Some(texts) = texts(value) {
+        ArgumentValues::Strings(vec![text(value, owner)?])
+    } else if let Some(texts) = texts(value, owner)? {
         ArgumentValues::Strings(texts)
     } else {
-        array(value)?
+        let (values, row) = array(value)?;
+        return Ok((None, values, row));
     };
-    Ok((None, plain))
+    Ok((None, plain, None))
 }
 
-fn text(value: &Bound<'_, PyAny>) -> PyResult<String> {
+fn text(value: &Bound<'_, PyAny>, owner: u64) -> PyResult<String> {
     if let Ok(reference) = value.cast::<Reference>() {
-        return Ok(reference.get().name.clone());
+        return reference.get().of(owner);
     }
     let path: PathBuf = value.extract()?;
     path.into_os_string().into_string().map_err(|_| PyValueError::new_err("a path that is no text"))
 }
 
 /// A list of texts or of references.
-fn texts(value: &Bound<'_, PyAny>) -> Option<Vec<String>> {
-    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
-    let items: Vec<_> = is_list.then(|| value.try_iter().ok()?.collect::<PyResult<_>>().ok())??;
-    let texts: Option<Vec<String>> = items.iter().map(|item| text(item).ok()).collect();
-    texts.filter(|texts| !texts.is_empty())
+fn texts(value: &Bound<'_, PyAny>, owner: u64) -> PyResult<Option<Vec<String>>> {
+    if !value.is_instance_of::<PyList>() && !value.is_instance_of::<PyTuple>() {
+        return Ok(None);
+    }
+    let mut texts = Vec::new();
+    for item in value.try_iter()? {
+        let item = item?;
+        match text(&item, owner) {
+            Ok(text) => texts.push(text),
+            Err(error) if item.is_instance_of::<Reference>() => return Err(error),
+            Err(_) => return Ok(None),
+        }
+    }
+    Ok((!texts.is_empty()).then_some(texts))
 }
 
-/// The values of an array, or of what numpy makes one of, in the order of rows.
-fn array(value: &Bound<'_, PyAny>) -> PyResult<ArgumentValues> {
+/// The values of an array, or of what numpy makes one of, in the order of rows, and the length of
+/// these where it has several dimensions.
+fn array(value: &Bound<'_, PyAny>) -> PyResult<(ArgumentValues, Option<usize>)> {
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (value,))?;
-    let kind = array.cast::<PyUntypedArray>()?.dtype().kind();
+    let untyped = array.cast::<PyUntypedArray>()?;
+    let (element, shape) = (untyped.dtype(), untyped.shape());
+    let row = shape.last().copied().filter(|_| shape.len() > 1);
     let of = |name: &str| numpy.call_method1("ascontiguousarray", (&array, name));
-    Ok(match kind {
+    let values = match element.kind() {
         b'f' => ArgumentValues::Floats(copied(&of("float32")?)?),
         b'b' => ArgumentValues::Bools(copied::<u8>(&of("uint8")?)?.iter().map(|&flag| flag != 0).collect()),
         b'i' | b'u' => {
@@ -168,11 +218,13 @@ fn array(value: &Bound<'_, PyAny>) -> PyResult<ArgumentValues> {
             ArgumentValues::Integers(copied(&of("int32")?)?)
         }
         _ => {
-            let problem =
-                format!("expected numbers, texts or truth values, not {}", value.get_type().name()?);
+            let kind = value.get_type().name()?;
+            let of = if kind == "ndarray" { format!(" of {element}") } else { String::new() };
+            let problem = format!("expected numbers, texts or truth values, not {kind}{of}");
             return Err(PyTypeError::new_err(problem));
         }
-    })
+    };
+    Ok((values, row))
 }
 
 /// The one copy of an array: into memory of our own, as Python may change the array at any time,

@@ -130,7 +130,36 @@ def test_callbacks(scene):
 def test_previews(scene):
     shown = []
     alhazen.render(scene, spp=10_000_000, time=1.5, preview=shown.append)
-    assert shown and numpy.asarray(shown[0]).shape == (16, 24, 3)
+    assert len(shown) > 1 and numpy.asarray(shown[0]).shape == (16, 24, 3)
+    image = alhazen.render(scene, spp=1, preview=shown.append)
+    assert shown[-1] is image
+
+
+def test_wrong_limits_and_callbacks_are_refused(scene):
+    for threads in (0, 1_000_000):
+        with pytest.raises(ValueError, match="threads is from 1"):
+            alhazen.render(scene, threads=threads)
+    for noise in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="noise"):
+            alhazen.render(scene, noise=noise)
+    for name in ("progress", "preview"):
+        with pytest.raises(TypeError, match=name):
+            alhazen.render(scene, **{name: "x"})
+    with pytest.raises(TypeError, match="not of the film"):
+        alhazen.render(scene, integrator=alhazen.settings.film(iso=100))
+
+
+def test_errors_of_files_name_them(scene, tmp_path):
+    missing = tmp_path / "missing" / "a.exr"
+    with pytest.raises(FileNotFoundError, match="a.exr"):
+        alhazen.Image.open(missing)
+    with pytest.raises(FileNotFoundError, match="a.exr"):
+        alhazen.render(scene, spp=1).write(missing)
+    film = missing.with_suffix(".film")
+    with pytest.raises(FileNotFoundError, match="a.film"):
+        alhazen.Film.open(film)
+    with pytest.raises(FileNotFoundError, match="a.film"):
+        alhazen.compile(scene, spp=1).blank_film().write(film)
 
 
 def test_the_lock_is_released(scene):

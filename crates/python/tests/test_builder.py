@@ -103,7 +103,25 @@ def test_errors_name_the_call():
     with pytest.raises(alhazen.SceneError) as error:
         builder.build()
     assert "<scene>:1:" in str(error.value) and "`reflectance`" in str(error.value)
-    assert "<scene>:2:" in str(error.value) and "`sphere`" in str(error.value)
+    assert "<scene>:2:" in str(error.value) and 'in Shape "spere"' in str(error.value)
+    assert "`sphere`" in str(error.value)
+
+
+def test_arrays_with_wrong_rows_are_refused():
+    # Numbers that fit by their count, though not by their shape: a transposed array among them.
+    for wrong in (
+        {"P": QUAD.T},
+        {"uv": numpy.zeros((2, 4))},
+        {"N": numpy.zeros((6, 2))},
+        {"indices": TRIANGLES.reshape(3, 2)},
+    ):
+        builder = alhazen.SceneBuilder()
+        builder.shape("trianglemesh", **{"P": QUAD, "indices": TRIANGLES} | wrong)
+        with pytest.raises(alhazen.SceneError, match="an array with rows of"):
+            builder.build()
+    builder = alhazen.SceneBuilder()
+    builder.shape("bilinearmesh", P=QUAD.reshape(2, 2, 3), indices=[[0, 1, 3, 2]])
+    builder.build()
 
 
 def test_wrong_values_are_refused():
@@ -112,7 +130,7 @@ def test_wrong_values_are_refused():
         builder.shape("trianglemesh", P=object())
     with pytest.raises(TypeError, match="`radius`"):
         builder.shape("sphere", radius={"a": 1})
-    with pytest.raises(TypeError, match="32 bits"):
+    with pytest.raises(ValueError, match="32 bits"):
         builder.shape("trianglemesh", P=QUAD, indices=numpy.array([0, 1, 1 << 40]))
     with pytest.raises(ValueError, match="4 × 4"):
         builder.shape("sphere", transform=numpy.eye(3))
@@ -120,12 +138,31 @@ def test_wrong_values_are_refused():
         builder.shape("sphere", material="red")
     with pytest.raises(TypeError, match="not a object|not a medium"):
         builder.shape("sphere", material=builder.object())
+    with pytest.raises(TypeError, match="not of the film"):
+        builder.integrator(alhazen.settings.film(iso=100))
     with pytest.raises(ValueError, match="option"):
         builder.options(sead=1)
     with pytest.raises(ValueError, match="spectrum"):
         builder.texture("color", "constant")
     with pytest.raises(ValueError):
         alhazen.look_at((0, 0, 0), (0, 0, 0))
+
+
+def test_things_of_other_builders_are_refused():
+    other = alhazen.SceneBuilder()
+    material = other.material("diffuse")
+    texture, ball = other.texture("float", "constant", value=1.0), other.object()
+    builder = alhazen.SceneBuilder()
+    builder.material("conductor")
+    for call in (
+        lambda: builder.shape("sphere", material=material),
+        lambda: builder.shape("sphere", object=ball),
+        lambda: builder.material("diffuse", reflectance=texture),
+        lambda: builder.material("mix", materials=[material, material]),
+        lambda: builder.instance(ball),
+    ):
+        with pytest.raises(ValueError, match="another SceneBuilder"):
+            call()
 
 
 def test_settings_are_those_of_the_schema():

@@ -115,4 +115,8 @@ fn an_archive_is_a_scene_with_all_its_files() {
     assert!(refused.err.contains("wrong.pbrt:1"), "{refused:?}");
     assert!(!folder.files().contains(&"wrong.zip".to_owned()));
     folder.alhazen(&["scene", "pack", "-"]).expect(2);
+    let refused = folder.alhazen(&["scene", "pack", "room/scene.pbrt", "-o", "b.tar"]).expect(2);
+    assert!(refused.err.contains(".zip") && !folder.files().contains(&"b.tar".to_owned()), "{refused:?}");
+    let refused = folder.alhazen(&["scene", "pack", "room/none.pbrt"]).expect(1);
+    assert!(refused.err.contains("room/none.pbrt"), "{refused:?}");
 }

@@ -36,6 +36,9 @@ pub struct Argument {
     pub type_name: Option<String>,
     /// Its values.
     pub values: ArgumentValues,
+    /// The length of a row, if they are an array of several dimensions: it must be that of a point,
+    /// a colour or the indices of a face.
+    pub row: Option<usize>,
 }
 
 /// The values of a parameter of a call. The description of the scene shares numbers and indices;
@@ -119,7 +122,8 @@ impl SceneBuilder {
             Kind::Choice(_) | Kind::Text => &[ParameterType::String],
         };
         self.begin("Option");
-        let mut parameter = self.parameter(Argument { name: name.into(), type_name: None, values });
+        let mut parameter =
+            self.parameter(Argument { name: name.into(), type_name: None, values, row: None });
         parameter.adopt(types);
         self.statements.options.retain(|earlier| earlier.name != name);
         self.statements.options.push(parameter);
@@ -261,7 +265,7 @@ impl SceneBuilder {
     }
 
     fn parameter(&mut self, argument: Argument) -> RawParameter {
-        let Argument { name, type_name, values } = argument;
+        let Argument { name, type_name, values, row } = argument;
         let declaration = self.write(&match &type_name {
             Some(type_name) => format!(" \"{type_name} {name}\""),
             None => format!(" \"{name}\""),
@@ -290,6 +294,7 @@ impl SceneBuilder {
             is_typed: false,
             name,
             values,
+            row,
             span: declaration.to(span),
             declaration,
             color_space: ColorSpaceDesc::Srgb,
@@ -353,7 +358,7 @@ mod tests {
     use crate::{MemoryAssets, import};
 
     fn argument(name: &str, values: ArgumentValues) -> Argument {
-        Argument { name: name.into(), type_name: None, values }
+        Argument { name: name.into(), type_name: None, values, row: None }
     }
 
     fn floats(name: &str, values: &[f32]) -> Argument {
@@ -441,6 +446,20 @@ mod tests {
             .collect();
         assert_eq!(places, [(1, "unknown-parameter"), (2, "parameter-count")]);
         assert!(built.diagnostics[0].help.as_ref().unwrap().contains("`reflectance`"));
+    }
+
+    #[test]
+    fn rows_must_be_points_or_faces() {
+        let mesh = |point: usize, face: usize| {
+            let mut builder = SceneBuilder::default();
+            let points = Argument { row: Some(point), ..floats("P", &[0.0; 12]) };
+            let indices = ArgumentValues::Integers([0, 1, 2, 1, 2, 3].into());
+            let indices = Argument { row: Some(face), ..argument("indices", indices) };
+            builder.shape("trianglemesh", vec![points, indices], Placement::default());
+            let errors = builder.finish(&MemoryAssets::default()).diagnostics;
+            errors.into_iter().map(|error| error.message).filter(|text| text.contains("rows")).count()
+        };
+        assert_eq!((mesh(3, 3), mesh(4, 3), mesh(3, 2)), (0, 1, 1));
     }
 
     #[test]

@@ -97,6 +97,7 @@ impl Interpreter<'_> {
             is_typed: true,
             name: known.to_owned(),
             values,
+            row: None,
             span: name.span.to(end),
             declaration: name.span,
             color_space: self.state.color_space,

@@ -92,6 +92,8 @@ pub(crate) struct RawParameter {
     pub(crate) is_typed: bool,
     pub(crate) name: String,
     pub(crate) values: Values,
+    /// How many values a row has, if they were given as an array of several dimensions.
+    pub(crate) row: Option<usize>,
     /// The declaration and its values.
     pub(crate) span: Span,
     /// The declaration alone.
@@ -209,6 +211,7 @@ pub(crate) fn parameter(
         is_typed: true,
         name: name.to_owned(),
         values,
+        row: None,
         span: span.to(end),
         declaration: span,
         color_space,

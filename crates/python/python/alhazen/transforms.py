@@ -47,8 +47,8 @@ def look_at(eye: ArrayLike, at: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> M
 
 
 def _unit(vector: ArrayLike) -> NDArray[numpy.float64]:
-    vector = numpy.asarray(vector, float)
-    length = numpy.linalg.norm(vector)
+    vector = numpy.asarray(vector, numpy.float64)
+    length = float(numpy.linalg.norm(vector))
     if not length > 0:
         raise ValueError("a direction has no length: two points coincide, or `up` is the view's direction")
     return vector / length

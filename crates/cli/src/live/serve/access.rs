@@ -80,6 +80,9 @@ mod tests {
         for host in ["evil.org", "localhost.evil.org", "127.0.0.1.evil.org:8642", "[::2]", "10.0.0.1", ""] {
             assert!(access.refusal(&headers(host, None), None).is_some(), "{host}");
         }
+        // The token does not excuse another host.
+        let guarded = Access::new(Some("open-sesame"), "127.0.0.1".parse().unwrap());
+        assert!(guarded.refusal(&headers("evil.org", None), Some("open-sesame")).is_some());
         assert!(access.refusal(&HeaderMap::new(), None).is_some());
         let mut two = headers("localhost", None);
         two.append(HOST, "evil.org".parse().unwrap());

@@ -122,10 +122,11 @@ impl<'b, 'a> Reader<'b, 'a> {
             let expected: Vec<_> = types.iter().map(|kind| format!("`{}`", kind.name())).collect();
             let message =
                 format!("`{name}` is of type {}, not `{}`", expected.join(" or "), parameter.kind.name());
-            let help = format!("write `\"{} {name}\"`", types[0].name());
-            let diagnostic =
-                Diagnostic::error("parameter-type", message, parameter.declaration).with_help(help);
-            self.builder.report.push(diagnostic);
+            let error = Diagnostic::error("parameter-type", message, parameter.declaration);
+            self.builder.report.push(match parameter.is_typed {
+                true => error.with_help(format!("write `\"{} {name}\"`", types[0].name())),
+                false => error,
+            });
             return None;
         }
         if given.default {
@@ -166,7 +167,20 @@ impl<'b, 'a> Reader<'b, 'a> {
             self.builder.report.error("parameter-count", message, span);
             return None;
         }
+        if kind.arity() > 1 && !self.has_rows_of(name, kind.arity()) {
+            return None;
+        }
         Some((kind, values, span))
+    }
+
+    /// Whether an array has rows of this length, or none; other rows are reported.
+    pub(super) fn has_rows_of(&mut self, name: &str, length: usize) -> bool {
+        let given = self.given.iter().find(|given| given.parameter.name == name);
+        let Some(row) = given.and_then(|given| given.parameter.row).filter(|&row| row != length) else {
+            return true;
+        };
+        self.refuse(name, format!("`{name}` is an array with rows of {length}, not of {row}"));
+        false
     }
 
     /// Reports a wrong number of values.

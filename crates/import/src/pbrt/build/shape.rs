@@ -272,6 +272,9 @@ fn indices<const N: usize>(
         }
         return None;
     };
+    if !reader.has_rows_of("indices", N) {
+        return None;
+    }
     if let Some(bad) =
         indices.iter().find(|&&index| usize::try_from(index).map_or(true, |index| index >= vertices))
     {
