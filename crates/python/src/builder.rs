@@ -1,6 +1,5 @@
 //! Scenes built in Python.
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use alhazen::import::{Argument, Placement};
@@ -9,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::scene::Scene;
-use crate::value::{Chosen, Reference, argument, arguments, motion};
+use crate::value::{Chosen, Owner, Reference, argument, arguments, motion};
 
 /// Builds a scene: each call is a statement of the pbrt-v4 format, with the names of its types and
 /// parameters. Arrays of numpy are copied, so that they may be changed afterwards.
@@ -25,9 +24,10 @@ use crate::value::{Chosen, Reference, argument, arguments, motion};
 /// blackbody() state what is meant. A transform is a matrix of 4 × 4 that takes
 /// columns to the world, or two of them for the start and the end of the shutter time.
 #[pyclass(frozen, module = "alhazen")]
+#[derive(Default)]
 pub struct SceneBuilder {
-    /// Its number: references to things of other builders are refused.
-    id: u64,
+    /// References to things of other builders are refused.
+    owner: Owner,
     state: Mutex<State>,
 }
 
@@ -39,9 +39,9 @@ struct State {
 }
 
 impl State {
-    fn name(&mut self, owner: u64, kind: &'static str) -> Reference {
+    fn name(&mut self, owner: &Owner, kind: &'static str) -> Reference {
         self.names += 1;
-        Reference { kind, name: format!("{kind}-{}", self.names), owner }
+        Reference { kind, name: format!("{kind}-{}", self.names), owner: owner.clone() }
     }
 }
 
@@ -57,7 +57,7 @@ impl SceneBuilder {
         default: &str,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
-        let (kind, arguments) = kind_of(part, kind, default, parameters, self.id)?;
+        let (kind, arguments) = kind_of(part, kind, default, parameters, &self.owner)?;
         self.state().builder.set(directive, &kind, arguments).map_err(PyValueError::new_err)
     }
 }
@@ -66,8 +66,7 @@ impl SceneBuilder {
 impl SceneBuilder {
     #[new]
     fn new() -> Self {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        Self { id: NEXT.fetch_add(1, Ordering::Relaxed), state: Mutex::default() }
+        Self::default()
     }
 
     /// Sets the film: its type, by default "rgb", or alhazen.settings.film(), and parameters, such
@@ -107,7 +106,7 @@ impl SceneBuilder {
     /// Sets options of the whole scene, such as seed.
     #[pyo3(signature = (**options))]
     fn options(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        for Argument { name, values, .. } in arguments(options, self.id)? {
+        for Argument { name, values, .. } in arguments(options, &self.owner)? {
             self.state().builder.option(&name, values).map_err(PyValueError::new_err)?;
         }
         Ok(())
@@ -126,8 +125,8 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let kind = kind.map_or_else(|| py.None().into_bound(py), Bound::clone);
-        let (kind, arguments) = kind_of("camera", &kind, "perspective", parameters, self.id)?;
-        let (motion, medium) = (motion(transform)?, name(medium, self.id, "medium")?);
+        let (kind, arguments) = kind_of("camera", &kind, "perspective", parameters, &self.owner)?;
+        let (motion, medium) = (motion(transform)?, name(medium, &self.owner, "medium")?);
         self.state().builder.camera(&kind, arguments, motion, medium);
         Ok(())
     }
@@ -149,9 +148,9 @@ impl SceneBuilder {
                 return Err(PyValueError::new_err(problem));
             }
         };
-        let (arguments, motion) = (arguments(parameters, self.id)?, motion(transform)?);
+        let (arguments, motion) = (arguments(parameters, &self.owner)?, motion(transform)?);
         let mut state = self.state();
-        let reference = state.name(self.id, "texture");
+        let reference = state.name(&self.owner, "texture");
         state.builder.texture(&reference.name, is_spectrum, kind, arguments, motion.0[0]);
         Ok(reference)
     }
@@ -159,9 +158,9 @@ impl SceneBuilder {
     /// Adds a material: its type, such as "diffuse", and parameters, such as reflectance.
     #[pyo3(signature = (kind, /, **parameters))]
     fn material(&self, kind: &str, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Reference> {
-        let arguments = arguments(parameters, self.id)?;
+        let arguments = arguments(parameters, &self.owner)?;
         let mut state = self.state();
-        let reference = state.name(self.id, "material");
+        let reference = state.name(&self.owner, "material");
         state.builder.material(&reference.name, kind, arguments);
         Ok(reference)
     }
@@ -174,9 +173,9 @@ impl SceneBuilder {
         transform: Option<&Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Reference> {
-        let (arguments, motion) = (arguments(parameters, self.id)?, motion(transform)?);
+        let (arguments, motion) = (arguments(parameters, &self.owner)?, motion(transform)?);
         let mut state = self.state();
-        let reference = state.name(self.id, "medium");
+        let reference = state.name(&self.owner, "medium");
         state.builder.medium(&reference.name, kind, arguments, motion);
         Ok(reference)
     }
@@ -192,7 +191,7 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let (arguments, motion, medium) =
-            (arguments(parameters, self.id)?, motion(transform)?, name(medium, self.id, "medium")?);
+            (arguments(parameters, &self.owner)?, motion(transform)?, name(medium, &self.owner, "medium")?);
         self.state().builder.light(kind, arguments, motion, medium);
         Ok(())
     }
@@ -220,16 +219,16 @@ impl SceneBuilder {
         reverse_orientation: bool,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
-        let media = [name(inside, self.id, "medium")?, name(outside, self.id, "medium")?];
+        let media = [name(inside, &self.owner, "medium")?, name(outside, &self.owner, "medium")?];
         let placement = Placement {
             motion: motion(transform)?,
             reverse_orientation,
-            material: name(material, self.id, "material")?,
-            area_light: emission.map(|emission| area_light(emission, self.id)).transpose()?,
+            material: name(material, &self.owner, "material")?,
+            area_light: emission.map(|emission| area_light(emission, &self.owner)).transpose()?,
             media: media.iter().any(Option::is_some).then(|| media.map(Option::unwrap_or_default)),
-            object: name(object, self.id, "object")?,
+            object: name(object, &self.owner, "object")?,
         };
-        let arguments = arguments(parameters, self.id)?;
+        let arguments = arguments(parameters, &self.owner)?;
         self.state().builder.shape(kind, arguments, placement);
         Ok(())
     }
@@ -238,7 +237,7 @@ impl SceneBuilder {
     /// instances.
     fn object(&self) -> Reference {
         let mut state = self.state();
-        let reference = state.name(self.id, "object");
+        let reference = state.name(&self.owner, "object");
         state.builder.object(&reference.name);
         reference
     }
@@ -252,8 +251,8 @@ impl SceneBuilder {
         into: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let (object, motion) =
-            (name(Some(object), self.id, "object")?.unwrap_or_default(), motion(transform)?);
-        let into = name(into, self.id, "object")?;
+            (name(Some(object), &self.owner, "object")?.unwrap_or_default(), motion(transform)?);
+        let into = name(into, &self.owner, "object")?;
         self.state().builder.instance(&object, motion, into.as_deref());
         Ok(())
     }
@@ -274,7 +273,7 @@ fn kind_of(
     kind: &Bound<'_, PyAny>,
     default: &str,
     parameters: Option<&Bound<'_, PyDict>>,
-    owner: u64,
+    owner: &Owner,
 ) -> PyResult<(String, Vec<Argument>)> {
     let mut given = arguments(parameters, owner)?;
     let kind = match Chosen::of(kind)? {
@@ -290,7 +289,7 @@ fn kind_of(
 }
 
 /// The name that a reference of this kind, to a thing of this builder, has.
-fn name(reference: Option<&Bound<'_, PyAny>>, owner: u64, kind: &str) -> PyResult<Option<String>> {
+fn name(reference: Option<&Bound<'_, PyAny>>, owner: &Owner, kind: &str) -> PyResult<Option<String>> {
     let Some(value) = reference else { return Ok(None) };
     match value.cast::<Reference>() {
         Ok(reference) if reference.get().kind == kind => reference.get().of(owner).map(Some),
@@ -302,7 +301,7 @@ fn name(reference: Option<&Bound<'_, PyAny>>, owner: u64, kind: &str) -> PyResul
 }
 
 /// What a shape emits.
-fn area_light(emission: &Bound<'_, PyAny>, owner: u64) -> PyResult<(String, Vec<Argument>)> {
+fn area_light(emission: &Bound<'_, PyAny>, owner: &Owner) -> PyResult<(String, Vec<Argument>)> {
     let arguments = match emission.cast::<PyDict>() {
         Ok(parameters) => arguments(Some(parameters), owner)?,
         Err(_) => vec![argument("L".into(), emission, owner)?],

@@ -13,6 +13,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
+/// A builder, by the address of what its references share.
+pub type Owner = Arc<()>;
+
 /// A thing of a SceneBuilder that others refer to: a texture, material, medium or object.
 #[pyclass(frozen, module = "alhazen")]
 #[derive(Clone)]
@@ -23,14 +26,14 @@ pub struct Reference {
     /// Its name in the scene.
     #[pyo3(get)]
     pub name: String,
-    /// The number of its builder.
-    pub owner: u64,
+    /// Its builder.
+    pub owner: Owner,
 }
 
 impl Reference {
-    /// Its name in the scene of the builder with this number.
-    pub fn of(&self, builder: u64) -> PyResult<String> {
-        if self.owner != builder {
+    /// Its name in the scene of a builder.
+    pub fn of(&self, builder: &Owner) -> PyResult<String> {
+        if !Arc::ptr_eq(&self.owner, builder) {
             let problem = format!("the {} {:?} is of another SceneBuilder", self.kind, self.name);
             return Err(PyValueError::new_err(problem));
         }
@@ -82,7 +85,7 @@ pub fn spectrum(values: Py<PyAny>) -> Typed {
 }
 
 /// All parameters of a call of the builder with this number.
-pub fn arguments(parameters: Option<&Bound<'_, PyDict>>, owner: u64) -> PyResult<Vec<Argument>> {
+pub fn arguments(parameters: Option<&Bound<'_, PyDict>>, owner: &Owner) -> PyResult<Vec<Argument>> {
     let Some(parameters) = parameters else { return Ok(Vec::new()) };
     let named = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let name: String = name.extract()?;
@@ -92,7 +95,7 @@ pub fn arguments(parameters: Option<&Bound<'_, PyDict>>, owner: u64) -> PyResult
 }
 
 /// A parameter of a call; errors name it.
-pub fn argument(name: String, value: &Bound<'_, PyAny>, owner: u64) -> PyResult<Argument> {
+pub fn argument(name: String, value: &Bound<'_, PyAny>, owner: &Owner) -> PyResult<Argument> {
     let py = value.py();
     let (type_name, values, row) = read(value, owner).map_err(|error| {
         let problem = format!("`{name}`: {}", error.value(py));
@@ -143,7 +146,7 @@ impl<'py> Chosen<'py> {
 /// A value, with its type where that is stated, and the length of its rows where it has some.
 fn read(
     value: &Bound<'_, PyAny>,
-    owner: u64,
+    owner: &Owner,
 ) -> PyResult<(Option<&'static str>, ArgumentValues, Option<usize>)> {
     if let Ok(typed) = value.cast::<Typed>() {
         let typed = typed.get();
@@ -172,7 +175,7 @@ fn read(
     Ok((None, plain, None))
 }
 
-fn text(value: &Bound<'_, PyAny>, owner: u64) -> PyResult<String> {
+fn text(value: &Bound<'_, PyAny>, owner: &Owner) -> PyResult<String> {
     if let Ok(reference) = value.cast::<Reference>() {
         return reference.get().of(owner);
     }
@@ -181,7 +184,7 @@ fn text(value: &Bound<'_, PyAny>, owner: u64) -> PyResult<String> {
 }
 
 /// A list of texts or of references.
-fn texts(value: &Bound<'_, PyAny>, owner: u64) -> PyResult<Option<Vec<String>>> {
+fn texts(value: &Bound<'_, PyAny>, owner: &Owner) -> PyResult<Option<Vec<String>>> {
     if !value.is_instance_of::<PyList>() && !value.is_instance_of::<PyTuple>() {
         return Ok(None);
     }
