@@ -84,7 +84,7 @@ pub fn spectrum(values: Py<PyAny>) -> Typed {
     Typed { type_name: "spectrum", values }
 }
 
-/// All parameters of a call of the builder with this number.
+/// All parameters of a call of a builder.
 pub fn arguments(parameters: Option<&Bound<'_, PyDict>>, owner: &Owner) -> PyResult<Vec<Argument>> {
     let Some(parameters) = parameters else { return Ok(Vec::new()) };
     let named = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {

@@ -162,9 +162,9 @@ impl Bvh {
         }
     }
 
-    /// Traverses the tree with a packet of rays. Passes `leaves` the blocks that any
-    /// ray may meet before its end. Returns the number of boxes tested. The rays must be finite,
-    /// and their directions must have the same signs.
+    /// Traverses the tree with a packet of rays. Passes `leaves` the blocks that any ray may meet
+    /// before its end. Returns the number of boxes tested. The rays must be finite, and their
+    /// directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instruction set.

@@ -218,10 +218,11 @@ impl Sample<'_, '_> {
         let (light, is_chosen) = (self.pass.pixels.scene.light(id), self.light.is_none());
         let (l, wi, pdf, has_light) = match light.row() {
             Light::ImageInfinite(sky) if sky.is_at_rest() => sky.sample_at_rest(u, lambda, is_chosen),
+            // Left to the BSDF.
+            Light::UniformInfinite(_) if is_chosen => return true,
             Light::UniformInfinite(sky) => {
                 let (l, wi, pdf) = sky.sample(u, lambda);
-                // A chosen one is left to the BSDF.
-                (l, wi, pdf, R::Mask::splat(!is_chosen))
+                (l, wi, pdf, R::Mask::splat(true))
             }
             Light::Distant(sun) if sun.motion.is_none() => {
                 (sun.radiance.sample(lambda), splat(sun.w), R::one(), R::Mask::splat(true))
