@@ -18,7 +18,7 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 61] = laws! {
+const LAWS: [&str; 62] = laws! {
     "address" "arc" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
     "diffuse" "diffuse_transmission" "direct" "disk" "dispersion" "dots" "error" "exponential" "flags"
     "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hair" "hash"
@@ -26,7 +26,7 @@ const LAWS: [&str; 61] = laws! {
     "minimum_differentials" "noise" "octahedral" "orthographic" "perspective" "phase" "power"
     "randomize" "ray" "rectangle" "rgb_spectrum" "sample" "sampled" "scatter" "screen" "sobol"
     "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector" "walk"
-    "zsobol"
+    "wavelengths" "zsobol"
 };
 
 /// The laws of principled surfaces, which need their tables.

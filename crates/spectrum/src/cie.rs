@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 
 use crate::dense::{COUNT, DenselySampled};
 use crate::rgb::Xyz;
-use crate::sampled::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
+use crate::sampled::SampledSpectrum;
+use crate::wavelengths::{LAMBDA_MIN, SampledWavelengths};
 
 /// ∫ ȳ(λ) dλ in nanometres.
 pub const CIE_Y_INTEGRAL: f32 = 106.856_895;

@@ -1,6 +1,6 @@
 //! Spectra with a value at each whole nanometre of the range of wavelengths.
 
-use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
+use crate::wavelengths::{LAMBDA_MAX, LAMBDA_MIN};
 use lanes::Real;
 
 /// Number of whole nanometres in the range.

@@ -18,6 +18,7 @@ pub mod rgb_spectrum;
 pub mod sampled;
 pub mod spectrum;
 pub mod uplift;
+pub mod wavelengths;
 
 pub use blackbody::{Blackbody, blackbody};
 pub use cie::{CIE_Y_INTEGRAL, responses, tristimulus, xyz_from, y_from};
@@ -29,6 +30,7 @@ pub use measured::{color_checker, names};
 pub use piecewise::{ParseError, PiecewiseLinear, SpectrumError};
 pub use rgb::{Rgb, Xyz};
 pub use rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
-pub use sampled::{LAMBDA_MAX, LAMBDA_MIN, N, SampledSpectrum, SampledWavelengths};
+pub use sampled::{N, SampledSpectrum};
 pub use spectrum::{Spectrum, named};
 pub use uplift::RgbSigmoidPolynomial;
+pub use wavelengths::{LAMBDA_MAX, LAMBDA_MIN, SampledWavelengths};

@@ -10,7 +10,8 @@ use crate::measured::measured;
 use crate::piecewise::{PiecewiseLinear, SpectrumError};
 use crate::rgb::{Rgb, Xyz};
 use crate::rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
-use crate::sampled::{SampledSpectrum, SampledWavelengths};
+use crate::sampled::SampledSpectrum;
+use crate::wavelengths::SampledWavelengths;
 use lanes::Real;
 use math::map_lanes;
 

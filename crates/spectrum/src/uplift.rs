@@ -13,7 +13,7 @@
 //!
 //! Sources: [Jakob 2019], [Pharr 2023 §4.6.6].
 
-use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
+use crate::wavelengths::{LAMBDA_MAX, LAMBDA_MIN};
 use lanes::{Each, Int, Real};
 
 /// A reflectance made from RGB, one for each lane: a sigmoid of a quadratic polynomial of

@@ -3,10 +3,6 @@
 
 const sampled_N: u32 = 4;
 
-const sampled_LAMBDA_MIN: f32 = 360.0f;
-
-const sampled_LAMBDA_MAX: f32 = 830.0f;
-
 // The same value at every wavelength.
 fn SampledSpectrum_splat(value_1: f32) -> vec4f {
     return vec4f(value_1, value_1, value_1, value_1);
@@ -99,85 +95,4 @@ fn SampledSpectrum_safe_div(this_: vec4f, divisor: vec4f) -> vec4f {
 // (1 − t)·`self` + t·`other`.
 fn SampledSpectrum_lerp(this_: vec4f, other: vec4f, t: f32) -> vec4f {
     return (this_ * (1.0f - t)) + (other * t);
-}
-
-// The wavelengths of a path, in nanometres, and their sampling densities, per nanometre.
-struct SampledWavelengths {
-    lambda: vec4f,
-    pdf: vec4f,
-}
-
-// Wavelengths sampled uniformly over `min..max`, from `u` in [0, 1).
-fn SampledWavelengths_sample_uniform_in(u: f32, min_1: f32, max_1: f32) -> SampledWavelengths {
-    let parts = rotations(u);
-    let u_1 = parts.x;
-    let u_2 = parts.y;
-    let u_3 = parts.z;
-    let u_4 = parts.w;
-    let lambda_0 = min_1 + (u_1 * (max_1 - min_1));
-    let lambda_1 = min_1 + (u_2 * (max_1 - min_1));
-    let lambda_2 = min_1 + (u_3 * (max_1 - min_1));
-    let lambda_3 = min_1 + (u_4 * (max_1 - min_1));
-    let element = 1.0f / (max_1 - min_1);
-    return SampledWavelengths(vec4f(lambda_0, lambda_1, lambda_2, lambda_3), vec4f(element, element, element, element));
-}
-
-// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
-fn SampledWavelengths_sample_visible(u: f32) -> SampledWavelengths {
-    var lambda = rotations(u);
-    var pdf = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
-    for (var i = 0u; i < sampled_N; i++) {
-        let tanh = visible_tanh(lambda[i]);
-        lambda[i] = wavelength_of_tanh(tanh);
-        pdf[i] = sampled_VISIBLE_PEAK * (1.0f - (tanh * tanh));
-    }
-    return SampledWavelengths(lambda, pdf);
-}
-
-// The wavelengths in nanometres.
-fn SampledWavelengths_lambda(this_: SampledWavelengths) -> vec4f {
-    return this_.lambda;
-}
-
-// Keeps only the first wavelength, for dispersion, and divides its density by N.
-fn SampledWavelengths_terminate_secondary(this_: ptr<function, SampledWavelengths>) {
-    let terminated = SampledWavelengths_secondary_terminated(*this_);
-    let parts = (*this_).pdf;
-    let hero = parts.x;
-    (*this_).pdf = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
-    (*this_).pdf.x = select(hero / f32(sampled_N), hero, terminated);
-}
-
-// Whether the secondary wavelengths are terminated.
-fn SampledWavelengths_secondary_terminated(this_: SampledWavelengths) -> bool {
-    let parts = this_.pdf;
-    let p = parts.x;
-    let p_1 = parts.y;
-    let p_2 = parts.z;
-    let p_3 = parts.w;
-    let a = p_1 == 0.0f;
-    let b = p_2 == 0.0f;
-    let c = p_3 == 0.0f;
-    return (a & b) & c;
-}
-
-// `u` and its rotations by 1/4, 2/4 and 3/4 within [0, 1).
-fn rotations(u: f32) -> vec4f {
-    let rotated = u + 0.0f;
-    let rotated_1 = u + 0.25f;
-    let rotated_2 = u + 0.5f;
-    let rotated_3 = u + 0.75f;
-    return vec4f(select(rotated, rotated - 1.0f, rotated >= 1.0f), select(rotated_1, rotated_1 - 1.0f, rotated_1 >= 1.0f), select(rotated_2, rotated_2 - 1.0f, rotated_2 >= 1.0f), select(rotated_3, rotated_3 - 1.0f, rotated_3 >= 1.0f));
-}
-
-const sampled_VISIBLE_PEAK: f32 = 0.003939804f;
-
-// tanh(0.0072 (538 − λ)) of the wavelength that `u` samples.
-fn visible_tanh(u: f32) -> f32 {
-    return 0.85691062f - (u * 1.827502f);
-}
-
-fn wavelength_of_tanh(tanh: f32) -> f32 {
-    let log_1 = ln((1.0f + tanh) / (1.0f - tanh));
-    return real_min(real_max(538.0f - (log_1 * 69.44444f), sampled_LAMBDA_MIN), sampled_LAMBDA_MAX);
 }

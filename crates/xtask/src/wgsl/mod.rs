@@ -55,8 +55,9 @@ const SOURCES: &[(&str, &[&str])] = &[
         &["equal_area_square_to_sphere", "equal_area_sphere_to_square", "wrap_equal_area_square"],
     ),
     ("crates/math/src/spherical.rs", &["spherical_direction", "spherical_phi", "face_forward"]),
+    ("crates/spectrum/src/sampled.rs", &[]),
     (
-        "crates/spectrum/src/sampled.rs",
+        "crates/spectrum/src/wavelengths.rs",
         &[
             "SampledWavelengths::sample_uniform_in",
             "SampledWavelengths::sample_visible",
