@@ -166,6 +166,9 @@ settings! {
     pub struct WhittedDesc {
         /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
+        /// Light of a sky of one colour reaches all surfaces, as if nothing were in between: no rays
+        /// look for its shadows.
+        ambient: bool = false => ["ambient"];
         /// Where the light of mirror reflections is from.
         reflections: ReflectionsDesc = ReflectionsDesc::Traced => ["reflections"];
         /// With `hybrid`, the distance from which on the picture is used; from half of it on it is

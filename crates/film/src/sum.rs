@@ -39,6 +39,11 @@ pub(crate) fn can_add(term: f64) -> bool {
 /// A sum's units as the nearest number.
 #[inline]
 pub(crate) fn value(units: i128) -> f64 {
+    let high = units >> 32;
+    if high.unsigned_abs() < 1 << 53 {
+        // Both parts are exact, so that only their sum is rounded.
+        return high as i64 as f64 / HALF + f64::from(units as u32) / UNITS_PER_ONE;
+    }
     units as f64 / UNITS_PER_ONE
 }
 
@@ -311,6 +316,18 @@ mod tests {
             "the error of the decimal fractions"
         );
         assert_eq!(number(&sum(&[2f64.powi(-66); 100])), 0.0, "below the grid");
+    }
+
+    #[test]
+    fn values_are_the_nearest_numbers() {
+        let mut random = Random::new(2);
+        for bits in 0..127 {
+            for _ in 0..100 {
+                let units = (0..4).fold(0, |units: i128, _| units << 32 | i128::from(random.bits()));
+                let units = units >> (127 - bits);
+                assert_eq!(value(units), units as f64 / UNITS_PER_ONE, "{units}");
+            }
+        }
     }
 
     #[test]

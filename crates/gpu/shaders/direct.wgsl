@@ -48,8 +48,14 @@ fn direct_light(
 }
 
 // The light of all lights that a surface scatters; as if nothing were in between, unless that is
-// to cast shadows.
-fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths, has_shadows: bool) -> vec4f {
+// to cast shadows. Skies of one colour cast none where they are ambient.
+fn all_lights(
+    s: Surface,
+    bsdf: Bsdf,
+    lambda: SampledWavelengths,
+    has_shadows: bool,
+    has_ambient: bool,
+) -> vec4f {
     let flags = bsdf_flags(bsdf);
     var sum = vec4f();
     if (!is_non_specular(flags)) {
@@ -57,12 +63,26 @@ fn all_lights(s: Surface, bsdf: Bsdf, lambda: SampledWavelengths, has_shadows: b
     }
     let context = light_context(s, flags);
     for (var i = 0u; i < world.light_count; i++) {
-        let light = sample_light(i, context, get_2d(), lambda, false);
+        let u = get_2d();
+        let is_ambient = has_ambient && tables[light_record(i)] == UNIFORM_LIGHT;
+        var light: LightSample;
+        if (is_ambient) {
+            let sample = sample_ambient(s.wo, s.ns, flags, u);
+            light.l = emission(light_record(i), lambda);
+            light.wi = sample.v0;
+            light.pdf = sample.v1;
+            light.valid = true;
+        } else {
+            light = sample_light(i, context, u, lambda, false);
+        }
         if (!light.valid) {
             continue;
         }
         let l = scattered(s, bsdf, light);
-        if (has_shadows && !is_black(l)) {
+        if (is_black(l)) {
+            continue;
+        }
+        if (has_shadows && !is_ambient) {
             let shadow = shadow_ray(s, light);
             if (occluded(shadow.ray, shadow.t_max)) {
                 continue;

@@ -14,5 +14,5 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         l = light_radiance(light_record(s.light - 1), s, *lambda);
     }
     let bsdf = bsdf_at(&s, texture_context(s, near), lambda);
-    return l + all_lights(s, bsdf, *lambda, false);
+    return l + all_lights(s, bsdf, *lambda, false, false);
 }

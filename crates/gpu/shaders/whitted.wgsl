@@ -1,6 +1,7 @@
 // Whitted's ray tracing: the light of all lights with shadows, perfect reflection and refraction.
 
 // `MOST_RAYS` is how many rays may wait: one for each scattering event of a path, and one more.
+// `HAS_AMBIENT` says that skies of one colour cast no shadows.
 
 // A ray of the tree.
 struct Branch {
@@ -34,7 +35,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (branch.depth == world.max_depth) {
             continue;
         }
-        l += branch.beta * all_lights(s, bsdf, *lambda, true);
+        l += branch.beta * all_lights(s, bsdf, *lambda, true, HAS_AMBIENT);
         if ((bsdf_flags(bsdf) & BxdfFlags_SPECULAR) == 0) {
             continue;
         }

@@ -237,8 +237,12 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
     let text = match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(desc) => {
-            let most_rays = format!("const MOST_RAYS = {}u;\n", desc.max_depth + 1);
-            return (most_rays + include_str!("../shaders/whitted.wgsl")).into();
+            let constants = format!(
+                "const MOST_RAYS = {}u;\nconst HAS_AMBIENT = {};\n",
+                desc.max_depth + 1,
+                desc.ambient
+            );
+            return (constants + include_str!("../shaders/whitted.wgsl")).into();
         }
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),

@@ -185,10 +185,10 @@ pub struct TracePixel {
     /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
     pub scene: PathBuf,
     /// Column of the pixel, counted from 0 at the left.
-    #[arg(value_parser = clap::value_parser!(i32).range(0..))]
+    #[arg(value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     pub x: i32,
     /// Row of the pixel, counted from 0 at the top.
-    #[arg(value_parser = clap::value_parser!(i32).range(0..))]
+    #[arg(value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     pub y: i32,
     /// The number of samples to trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]

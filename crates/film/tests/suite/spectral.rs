@@ -86,7 +86,7 @@ fn constant_light_has_no_noise_in_any_bucket() {
 
 #[test]
 fn splats_fill_buckets_as_samples_do() {
-    const COUNT: u32 = 4000;
+    const COUNT: u32 = 16_000;
     let mut film = film(8, 400.0, 700.0);
     let (_, splatter) = film.tiles_and_splatter().unwrap();
     for i in 0..COUNT {

@@ -44,7 +44,7 @@ impl RayIntegrator for RayCasting {
             match tracer.bsdf(&mut surface, &ray, lambda) {
                 Some(bsdf) => {
                     let mut sum = SampledSpectrum::ZERO;
-                    connect_all(tracer.scene, tracer.sampler, &surface, &bsdf, lambda, |light| {
+                    connect_all(tracer.scene, tracer.sampler, (&surface, false), &bsdf, lambda, |light| {
                         sum += light.l
                     });
                     return l + beta * sum;

@@ -6,6 +6,10 @@
 //! scatter direct light only, so that indirect light and caustics are missing. The tree of rays
 //! grows as 2^depth in glass.
 //!
+//! The light of a sky of one colour may be taken as ambient, as in the original: it reaches all
+//! surfaces, without shadow rays. So the sun alone casts shadows, and a diffuse surface of
+//! reflectance ρ has ρ L of a sky of radiance L, without noise.
+//!
 //! With a `max_depth` of 1, mirrors are black. Source: [Whitted 1980].
 //!
 //! The light of reflections may be looked up instead of traced, as film studios do: in a picture of
@@ -48,6 +52,11 @@ impl Whitted {
     /// Maximum number of scattering events of a path.
     pub(crate) fn max_depth(&self) -> u32 {
         self.settings.max_depth
+    }
+
+    /// Whether the light of skies of one colour is ambient.
+    pub(crate) fn is_ambient(&self) -> bool {
+        self.settings.ambient
     }
 
     /// The light that the object which was hit reflects from direction `w`, of the picture of its
@@ -173,8 +182,8 @@ impl RayIntegrator for Whitted {
                 continue;
             }
             let (scene, sampler) = (tracer.scene, &mut *tracer.sampler);
-            connect_all(scene, sampler, &surface, &bsdf, lambda, |light| connections.push(light));
-            let mut sum = SampledSpectrum::ZERO;
+            let place = (&surface, self.settings.ambient);
+            let mut sum = connect_all(scene, sampler, place, &bsdf, lambda, |light| connections.push(light));
             for light in connections.drain(..) {
                 let medium = surface.medium_towards(light.ray.d, medium);
                 sum += light.arriving(medium, lambda, tracer);

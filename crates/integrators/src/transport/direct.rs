@@ -11,10 +11,12 @@ use std::sync::Arc;
 
 use description::LightSamplerDesc;
 use lanes::Real;
-use math::{Normal3, Point3, Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
-use sampling::Sampler;
+use math::{
+    Frame, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec2, Vec3, Vector3, offset_ray_origin,
+};
+use sampling::{Sampler, warp};
 use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, Scatter, TransportMode, each_bxdf};
-use scene::light::{LightId, LightLiSample, LightRef, LightSampleContext};
+use scene::light::{Light, LightId, LightLiSample, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction};
@@ -255,23 +257,33 @@ pub(crate) fn connect_all_in_medium(
 }
 
 /// Connects a surface to one point of every light, and calls `connect` where light arrives there.
-/// It is not weighted against BSDF sampling.
+/// It is not weighted against BSDF sampling. Skies of one colour are left out where they are
+/// `ambient`; what the surface scatters of them is returned.
 pub(crate) fn connect_all(
     scene: &Scene,
     sampler: &mut Sampler,
-    surface: &SurfaceInteraction,
+    (surface, ambient): (&SurfaceInteraction, bool),
     bsdf: &Bsdf<Bxdf>,
     lambda: &SampledWavelengths,
     mut connect: impl FnMut(Connection),
-) {
+) -> SampledSpectrum {
+    let mut around = SampledSpectrum::ZERO;
     if !bsdf.flags().is_non_specular() {
-        return;
+        return around;
     }
     let context = light_context(surface, bsdf.flags());
     each_bxdf!(bsdf.bxdf, bxdf => {
         let bsdf = Bsdf { bxdf, frame: bsdf.frame };
         for light in (0..scene.lights().len() as u32).map(LightId) {
             let u = sampler.get_2d();
+            if let (true, Light::UniformInfinite(sky)) = (ambient, scene.light(light).row()) {
+                let (wo, ns) = (surface.surface.wo, surface.surface.shading.n);
+                let (wi, pdf) = sample_ambient(wo, ns, bsdf.flags(), u);
+                let l = sky.radiance.sample(lambda);
+                let l = scattered(surface, &bsdf, &LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO });
+                around += l.safe_div(SampledSpectrum::splat(pdf));
+                continue;
+            }
             let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
             let l = scattered(surface, &bsdf, &sample);
             if !l.is_black() {
@@ -280,7 +292,30 @@ pub(crate) fn connect_all(
                 connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
             }
         }
-    })
+    });
+    around
+}
+
+/// A direction from which the sky lights a surface, distributed by the cosine over the sides that
+/// scatter to `wo`, and its density.
+#[inline(always)]
+pub(crate) fn sample_ambient<R: Real>(
+    wo: Vector3<R>,
+    ns: Normal3<R>,
+    flags: BxdfFlags<R>,
+    u: Vec2<R>,
+) -> (Vector3<R>, R) {
+    let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
+    let (has_both, is_second) = (reflects & transmits, u.x.ge(R::splat(0.5)));
+    // The first half of the numbers is for the side of `wo`, if both sides scatter.
+    let of_half = R::select(is_second, u.x + u.x - R::one(), u.x + u.x);
+    let u = Vec2::new(R::select(has_both, of_half, u.x), u.y);
+    let is_across = transmits & (!reflects | is_second);
+    let is_below = wo.dot(ns).lt(R::zero());
+    let axis = Vec3::select(is_across ^ is_below, -ns, ns);
+    let w = warp::sample_cosine_hemisphere(u);
+    let pdf = warp::cosine_hemisphere_pdf(w.z);
+    (Frame::from_z(axis).from_local(w), R::select(has_both, pdf * R::splat(0.5), pdf))
 }
 
 /// The light of a light sample that a surface scatters to `wo`: f·|cos|·L, without visibility and

@@ -4,7 +4,7 @@ use geometry::PatchPoints;
 use lanes::{Int, Mask, Real};
 use scattering::{Bsdf, Scatter, TransportMode};
 use scene::Interfaces;
-use scene::light::{LightId, LightSampleContext};
+use scene::light::{Light, LightId, LightSampleContext};
 use scene::material::MaterialModel;
 use spectrum::SampledSpectrum;
 
@@ -12,19 +12,26 @@ use super::lights::{self, LightLanes};
 use super::numbers::draw_2d;
 use super::shade::{AtVertices, Shade, Vertices};
 use super::shadows::Shadow;
-use crate::transport::direct::DirectLighting;
+use crate::transport::direct::{DirectLighting, sample_ambient};
 
 /// Direct light by one sample of every light.
 pub(super) struct AllLights {
     /// Whether surfaces cast shadows. Specular surfaces are left to be shaded one by one then.
     casts_shadows: bool,
+    /// Whether skies of one colour cast none.
+    has_ambient: bool,
     direct: DirectLighting,
 }
 
 impl AllLights {
-    /// With shadows or without.
-    pub fn new(casts_shadows: bool) -> Self {
-        Self { casts_shadows, direct: DirectLighting::none(Interfaces::Pass) }
+    /// Without shadows.
+    pub fn without_shadows() -> Self {
+        Self { casts_shadows: false, has_ambient: false, direct: DirectLighting::none(Interfaces::Pass) }
+    }
+
+    /// With shadows; `has_ambient` says that skies of one colour cast none.
+    pub fn with_shadows(has_ambient: bool) -> Self {
+        Self { casts_shadows: true, has_ambient, ..Self::without_shadows() }
     }
 
     /// Light that rays find, which counts fully.
@@ -42,7 +49,7 @@ impl AtVertices for AllLights {
         contexts: &LightSampleContext<R>,
     ) {
         let Vertices { rows, active, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = vertices;
-        let Self { casts_shadows, direct } = shade.algorithm;
+        let Self { casts_shadows, has_ambient, direct } = shade.algorithm;
         let (flags, mut lit) = (bsdf.flags(), active);
         if *casts_shadows {
             let is_specular = flags.is_specular();
@@ -58,9 +65,18 @@ impl AtVertices for AllLights {
         let mut sum = shade.paths.l.get::<R>(rows);
         for id in 0..shade.pass.pixels.scene.lights().len() as u32 {
             let u = draw_2d::<R>(&shade.pass, &mut vertices.address);
-            let sampling = (&shade.pass, direct, &mut *shade.light_samples);
-            let numbers = (R::zero(), u);
-            let light = lights::sample(sampling, Some(LightId(id)), contexts, numbers, &vertices.lambda, lit);
+            let sky = match shade.pass.pixels.scene.light(LightId(id)).row() {
+                Light::UniformInfinite(sky) if *has_ambient => Some(sky),
+                _ => None,
+            };
+            let light = if let Some(sky) = sky {
+                let (wi, pdf) = sample_ambient(wo, ns, flags, u);
+                LightLanes::from_afar(sky.radiance.sample(&vertices.lambda), wi, pdf, lit)
+            } else {
+                let sampling = (&shade.pass, direct, &mut *shade.light_samples);
+                let (id, numbers) = (Some(LightId(id)), (R::zero(), u));
+                lights::sample(sampling, id, contexts, numbers, &vertices.lambda, lit)
+            };
             let LightLanes { valid, l, wi, pdf, .. } = light;
             if !valid.any() {
                 continue;
@@ -68,7 +84,7 @@ impl AtVertices for AllLights {
             let scattered = bsdf.f(wo, wi, TransportMode::Radiance) * l * wi.dot(ns).abs();
             let valid = valid & !scattered.is_black();
             let l = vertices.beta * (scattered / pdf);
-            if !casts_shadows {
+            if !casts_shadows || sky.is_some() {
                 sum = SampledSpectrum::select(valid, sum + l, sum);
                 continue;
             }
@@ -80,7 +96,8 @@ impl AtVertices for AllLights {
         }
         if *casts_shadows {
             vertices.address.dimension.scatter(lit, &mut shade.paths.dimension, rows.indices);
-        } else {
+        }
+        if !casts_shadows || *has_ambient {
             shade.paths.l.set(rows, lit, sum);
         }
     }

@@ -35,6 +35,14 @@ pub(super) struct LightLanes<R: Real> {
 }
 
 impl<R: Real> LightLanes<R> {
+    /// Light from infinitely far away.
+    #[inline(always)]
+    pub fn from_afar(l: SampledSpectrum<R>, wi: Vector3<R>, pdf: R, valid: R::Mask) -> Self {
+        let ([is, is_not], zero) = ([true, false].each(R::Mask::splat), Vec3::splat(R::zero()));
+        let p = Point3Error::exact(zero);
+        Self { valid, l, wi, pdf, p, n: zero, is_delta: is_not, is_distant: is, passes: is }
+    }
+
     /// The shadow rays from points with geometric normals, and their ends.
     #[inline(always)]
     pub fn shadow_rays(&self, p: Point3Error<R>, n: Normal3<R>, time: R) -> (Ray<R>, R) {

@@ -17,7 +17,7 @@ use crate::transport::path_state::PathState;
 
 impl WaveIntegrator for Whitted {
     fn shade(&self, batch: &mut Batch) {
-        let lights = AllLights::new(true);
+        let lights = AllLights::with_shadows(self.is_ambient());
         batch.classify(self.max_depth(), lights.direct());
         batch.shade_in_lanes(&lights);
         batch.shade_others(|batch, place, hit| self.shade_path(batch, &lights, place, hit));
@@ -34,11 +34,13 @@ impl Whitted {
         let (path, _) = place;
         let PathState { ray, beta, depth, .. } = state;
         if depth < self.max_depth() {
-            connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
+            let at = (&surface, self.is_ambient());
+            let around = connect_all(pass.pixels.scene, sampler, at, &bsdf, &lambda, |light| {
                 let Connection { ray, t_max, interfaces, l, .. } = light;
                 let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
                 queue.push(path, beta * l, &ray, t_max);
             });
+            paths.add_light(path as usize, beta * around);
             let children = Node { ray, medium: None, beta, depth, reflected_at: None }
                 .children(&surface, &bsdf, sampler);
             for Node { ray, beta, depth, .. } in children.into_iter().rev().flatten() {

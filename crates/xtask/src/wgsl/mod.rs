@@ -206,7 +206,7 @@ const SOURCES: &[(&str, &[&str])] = &[
     ("crates/scene/src/texture/dots.rs", &["coverage"]),
     ("crates/scene/src/texture/fractal.rs", &["fbm", "turbulence", "windy"]),
     ("crates/scene/src/texture/marble.rs", &["Marble::place"]),
-    ("crates/integrators/src/transport/direct.rs", &["power_heuristic"]),
+    ("crates/integrators/src/transport/direct.rs", &["power_heuristic", "sample_ambient"]),
 ];
 
 /// Functions that the shaders have by hand. Drivers simplify sums as if they were exact, so that
