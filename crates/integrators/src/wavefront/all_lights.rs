@@ -1,22 +1,24 @@
 //! Direct light in lanes by one sample of every light, of ray casting and Whitted's ray tracing.
 
 use geometry::PatchPoints;
-use lanes::{Int, Mask, Real};
-use scattering::{Bsdf, Scatter, TransportMode};
+use lanes::{Each, Int, Mask, Real};
+use math::{Ray, RayDifferential, Vec3, offset_ray_origin};
+use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
 use scene::Interfaces;
 use scene::light::{Light, LightId, LightSampleContext};
 use scene::material::MaterialModel;
 use spectrum::SampledSpectrum;
 
 use super::lights::{self, LightLanes};
-use super::numbers::draw_2d;
+use super::numbers::{draw_2d, draw_two};
 use super::shade::{AtVertices, Shade, Vertices};
 use super::shadows::Shadow;
 use crate::transport::direct::{DirectLighting, sample_ambient};
+use crate::transport::path_state::PathState;
 
 /// Direct light by one sample of every light.
 pub(super) struct AllLights {
-    /// Whether surfaces cast shadows. Specular surfaces are left to be shaded one by one then.
+    /// Whether surfaces cast shadows. Then specular surfaces reflect and refract rays, too.
     casts_shadows: bool,
     /// Whether skies of one colour cast none.
     has_ambient: bool,
@@ -48,24 +50,43 @@ impl AtVertices for AllLights {
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
     ) {
-        let Vertices { rows, active, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = vertices;
-        let Self { casts_shadows, has_ambient, direct } = shade.algorithm;
-        let (flags, mut lit) = (bsdf.flags(), active);
-        if *casts_shadows {
-            let is_specular = flags.is_specular();
-            rows.each_of(active & is_specular, |lane, row| {
-                shade.queues.scalar.push((row as u32, shade.turns[vertices.first + lane]));
-            });
-            lit = lit & !is_specular;
+        let (flags, active) = (bsdf.flags(), vertices.active);
+        let mut next = vertices.address.dimension;
+        let lit = active & flags.is_non_specular();
+        if lit.any() {
+            shade.connect_all(&mut vertices, bsdf, contexts, lit);
+            next = R::Int::select(lit, vertices.address.dimension, next);
         }
-        lit = lit & flags.is_non_specular();
-        if !lit.any() {
+        if !shade.algorithm.casts_shadows {
             return;
         }
-        let mut sum = shade.paths.l.get::<R>(rows);
-        for id in 0..shade.pass.pixels.scene.lights().len() as u32 {
-            let u = draw_2d::<R>(&shade.pass, &mut vertices.address);
-            let sky = match shade.pass.pixels.scene.light(LightId(id)).row() {
+        let specular = active & flags.is_specular();
+        if specular.any() {
+            vertices.address.dimension = next;
+            shade.wait_for_specular(&mut vertices, bsdf, specular);
+            next = R::Int::select(specular, vertices.address.dimension, next);
+        }
+        next.scatter(lit | specular, &mut shade.paths.dimension, vertices.rows.indices);
+    }
+}
+
+impl<M: MaterialModel> Shade<'_, '_, M, AllLights> {
+    /// Connects lanes to one point of every light.
+    #[inline(always)]
+    fn connect_all<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &mut Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+        lit: R::Mask,
+    ) {
+        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
+        let AllLights { casts_shadows, has_ambient, direct } = self.algorithm;
+        let flags = bsdf.flags();
+        let mut sum = self.paths.l.get::<R>(rows);
+        for id in 0..self.pass.pixels.scene.lights().len() as u32 {
+            let u = draw_2d::<R>(&self.pass, &mut vertices.address);
+            let sky = match self.pass.pixels.scene.light(LightId(id)).row() {
                 Light::UniformInfinite(sky) if *has_ambient => Some(sky),
                 _ => None,
             };
@@ -73,7 +94,7 @@ impl AtVertices for AllLights {
                 let (wi, pdf) = sample_ambient(wo, ns, flags, u);
                 LightLanes::from_afar(sky.radiance.sample(&vertices.lambda), wi, pdf, lit)
             } else {
-                let sampling = (&shade.pass, direct, &mut *shade.light_samples);
+                let sampling = (&self.pass, direct, &mut *self.light_samples);
                 let (id, numbers) = (Some(LightId(id)), (R::zero(), u));
                 lights::sample(sampling, id, contexts, numbers, &vertices.lambda, lit)
             };
@@ -90,15 +111,44 @@ impl AtVertices for AllLights {
             }
             let (ray, t_max) = light.shadow_rays(p, n, time);
             let shadow = Shadow { l, ray, t_max };
-            let [stopped, passing] = &mut shade.queues.shadows;
+            let [stopped, passing] = &mut self.queues.shadows;
             stopped.append(rows, valid & !light.passes, &shadow);
             passing.append(rows, valid & light.passes, &shadow);
         }
-        if *casts_shadows {
-            vertices.address.dimension.scatter(lit, &mut shade.paths.dimension, rows.indices);
-        }
         if !casts_shadows || *has_ambient {
-            shade.paths.l.set(rows, lit, sum);
+            self.paths.l.set(rows, lit, sum);
+        }
+    }
+
+    /// Lets the reflected and the refracted rays of lanes wait, those first that are traced last.
+    #[inline(always)]
+    fn wait_for_specular<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &mut Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        specular: R::Mask,
+    ) {
+        let numbers = draw_two::<R>(&self.pass, &mut vertices.address, B::CHOOSES);
+        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, wo, time, beta, .. } = *vertices;
+        for i in [1, 0] {
+            let directions = [Directions::Reflection, Directions::Transmission][i];
+            let (uc, u) = numbers[i];
+            let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, directions);
+            let BsdfSample { f, wi, pdf, flags, valid, .. } = sample;
+            let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
+            let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));
+            let turn_of = turns.indices.to_array();
+            rows.each_of(valid & specular & flags.is_specular(), |lane, row| {
+                let turn = turn_of[lane] as usize;
+                let [o, d] = [o, d].map(|v| Vec3::from_array(v.map(|lanes| lanes[lane])));
+                let ray = RayDifferential {
+                    ray: Ray::new(o, d, time.lane(lane)),
+                    differentials: self.scattered_differentials(turn, &sample, lane),
+                };
+                let beta = SampledSpectrum::new(beta.map(|lanes| lanes[lane]));
+                let depth = self.segments.depth[turn] + 1;
+                self.queues.wait(row as u32, PathState { beta, ..PathState::new(ray, depth) });
+            });
         }
     }
 }

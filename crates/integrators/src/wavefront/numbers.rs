@@ -92,6 +92,22 @@ impl<R: Real> VertexNumbers<R> {
     }
 }
 
+/// The next coordinates of each lane, for two samples of a BSDF, which may have no choice of lobes.
+#[inline(always)]
+pub(super) fn draw_two<R: Real>(
+    pass: &Pass,
+    address: &mut Address<R::Int>,
+    chooses_lobes: bool,
+) -> [(R, Vec2<R>); 2] {
+    let mut draw = Draw::new(pass, address);
+    for _ in 0..2 {
+        draw.push_if(chooses_lobes, Coordinates::One, address);
+        draw.push(Coordinates::Two, address);
+    }
+    let u = draw.numbers(pass);
+    [(u.one(0), u.two(1)), (u.one(2), u.two(3))]
+}
+
 /// The next coordinate of each lane.
 #[inline(always)]
 pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R {

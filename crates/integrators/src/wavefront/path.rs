@@ -2,9 +2,9 @@
 
 use geometry::{Hit, PatchPoints};
 use lanes::{Int, Mask, Real};
-use math::{Ray, Vec2, Vec3, offset_ray_origin};
+use math::{Ray, Vec2, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
@@ -22,7 +22,6 @@ use super::shade::{AtVertices, Shade, Vertices};
 use super::shadows::{PassageLanes, Shadow};
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
-use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::roulette::{self, CERTAIN};
 use crate::transport::subsurface::entered;
 use crate::{Path, Tracer};
@@ -206,27 +205,11 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         sample: &BsdfSample<R>,
         first: usize,
     ) {
-        let PixelSamples { scene, view, .. } = *self.pass.pixels;
-        let is_reflective = sample.flags.is_reflective().bits();
         turns.each_of(appended & sample.flags.is_specular(), |lane, turn| {
-            if !self.segments.has_differentials(turn as u32) {
-                return;
-            }
-            let lobe = if is_reflective >> lane & 1 == 1 {
-                BxdfFlags::SPECULAR_REFLECTION
-            } else {
-                BxdfFlags::SPECULAR_TRANSMISSION
-            };
-            let wi = sample.wi.to_array().map(|coordinate| coordinate.lane(lane));
-            let scattered = BsdfSample {
-                eta: sample.eta.lane(lane),
-                ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
-            };
-            let hit = self.hits.get(turn).expect("invariant: vertices have hits");
-            let ray = self.segments.state(turn).ray;
             let place = first + (appended.bits() & ((1 << lane) - 1)).count_ones() as usize;
-            let differentials = scene.scattered_differentials(view, (&ray, &hit), &scattered);
-            self.queues.next.set_differentials(place, differentials.as_ref());
+            if let Some(differentials) = self.scattered_differentials(turn, sample, lane) {
+                self.queues.next.set_differentials(place, Some(&differentials));
+            }
         });
     }
 }

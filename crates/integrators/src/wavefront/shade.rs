@@ -2,9 +2,9 @@
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
 use lanes::{Kernel, Mask, Real};
-use math::{Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
+use math::{Differentials, Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BxdfFlags, Scatter};
+use scattering::{Bsdf, BsdfSample, BxdfFlags, Scatter};
 use scene::Footprint;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
@@ -17,6 +17,7 @@ use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::Segments;
+use crate::transport::pixel_samples::PixelSamples;
 
 /// What an algorithm does at vertices.
 pub(super) trait AtVertices: Sized {
@@ -72,8 +73,6 @@ pub(super) struct Vertices<R: Real> {
     pub turns: Rows<R>,
     /// The lanes that have a vertex.
     pub active: R::Mask,
-    /// The place of the first one in the queue.
-    pub first: usize,
     pub surface: PatchPoints<R>,
     pub wo: Vector3<R>,
     pub time: R,
@@ -121,7 +120,6 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
             rows,
             turns,
             active: rows.active,
-            first,
             surface: self.points.get(first),
             wo: -segments.direction.vector(turns).normalize(),
             time: R::gather(&segments.time, turns.indices),
@@ -140,6 +138,34 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
                 self.paths.set_lambda(row, &vertices.lambda.lane(lane));
             });
         }
+    }
+}
+
+impl<M, A> Shade<'_, '_, M, A> {
+    /// The differentials of the ray that the specular sample of a lane makes of that of a turn, if
+    /// this has any.
+    pub fn scattered_differentials<R: Real>(
+        &self,
+        turn: usize,
+        sample: &BsdfSample<R>,
+        lane: usize,
+    ) -> Option<Differentials> {
+        if !self.segments.has_differentials(turn as u32) {
+            return None;
+        }
+        let PixelSamples { scene, view, .. } = *self.pass.pixels;
+        let lobe = if sample.flags.is_reflective().bits() >> lane & 1 == 1 {
+            BxdfFlags::SPECULAR_REFLECTION
+        } else {
+            BxdfFlags::SPECULAR_TRANSMISSION
+        };
+        let wi = sample.wi.to_array().map(|coordinate| coordinate.lane(lane));
+        let scattered = BsdfSample {
+            eta: sample.eta.lane(lane),
+            ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
+        };
+        let hit = self.hits.get(turn).expect("invariant: vertices have hits");
+        scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), &scattered)
     }
 }
 

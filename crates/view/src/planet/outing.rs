@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::Overrides;
 #[cfg(feature = "gpu")]
 use alhazen::description::Diagnostic;
-use alhazen::description::{CameraDesc, TransformDesc};
+use alhazen::description::{CameraDesc, IntegratorDesc, TransformDesc};
 #[cfg(feature = "gpu")]
 use alhazen::device::Kernels;
 use alhazen::geometry::GeometryId;
@@ -81,6 +81,10 @@ impl Outing {
         let name = "planet.pbrt";
         let text = scene(&planet, &walker.viewpoint(&planet), "planet");
         let mut imported = import(Path::new(name), &MemoryAssets::default().with(name, text));
+        // A shadow ray towards the sun is as much as a frame has time for.
+        if let IntegratorDesc::Whitted(whitted) = &mut imported.desc.integrator.value {
+            whitted.ambient = true;
+        }
         overrides.apply(&mut imported.desc).map_err(|error| error.to_string())?;
         let world = World::new(imported.desc).map_err(|errors| summary(&errors))?;
         let shot = Shot { samples, ..world.shot() };
