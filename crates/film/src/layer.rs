@@ -310,7 +310,12 @@ impl LayerSet {
 
     /// The layers, in their order.
     pub fn iter(self) -> impl Iterator<Item = Layer> {
-        Layer::ALL.into_iter().filter(move |&layer| self.has(layer))
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let layer = Layer::ALL.get(rest.trailing_zeros() as usize).copied()?;
+            rest &= rest - 1;
+            Some(layer)
+        })
     }
 
     /// Whether some layer needs a sample's first hit, or whether there is one.

@@ -134,6 +134,7 @@ impl Sums {
 
     /// A sum in units of 2⁻⁶⁴, as far as 128 bits hold it. `first` is the index of the tile's first
     /// pixel.
+    #[inline]
     pub(crate) fn units(&self, tile: usize, first: usize, pixel: usize, component: usize) -> i128 {
         let index = pixel * self.components + component;
         let low = extended(self.low[first * self.components + index]);
@@ -152,7 +153,10 @@ impl Sums {
 /// The sum that low and high bits make, as far as 128 bits hold it.
 #[inline]
 fn whole(low: i128, high: &High, index: usize) -> i128 {
-    match high.get(&(index as u32)).filter(|_| !high.is_empty()) {
+    if high.is_empty() {
+        return low;
+    }
+    match high.get(&(index as u32)) {
         None => low,
         Some(&high) => {
             // With low bits that are not negative only sums beyond 128 bits saturate.

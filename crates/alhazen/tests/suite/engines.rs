@@ -70,6 +70,7 @@ Option "disabletexturefiltering" true
 LookAt 0 1.5 5 0 0.8 0 0 1 0
 Camera "perspective" "float fov" 50
 Film "rgb"
+Integrator "whitted" "bool ambient" true
 WorldBegin
 LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
 LightSource "distant" "point3 from" [ -1 2 1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 1 1 1 ]
@@ -301,11 +302,15 @@ impl Compiled {
         }
         let near = AmbientOcclusionDesc { max_distance: 3.0, ..AmbientOcclusionDesc::default() };
         let occlusion = AmbientOcclusion::new(near, RgbColorSpace::srgb());
+        let whitted = match self.desc.integrator.value {
+            IntegratorDesc::Whitted(settings) => Whitted::new(settings),
+            _ => Whitted::default(),
+        };
         vec![
             Engines::new("path", path, sampler, set),
             Engines::new("ambient occlusion", occlusion, sampler, set),
             Engines::new("ray casting", RayCasting, sampler, set),
-            Engines::new("whitted", Whitted::default(), sampler, set),
+            Engines::new("whitted", whitted, sampler, set),
         ]
     }
 }

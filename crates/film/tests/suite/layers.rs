@@ -84,6 +84,15 @@ fn at(image: &Image, channel: &str, [x, y]: [u32; 2]) -> f32 {
 }
 
 #[test]
+fn layers_of_a_set_come_in_their_order() {
+    for layer in Layer::ALL {
+        assert_eq!(LayerSet::NONE.with(layer).iter().collect::<Vec<_>>(), [layer]);
+    }
+    assert_eq!(LayerSet::from_iter(Layer::ALL).iter().collect::<Vec<_>>(), Layer::ALL);
+    assert_eq!(LayerSet::NONE.iter().count(), 0);
+}
+
+#[test]
 fn means_of_first_hits_are_over_the_samples_that_hit() {
     let mut film = film(Layer::ALL);
     add(&mut film, [17, 16], 1.0, Some(hit(2.0, "cube")));

@@ -289,7 +289,7 @@ fn what_does_not_move_is_refused() {
 fn pictures_of_moving_spheres_are_those_of_the_cpu() {
     let Some(kernels) = kernels() else { return };
     let mut case = Case::of_text(MOVING);
-    let algorithm = Algorithm::Whitted(WhittedDesc { max_depth: 2, ..WhittedDesc::default() });
+    let algorithm = Algorithm::Whitted(WhittedDesc { max_depth: 2, ambient: true, ..WhittedDesc::default() });
     let flat = case.flatten(&algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
     let mut realtime = Realtime::animated(kernels, flat, case.scene.world(), &algorithm).expect("a scene");
     let sets: Vec<GeometryId> = case.scene.sphere_sets().map(|(id, _)| id).collect();

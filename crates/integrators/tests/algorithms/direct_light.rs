@@ -10,7 +10,9 @@ use description::{
 };
 use scene::Scene;
 
-use crate::support::{Unbiased, assert_mean, at, compile, diffuse, emission, quad, radiance, sphere, v};
+use crate::support::{
+    Unbiased, assert_mean, at, compile, diffuse, emission, quad, radiance, sphere, v, white_sky,
+};
 
 const RHO: f32 = 0.8;
 
@@ -126,6 +128,31 @@ fn whitted_counts_scattering_events_like_path_tracing() {
         1,
         "Whitted",
     );
+}
+
+#[test]
+fn ambient_light_of_the_sky_casts_no_shadows() {
+    let roof = |desc: &mut SceneDesc| {
+        white_sky(desc);
+        let material = diffuse(desc, 0.5);
+        let roof = quad(v(-5.0, -5.0, 2.0), v(10.0, 0.0, 0.0), v(0.0, 10.0, 0.0));
+        desc.shapes.push(ShapeDesc { material, ..roof.into() });
+    };
+    let scene = over_a_floor(roof);
+    let mut ambient = Whitted::new(WhittedDesc { ambient: true, ..Default::default() });
+    let found = look(&mut ambient, &scene, 100);
+    assert!((found.mean - f64::from(RHO)).abs() < 1e-5 && found.variance() < 1e-10, "{found:?}");
+    assert!(look(&mut Whitted::default(), &scene, 1000).mean < 0.5 * f64::from(RHO));
+
+    // Leaves scatter the light of both sides.
+    let mut desc = SceneDesc::default();
+    let (reflectance, transmittance) = (0.3.into(), 0.5.into());
+    let leaf = MaterialKind::DiffuseTransmission { reflectance, transmittance, scale: 1.0 };
+    let material = Some(desc.materials.push(leaf.into()));
+    let floor = quad(v(-0.1, -0.1, 0.0), v(0.2, 0.0, 0.0), v(0.0, 0.2, 0.0));
+    desc.shapes.push(ShapeDesc { material, ..floor.into() });
+    roof(&mut desc);
+    assert_mean(&look(&mut ambient, &compile(&desc), 20_000), 0.8, 1, "a leaf");
 }
 
 #[test]

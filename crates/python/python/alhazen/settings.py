@@ -43,6 +43,7 @@ class integrator:
     def whitted(
         *,
         maxdepth: int | None = None,
+        ambient: bool | None = None,
         reflections: Literal["traced", "environment", "hybrid"] | None = None,
         reflectiondistance: float | None = None,
         reflectionresolution: int | None = None,
@@ -51,6 +52,9 @@ class integrator:
 
         maxdepth: a whole number of 0 or more, by default 5. Maximum number of scattering events of
         a path.
+
+        ambient: true or false, by default false. Light of a sky of one colour reaches all
+        surfaces, as if nothing were in between: no rays look for its shadows.
 
         reflections: one of traced, environment, hybrid, by default traced. Where the light of
         mirror reflections is from.

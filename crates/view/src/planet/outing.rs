@@ -24,7 +24,7 @@ use crate::world::summary;
 use crate::{Frame, Shot, World};
 
 /// The length of a step in seconds.
-pub const STEP: f32 = 1.0 / 60.0;
+pub const STEP: f32 = 1.0 / 30.0;
 
 /// What a blast throws: everything this near to where it is, in metres, at up to this speed.
 const BLAST: [f32; 2] = [2.5, 11.0];

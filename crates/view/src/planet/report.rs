@@ -9,8 +9,8 @@ use super::{Input, Moment, Outing, Spent};
 use crate::Frame;
 use crate::step::StepError;
 
-/// The steps of a frame: it shows a thirtieth of a second.
-const STEPS: u32 = 2;
+/// The steps of a frame.
+const STEPS: u32 = 1;
 
 /// The frame times of a walk.
 #[derive(Clone, Debug)]

@@ -22,7 +22,7 @@ const TURN: f32 = 0.005;
 const KEY_TURN: f32 = 1.8;
 
 /// The most steps between two pictures: where they take longer, time passes more slowly.
-const MOST_STEPS: u32 = 4;
+const MOST_STEPS: u32 = 2;
 
 const HELP: &str = "W A S D walk · arrows, drag: look around · shift runs · space jumps · F throws";
 
