@@ -11,7 +11,7 @@ use math::Vec3;
 use spectrum::{Matrix3, Rgb, SampledSpectrum, SampledWavelengths};
 
 use crate::splats::SPLAT_SUMS;
-use crate::sum::{reserved, value};
+use crate::sum::{Sums, reserved, value};
 use crate::{Buckets, Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
 
 /// The depth of pixels in which nothing is hit: the usual number for "infinitely far" in
@@ -145,9 +145,16 @@ impl<'film> Development<'film> {
         std::iter::once(self.film).chain(self.second)
     }
 
-    /// A sum of the films' sums.
-    fn sum(&self, units: impl Fn(&Film) -> i128) -> f64 {
-        value(self.films().map(units).fold(0, i128::saturating_add))
+    /// A sum of a pixel of the films: of a tile, its first pixel and the pixel in it.
+    #[inline]
+    fn sum(&self, sums: impl Fn(&Film) -> &Sums, place: [usize; 3], component: usize) -> f64 {
+        match self.second {
+            None => sums(self.film).value(place, component),
+            Some(second) => {
+                let [first, second] = [self.film, second].map(|film| sums(film).units(place, component));
+                value(first.saturating_add(second))
+            }
+        }
     }
 
     fn count(&self, pixel: usize) -> u32 {
@@ -156,7 +163,7 @@ impl<'film> Development<'film> {
 
     /// Colour and layers of a pixel of a tile, channel by channel.
     fn pixel(&self, tile: usize, first: usize, pixel: usize, mut put: impl FnMut(f32)) {
-        let color = |c| self.sum(|film| film.color.units(tile, first, pixel, c));
+        let color = |c| self.sum(|film| &film.color, [tile, first, pixel], c);
         let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
         let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
         let response = [0, 1, 2].map(|c| mean[c] + self.splats(tile, pixel, c));
@@ -165,7 +172,7 @@ impl<'film> Development<'film> {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
         }
         for bucket in 0..self.buckets.map_or(0, |buckets| buckets.count()) {
-            let sum = |i| self.sum(|film| film.spectrum.units(tile, first, pixel, 2 * bucket + i));
+            let sum = |i| self.sum(|film| &film.spectrum, [tile, first, pixel], 2 * bucket + i);
             let weight = if self.film.counts.is_empty() { 0.0 } else { sum(1) };
             let mean = if weight == 0.0 { 0.0 } else { sum(0) / weight };
             let light = (mean + self.splats(tile, pixel, SPLAT_SUMS + bucket)) as f32;
@@ -177,7 +184,10 @@ impl<'film> Development<'film> {
     fn splats(&self, tile: usize, pixel: usize, component: usize) -> f64 {
         match self.films().map(|film| film.splats.paths()).sum::<u64>() {
             0 => 0.0,
-            paths => self.sum(|film| film.splats.units(tile, pixel, component)) / paths as f64,
+            paths => {
+                let units = self.films().map(|film| film.splats.units(tile, pixel, component));
+                value(units.fold(0, i128::saturating_add)) / paths as f64
+            }
         }
     }
 
@@ -188,7 +198,7 @@ impl<'film> Development<'film> {
     }
 
     fn layer(&self, layer: Layer, [tile, first, pixel]: [usize; 3], weight: f64, mut put: impl FnMut(f32)) {
-        let sum = |c| self.sum(|film| film.data.units(tile, first, pixel, c));
+        let sum = |c| self.sum(|film| &film.data, [tile, first, pixel], c);
         let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { (a / b) as f32 };
         let offset = self.film.layout.offset(layer).unwrap_or(0);
         match layer {
@@ -254,7 +264,7 @@ impl<'film> Development<'film> {
         if count < 2.0 || weight == 0.0 {
             return 0.0;
         }
-        let mean = self.sum(|film| film.color.units(tile, first, pixel, 1)) / weight;
+        let mean = self.sum(|film| &film.color, [tile, first, pixel], 1) / weight;
         let squares = (wwyy - 2.0 * mean * wwy + mean * mean * ww).max(0.0);
         (count / (count - 1.0) * squares / (weight * weight)) as f32
     }

@@ -39,14 +39,14 @@ pub fn row(film: &Film, row: usize) -> Vec<u8> {
         let range = film.grid.range(tile);
         let pixels = range.len();
         for c in 0..film.color.components() {
-            put_block(payload, pixels, |pixel| film.color.units(tile, range.start, pixel, c));
+            put_block(payload, pixels, |pixel| film.color.units([tile, range.start, pixel], c));
         }
         if !film.counts.is_empty() {
             put_block(payload, pixels, |pixel| film.counts[range.start + pixel].into());
         }
         for sums in [&film.data, &film.spectrum] {
             for c in 0..sums.components() {
-                put_block(payload, pixels, |pixel| sums.units(tile, range.start, pixel, c));
+                put_block(payload, pixels, |pixel| sums.units([tile, range.start, pixel], c));
             }
         }
         if !film.splats.is_empty() {
