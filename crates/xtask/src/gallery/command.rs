@@ -137,7 +137,9 @@ fn cost(json: &Value) -> String {
     let tests = (number("extent_tests") / rays, number("primitive_tests") / rays);
     let rays =
         if rays < 1e6 { format!("{:.0} thousand", rays / 1e3) } else { format!("{:.1} million", rays / 1e6) };
-    let [width, height] = [0, 1].map(|i| json["resolution"][i].as_u64().unwrap_or(0));
+    // The picture is that of the crop window.
+    let bound = |i: usize| json["pixel_bounds"][i].as_i64().unwrap_or(0);
+    let [width, height] = [bound(1) - bound(0), bound(3) - bound(2)];
     format!(
         "{width} × {height} pixels, {} samples a pixel, {rays} rays with {:.1} tests of extents and {:.1} of \
          primitives each",
