@@ -17,17 +17,16 @@ use std::path::Path;
 use math::{Vec2, Vec3, equal_area_square_to_sphere};
 use sampling::Rng;
 
+use super::land::{POND, height, shore, slope};
 use super::mesh::Mesh;
 use super::noise::fbm;
+use super::pond;
 use super::tree::{Broadleaf, grass, spruce};
 
 /// Trees stand within this radius, in metres.
 const RADIUS: f32 = 75.0;
 /// Half the extent of the ground.
 const GROUND: f32 = 110.0;
-/// The pond: half its extent.
-const POND: [f32; 2] = [15.0, 10.5];
-
 /// Plants by name, with what part of all trees they are.
 const TREES: [(&str, f32); 7] = [
     ("oak-1", 0.16),
@@ -103,6 +102,8 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
     water(cells).write(&folder.join("water.ply"))?;
     fs::write(folder.join("sky.pfm"), sky(256))?;
     fs::write(folder.join("place.pbrt"), PLACE)?;
+    fs::write(folder.join("ground.pbrt"), GROUND_OF_SOIL)?;
+    pond::make(folder)?;
     fs::write(folder.join("meadow.pbrt"), meadow())?;
 
     let stand = stand();
@@ -127,28 +128,6 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
     Ok(())
 }
 
-/// How far a point is outside the shore of the pond: 0 in its middle, 1 at the shore.
-fn shore(x: f32, y: f32) -> f32 {
-    let round = (x / POND[0]).hypot(y / POND[1]);
-    round + 0.22 * fbm(0.16 * x + 40.0, 0.16 * y, 3)
-}
-
-/// Height of the ground in metres over the water.
-fn height(x: f32, y: f32) -> f32 {
-    let s = shore(x, y);
-    let bed = -1.5 * (1.0 - s * s).max(0.0);
-    let bank = (s - 1.0).clamp(0.0, 1.0);
-    let hills = 0.5 + 0.9 * fbm(0.07 * x, 0.07 * y, 4) + 0.05 * fbm(1.3 * x, 1.3 * y, 3);
-    bed + bank * (hills + 0.3 * (s - 1.0) * (s - 1.0)).max(0.08)
-}
-
-fn slope(x: f32, y: f32) -> Vec3 {
-    const STEP: f32 = 0.05;
-    let dx = (height(x + STEP, y) - height(x - STEP, y)) / (2.0 * STEP);
-    let dy = (height(x, y + STEP) - height(x, y - STEP)) / (2.0 * STEP);
-    Vec3::new(-dx, -dy, 1.0).normalize()
-}
-
 fn ground(cells: f32) -> Mesh {
     let count = (500.0 * cells) as u32;
     let mut mesh = Mesh::default();
@@ -161,6 +140,8 @@ fn ground(cells: f32) -> Mesh {
         let (x, y) = (at(i), at(j));
         [Vec3::new(x, y, height(x, y)), slope(x, y)]
     });
+    // Textures know the height, and do not change along v.
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(pond::coordinate(p.z), 0.5 + p.y / GROUND)).collect();
     mesh
 }
 
@@ -284,12 +265,13 @@ Camera "perspective" "float fov" 44
 
 WorldBegin
 Include "place.pbrt"
+Include "ground.pbrt"
 Include "plants.pbrt"
 Include "meadow.pbrt"
 Include "TREES"
 "#;
 
-const PLACE: &str = r#"# Sky, mist, ground and water, and the materials of plants.
+const PLACE: &str = r#"# Sky, mist and water, and the materials of plants.
 
 LightSource "infinite" "string filename" "sky.pfm" "float scale" 2.5
 
@@ -305,11 +287,6 @@ AttributeBegin
   Shape "plymesh" "string filename" "water.ply"
 AttributeEnd
 
-Texture "patches" "float" "fbm" "integer octaves" 5 "float roughness" 0.6
-Texture "soil" "spectrum" "mix" "rgb tex1" [ 0.07 0.05 0.03 ] "rgb tex2" [ 0.06 0.09 0.025 ] "texture amount" "patches"
-Material "diffuse" "texture reflectance" "soil"
-Shape "plymesh" "string filename" "ground.ply"
-
 MakeNamedMaterial "oak wood" "string type" "diffuse" "rgb reflectance" [ 0.11 0.085 0.06 ]
 MakeNamedMaterial "oak leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.085 0.17 0.03 ] "rgb transmittance" [ 0.12 0.23 0.025 ]
 MakeNamedMaterial "birch wood" "string type" "diffuse" "rgb reflectance" [ 0.48 0.46 0.42 ]
@@ -319,4 +296,12 @@ MakeNamedMaterial "spruce leaves" "string type" "diffuse" "rgb reflectance" [ 0.
 MakeNamedMaterial "bush wood" "string type" "diffuse" "rgb reflectance" [ 0.12 0.09 0.06 ]
 MakeNamedMaterial "bush leaves" "string type" "diffusetransmission" "rgb reflectance" [ 0.11 0.15 0.03 ] "rgb transmittance" [ 0.14 0.19 0.03 ]
 MakeNamedMaterial "grass" "string type" "diffusetransmission" "rgb reflectance" [ 0.11 0.18 0.035 ] "rgb transmittance" [ 0.11 0.2 0.025 ]
+"#;
+
+const GROUND_OF_SOIL: &str = r#"# The ground.
+
+Texture "patches" "float" "fbm" "integer octaves" 5 "float roughness" 0.6
+Texture "soil" "spectrum" "mix" "rgb tex1" [ 0.07 0.05 0.03 ] "rgb tex2" [ 0.06 0.09 0.025 ] "texture amount" "patches"
+Material "diffuse" "texture reflectance" "soil"
+Shape "plymesh" "string filename" "ground.ply"
 "#;

@@ -5,9 +5,11 @@ mod cage;
 mod car;
 mod forest;
 mod head;
+mod land;
 mod mesh;
 mod noise;
 mod planet;
+mod pond;
 mod tree;
 
 use std::io;
