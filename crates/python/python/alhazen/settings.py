@@ -53,8 +53,8 @@ class integrator:
         maxdepth: a whole number of 0 or more, by default 5. Maximum number of scattering events of
         a path.
 
-        ambient: true or false, by default false. Light of a sky of one colour reaches all
-        surfaces, as if nothing were in between: no rays look for its shadows.
+        ambient: true or false, by default false. Light of a sky of one colour reaches all surfaces,
+        as if nothing were in between: no rays look for its shadows.
 
         reflections: one of traced, environment, hybrid, by default traced. Where the light of
         mirror reflections is from.
