@@ -2,7 +2,11 @@
 
 // The offset of the image of a light, or 0.
 fn emission_image(at: u32) -> u32 {
-    return tables[at + 3] >> 1;
+    let more = tables[at + 3] >> 2;
+    if (!HAS_EMISSION_IMAGES || more == 0 || tables[more] == 0) {
+        return 0;
+    }
+    return more;
 }
 
 // What the image of a light multiplies its emission by at texture coordinates of its surface.
@@ -15,14 +19,20 @@ fn image_share(image: u32, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
 
 // The same at a point of its surface, which has the parameters `uv`.
 fn image_share_at(at: u32, p: vec3f, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
-    if (!HAS_EMISSION_IMAGES || emission_image(at) == 0) {
+    if (emission_image(at) == 0) {
         return vec4f(1);
     }
     return image_share(emission_image(at), coordinates_on_light(at, p, uv), lambda);
 }
 
 // The texture coordinates of a point of the surface of a light.
-fn coordinates_on_light(at: u32, p: vec3f, uv: vec2f) -> vec2f {
+fn coordinates_on_light(light: u32, p_outside: vec3f, uv: vec2f) -> vec2f {
+    let at = surface_record(light);
+    var p = p_outside;
+    if (is_placed(light)) {
+        let inward = way_to_surface(light);
+        p = times(inward.linear, p) + inward.translation;
+    }
     switch (tables[at]) {
         case TRIANGLE_LIGHT: {
             let first = vec2f(number(at + 16), number(at + 17));

@@ -163,7 +163,8 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
             pdf = seen.pdf / (3.1415927 * sphere.w * sphere.w);
         }
         default: {
-            let point = point_by_area(at, u_position);
+            let point = point_on_light(at, u_position);
+            e.valid = e.valid && !is_cut_out_of_light(at, point.p.p, point.n, point.uv);
             var u_side = u_direction;
             var side = point.n;
             if (is_two_sided(at)) {
@@ -218,7 +219,7 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
         case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
         case IMAGE_LIGHT: { pdf = disk_density(from_, wi) * sky_density(at, sky_position(at, wi), false); }
         default: {
-            pdf = surface_density(at, point.uv) * surface_direction_density(at, point.n, -wi);
+            pdf = density_on_light(at, point.n, point.uv) * surface_direction_density(at, point.n, -wi);
             cosine = abs(dot(point.n, wi));
         }
     }

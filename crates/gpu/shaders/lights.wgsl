@@ -14,6 +14,7 @@ const GONIOMETRIC_LIGHT = 10u;
 const PROJECTION_LIGHT = 11u;
 const PATCH_LIGHT = 12u;
 const PORTAL_LIGHT = 13u;
+const PLACED_LIGHT = 14u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -39,7 +40,9 @@ fn light_record(light: u32) -> u32 {
 
 fn is_delta(at: u32) -> bool {
     let kind = tables[at];
-    return kind <= DISTANT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
+    let has_no_surface = kind <= DISTANT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
+    // No ray hits a surface that is invisible.
+    return has_no_surface || (tables[at + 3] & 2) != 0;
 }
 
 // The spectrum of a light times its scale.
@@ -68,7 +71,7 @@ fn light_radiance(at: u32, s: Surface, lambda: SampledWavelengths) -> vec4f {
         return vec4f();
     }
     var l = emission(at, lambda);
-    if (HAS_EMISSION_IMAGES && emission_image(at) != 0) {
+    if (emission_image(at) != 0) {
         l *= image_share(emission_image(at), s.uv, lambda);
     }
     return l;
@@ -195,29 +198,39 @@ fn sample_far_light(
 }
 
 fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: SampledWavelengths) -> LightSample {
+    let record = surface_record(at);
+    var inward: Placement;
+    var reference = context;
+    if (is_placed(at)) {
+        inward = way_to_surface(at);
+        reference = context_inside(inward, context);
+    }
     var point: ShapeSample;
-    var is_valid = true;
-    switch (tables[at]) {
+    switch (tables[record]) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let found = FlatShape_sample_from(flat_light(at), context, u);
-            point = found.v0;
-            is_valid = found.v1;
+            point = FlatShape_sample_from(flat_light(record), reference, u).v0;
         }
-        case SPHERE_LIGHT: { point = sample_sphere(at, context, u); }
+        case SPHERE_LIGHT: { point = sample_sphere(record, reference, u); }
         default: {
-            point = point_by_area(at, u);
-            point.pdf *= ShapeSampleContext_area_per_solid_angle(context, point.p.p, point.n);
+            point = point_by_area(record, u);
+            point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
         }
     }
-    if (tables[at] >= SPHERE_LIGHT) {
-        is_valid = point.pdf > 0 && point.pdf < infinity();
+    if (is_placed(at)) {
+        leave_instance(inward, &point);
     }
     var sample = no_light();
     let to_light = point.p.p - context.p.p;
-    if (!is_valid || Vec3_length_squared(to_light) == 0) {
+    if (Vec3_length_squared(to_light) == 0) {
         return sample;
     }
     sample.wi = Vec3_normalize(to_light);
+    if (is_placed(at)) {
+        point.pdf *= solid_angle_factor(inward, sample.wi);
+    }
+    if (!(point.pdf > 0 && point.pdf < infinity()) || is_cut_out_of_light(at, point.p.p, point.n, point.uv)) {
+        return sample;
+    }
     sample.l = image_share_at(at, point.p.p, point.uv, lambda);
     sample.pdf = point.pdf;
     sample.p = point.p;
@@ -384,17 +397,33 @@ fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f
 
 // The same, for a point of the surface and its normal.
 fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv: vec2f) -> f32 {
-    let at = light_record(light);
+    var at = light_record(light);
+    var reference = context;
+    var point = p;
+    var normal = n;
+    var factor = 1.0;
+    if (is_placed(at)) {
+        let inward = way_to_surface(at);
+        reference = context_inside(inward, context);
+        point = times(inward.linear, p) + inward.translation;
+        normal = Vec3_normalize(transposed(inverse(inward.linear), n));
+        factor = solid_angle_factor(inward, Vec3_normalize(p - context.p.p));
+        at = surface_record(at);
+    }
     switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: { return FlatShape_pdf_from(flat_light(at), context, uv); }
-        case SPHERE_LIGHT: {}
-        default: { return ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, uv); }
+        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
+            return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
+        }
+        case SPHERE_LIGHT: {
+            let cone = cone_of(at, reference);
+            if (cone.sine > 0) {
+                return factor / (6.2831855 * cone.one_minus_cos);
+            }
+        }
+        default: {}
     }
-    let cone = cone_of(at, context);
-    if (cone.sine > 0) {
-        return 1 / (6.2831855 * cone.one_minus_cos);
-    }
-    return ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, uv);
+    let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);
+    return by_area * surface_density(at, uv) * factor;
 }
 
 // The radiance of an infinite light along a ray that leaves the scene, and the density with which

@@ -103,14 +103,26 @@ fn key_of_item(item: u32) -> Key {
     return Key(first.w, first.xyz, bitcast<vec4f>(items[5 * item + 1]), stretch);
 }
 
-// The rows of the matrix that takes rays into an instance at the time of the sample; `item` is the
-// first of its keys.
-fn moved_rows(item: u32) -> array<vec4f, 3> {
-    let angle = bitcast<f32>(items[5 * item + 2].w);
-    let placement = placement_at(Motion(key_of_item(item), key_of_item(item + 1), angle), shutter_time);
-    let inward = inverse(placement.linear);
-    let translation = -times(inward, placement.translation);
-    return array(
-        vec4f(inward.x, translation.x), vec4f(inward.y, translation.y), vec4f(inward.z, translation.z),
-    );
+// The rows of the matrix that takes rays into an instance at the time of the sample, by motions of
+// two keys each, the outermost first.
+fn moved_rows(first_key: u32, motions: u32) -> array<vec4f, 3> {
+    var rows = array(vec4f(1, 0, 0, 0), vec4f(0, 1, 0, 0), vec4f(0, 0, 1, 0));
+    for (var i = 0u; i < motions; i++) {
+        let key = first_key + 2 * i;
+        let angle = bitcast<f32>(items[5 * key + 2].w);
+        let placement = placement_at(Motion(key_of_item(key), key_of_item(key + 1), angle), shutter_time);
+        let inward = inverse(placement.linear);
+        let translation = -times(inward, placement.translation);
+        rows = array(
+            further_row(inward.x, translation.x, rows),
+            further_row(inward.y, translation.y, rows),
+            further_row(inward.z, translation.z, rows),
+        );
+    }
+    return rows;
+}
+
+// A row of a matrix after others.
+fn further_row(row: vec3f, translation: f32, others: array<vec4f, 3>) -> vec4f {
+    return others[0] * row.x + others[1] * row.y + others[2] * row.z + vec4f(0, 0, 0, translation);
 }

@@ -61,6 +61,9 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
     s.light = tables[geometry + 1];
     if (s.light != 0) {
         s.light += hit.primitive;
+        if (HAS_PLACED_LIGHTS && hit.instance != NO_HIT) {
+            s.light += items[5 * hit.instance + 4].w;
+        }
     }
     return s;
 }
@@ -68,10 +71,8 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
 // Takes a point out of an instance, given the matrix and translation that take points inside.
 fn place_surface(s: ptr<function, Surface>, inward: Rows, translation: vec3f) {
     let outward = inverse(inward);
-    let inside = (*s).p.p;
     let ns = (*s).ns;
-    let size = times(absolute(outward), (*s).p.error + POINT_ERROR * (abs(inside) + abs(translation)));
-    (*s).p = Point3Error(times(outward, inside - translation), size);
+    (*s).p = placed_point(outward, translation, (*s).p);
     (*s).n = Vec3_normalize(transposed(inward, (*s).n));
     (*s).ns = face_forward(Vec3_normalize(transposed(inward, (*s).ns)), (*s).n);
     (*s).dpdu = times(outward, (*s).dpdu);
@@ -80,6 +81,13 @@ fn place_surface(s: ptr<function, Surface>, inward: Rows, translation: vec3f) {
     (*s).ts = times(outward, (*s).ts);
     (*s).dndu = normal_change(inward, ns, (*s).dndu);
     (*s).dndv = normal_change(inward, ns, (*s).dndv);
+}
+
+// A point outside of an instance, given the inverse of the matrix, and the translation, that take
+// points inside.
+fn placed_point(outward: Rows, translation: vec3f, inside: Point3Error) -> Point3Error {
+    let size = times(absolute(outward), inside.error + POINT_ERROR * (abs(inside.p) + abs(translation)));
+    return Point3Error(times(outward, inside.p - translation), size);
 }
 
 // The derivative of a unit normal outside, given normal and derivative inside.

@@ -204,7 +204,7 @@ fn bits(are_set: vec4<bool>) -> u32 {
     return (bits.x | bits.y) | (bits.z | bits.w);
 }
 
-// The id of the instance that is hit; `NO_HIT` outside of instances.
+// The id of the innermost instance that is hit; `NO_HIT` outside of instances.
 fn instance_id(hit: Hit) -> u32 {
     if (hit.instance == NO_HIT) {
         return NO_HIT;
@@ -230,9 +230,9 @@ fn whole(hit: Nearest) -> Hit {
 
 // The rows of the matrix that takes rays into an instance.
 fn instance_rows(item: u32) -> array<vec4f, 3> {
-    let motion = items[5 * item + 4].y;
-    if (HAS_MOTION && motion != 0) {
-        return moved_rows(motion);
+    let placed = items[5 * item + 4];
+    if (HAS_MOTION && placed.z != 0) {
+        return moved_rows(placed.y, placed.z);
     }
     return array(
         bitcast<vec4f>(items[5 * item]), bitcast<vec4f>(items[5 * item + 1]), bitcast<vec4f>(items[5 * item + 2]),

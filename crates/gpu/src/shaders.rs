@@ -40,9 +40,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 18] = plumbing! {
+const PLUMBING: [&str; 19] = plumbing! {
     "scene" "trace" "shapes" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
-    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "light_choices" "cameras"
+    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "placed_lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
@@ -101,6 +101,10 @@ pub struct Parts {
     pub images: bool,
     /// Lights with surfaces whose images are their emission, or choose their points.
     pub emission_images: bool,
+    /// Lights with surfaces in instances.
+    pub placed_lights: bool,
+    /// Lights with surfaces that have holes.
+    pub light_holes: bool,
     /// Infinite lights behind portals.
     pub portals: bool,
     /// Textures of noise.
@@ -286,6 +290,8 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         holes,
         images,
         emission_images,
+        placed_lights,
+        light_holes,
         portals,
         noise,
         coats,
@@ -302,6 +308,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
+        const HAS_PLACED_LIGHTS = {placed_lights};\nconst HAS_LIGHT_HOLES = {light_holes};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
         const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\
         const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\

@@ -23,7 +23,7 @@ const KERNEL: &str = "
     const HAS_CURVES = false;
     fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     const HAS_MOTION = false;
-    fn moved_rows(item: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
+    fn moved_rows(first_key: u32, motions: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;

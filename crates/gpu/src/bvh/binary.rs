@@ -58,6 +58,15 @@ impl Binary {
         binary
     }
 
+    /// A tree over primitives with their boxes, which are brought into the order of leaves.
+    pub fn over<T: Copy>(boxed: &mut [(Bounds3, T)]) -> Self {
+        let mut binary = Self::default();
+        if !boxed.is_empty() {
+            binary.divide(boxed, 0);
+        }
+        binary
+    }
+
     /// A leaf divided.
     fn of_leaf<T: Copy>(
         leaf: &PlainChild,
@@ -105,6 +114,11 @@ impl Binary {
     /// The root, which comes last, if there is anything.
     pub fn root(&self) -> Option<usize> {
         self.nodes.len().checked_sub(1)
+    }
+
+    /// The box of all.
+    pub fn bounds(&self) -> Bounds3 {
+        self.nodes.last().map_or(Bounds3::EMPTY, |root| root.bounds)
     }
 
     pub fn node(&self, index: usize) -> &BinaryNode {

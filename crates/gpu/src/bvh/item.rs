@@ -10,13 +10,15 @@
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
-//! turned over, 2 where it is cut out. That of an instance has the index of its first key instead
-//! of a geometry, or 0 at rest. Keys follow all that rays hit in the group.
+//! turned over, 2 where it is cut out. That of an instance has, after the kind, the index of its
+//! first key, the number of its motions, which is 0 at rest, and the first light of its shapes. Two
+//! keys are a motion; an instance within others has several, the outermost first. Keys follow all
+//! that rays hit in the group.
 
 use std::f32::consts::TAU;
 
-use geometry::{CurveKind, GeometryId, InstanceId, PlainShape, RevolvedKind, World};
-use math::{DMat3, DVec3, MotionKeys, Vec3};
+use geometry::{CurveKind, GeometryId, InstancePath, PlainItem, PlainShape, RevolvedKind, World};
+use math::{AnimatedTransform, Bounds3, DMat3, DMat4, DQuat, DVec3, MotionKeys, Vec3};
 
 use super::{BvhError, Group, Words};
 
@@ -35,14 +37,69 @@ const FLAT_CURVE: u32 = 7;
 const TUBE: u32 = 8;
 const RIBBON: u32 = 9;
 
-/// An instance of a group; `keys` is the index of its first key, or 0 at rest.
-pub fn instance(world: &World, id: InstanceId, groups: &[Group], keys: u32) -> [Words; QUADRUPLES] {
-    let motion = world.render_from_instance(id);
-    let inverse = motion.start().matrix().as_dmat4().inverse();
+/// What is tested alone.
+#[derive(Clone, Copy, Debug)]
+pub enum Item {
+    /// A primitive of a geometry.
+    Shape(GeometryId, u32),
+    /// A group seen through instances.
+    Instance(InstancePath),
+}
+
+impl From<&PlainItem> for Item {
+    fn from(item: &PlainItem) -> Self {
+        match *item {
+            PlainItem::Shape(geometry, primitive) => Self::Shape(geometry, primitive),
+            PlainItem::Instance(id) => Self::Instance(InstancePath::TOP.into(id)),
+        }
+    }
+}
+
+impl Item {
+    /// The box of a shape.
+    pub fn bounds(&self, world: &World) -> Option<Bounds3> {
+        match *self {
+            Self::Shape(geometry, primitive) => world.geometry(geometry).bounds(primitive),
+            Self::Instance(_) => None,
+        }
+    }
+}
+
+/// The group at the end of a path; `motions` are the index of its first key and the number of its
+/// motions.
+pub fn instance(
+    world: &World,
+    path: &InstancePath,
+    groups: &[Group],
+    motions: [u32; 2],
+) -> [Words; QUADRUPLES] {
+    let steps = path.ids().iter().map(|&id| world.render_from_instance(id).start().matrix().as_dmat4());
+    let inverse = steps.product::<DMat4>().inverse();
     let [x, y, z] = [0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits));
-    let group = &groups[world.group_of_instance(id).0 as usize];
-    let inside = [group.roots[0], group.roots[1], group.size.to_bits(), id.0];
-    [x, y, z, inside, [INSTANCE, keys, 0, 0]]
+    let last = path.ids().last().map_or(u32::MAX, |id| id.0);
+    let group = path.ids().last().map_or(0, |&id| world.group_of_instance(id).0);
+    let group = &groups[group as usize];
+    let inside = [group.roots[0], group.roots[1], group.size.to_bits(), last];
+    [x, y, z, inside, [INSTANCE, motions[0], motions[1], 0]]
+}
+
+/// The motions of a path, the outermost first; none where nothing moves. An instance at rest among
+/// others that move is a stretch that stays.
+pub fn motions(world: &World, path: &InstancePath) -> Vec<MotionKeys> {
+    let steps = || path.ids().iter().map(|&id| world.render_from_instance(id));
+    if !steps().any(AnimatedTransform::is_moving) {
+        return Vec::new();
+    }
+    let at_rest = |step: &AnimatedTransform| {
+        let matrix = step.start().matrix().as_dmat4();
+        MotionKeys {
+            times: [0.0, 1.0],
+            translations: [matrix.w_axis.truncate(); 2],
+            rotations: [DQuat::IDENTITY; 2],
+            stretches: [DMat3::from_mat4(matrix); 2],
+        }
+    };
+    steps().map(|step| step.keys().unwrap_or_else(|| at_rest(step))).collect()
 }
 
 /// The angle between the quaternions of a motion, at most π/2.
@@ -51,7 +108,7 @@ pub(crate) fn angle(keys: &MotionKeys) -> f32 {
 }
 
 /// Both keys of a motion, an item each.
-pub fn motion(keys: &MotionKeys) -> [[Words; QUADRUPLES]; 2] {
+pub fn keys(keys: &MotionKeys) -> [[Words; QUADRUPLES]; 2] {
     let angle = angle(keys);
     [0, 1].map(|i| {
         let [translation, rotation] =

@@ -11,11 +11,13 @@
 mod binary;
 mod item;
 mod node;
+mod paths;
 
 use std::ops::Range;
 
 use binary::Binary;
-use geometry::{GeometryId, GroupId, InstanceId, PlainItem, PlainTree, World};
+use geometry::{GeometryId, GroupId, InstanceId, InstancePath, PlainItem, World};
+use item::Item;
 pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
@@ -46,6 +48,8 @@ pub struct Bvh {
     pub top: Top,
     /// Whether any instance moves.
     pub has_motion: bool,
+    /// The instances, also those within others, with the index of the item of each.
+    pub(crate) instances: Vec<(InstancePath, u32)>,
     /// The items of the top group that have bounds.
     pub(crate) bounded: Range<usize>,
 }
@@ -67,7 +71,7 @@ pub struct Top {
 pub enum BvhError {
     /// A geometry has a shape that kernels do not intersect.
     Shape(GeometryId),
-    /// An instance is within another.
+    /// An instance is one of too many within others.
     Nested(InstanceId),
     /// An instanced geometry has no bounds.
     Unbounded(GeometryId),
@@ -80,12 +84,12 @@ impl Bvh {
     /// them. Hits on geometries that are cut out count if the kernel's `accepts` says so.
     pub fn new(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
-        let mut groups = vec![Group::default(); world.groups()];
+        let mut groups = vec![Group::EMPTY; world.groups()];
         // The instances of the top group refer to all others.
         for group in (0..world.groups() as u32).rev().map(GroupId) {
             groups[group.0 as usize] = bvh.add_group(world, group, &groups, is_cut_out)?;
         }
-        let Group { roots, unbounded, size, stack } = groups[0];
+        let Group { roots, unbounded, size, stack, .. } = groups[0];
         bvh.top = Top { roots, unbounded, size };
         if stack > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
     }
@@ -99,64 +103,72 @@ impl Bvh {
         is_cut_out: &dyn Fn(GeometryId) -> bool,
     ) -> Result<Group, BvhError> {
         let (tree, mut triangles) = world.triangle_tree(group);
-        let mut size = largest_coordinate(&tree);
         let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3, 0);
         let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
         let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
-        let of_triangles = writer.stack;
+        let (of_triangles, mut bounds) = (writer.stack, tree.bounds());
         for triangle in triangles {
             let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
             let corners = triangle.corners.iter().zip(ids);
             self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
         }
-        let (tree, mut items, unbounded) = world.item_tree(group);
-        let (spheres, mut more) = world.sphere_tree(group);
-        size = size.max(largest_coordinate(&tree)).max(largest_coordinate(&spheres));
-        let bounds = |item: &PlainItem| match *item {
-            PlainItem::Shape(geometry, primitive) => world.geometry(geometry).bounds(primitive),
-            PlainItem::Instance(_) => None,
+        let (tree, all, unbounded) = world.item_tree(group);
+        let instances: Vec<InstanceId> = all.iter().filter_map(instance).collect();
+        let (tree, mut items) = if is_flat(world, group, &instances, groups) {
+            let mut items: Vec<Item> = all.iter().map(Item::from).collect();
+            (Binary::new(&tree, &mut items, |item| item.bounds(world)), items)
+        } else {
+            let mut boxed = paths::items(world, group, &all, groups)?;
+            (Binary::over(&mut boxed), boxed.into_iter().map(|(_, item)| item).collect())
         };
-        let tree = Binary::new(&tree, &mut items, bounds);
-        let tree = tree.and(&Binary::new(&spheres, &mut more, bounds), items.len());
+        let (spheres, more) = world.sphere_tree(group);
+        let mut more: Vec<Item> = more.iter().map(Item::from).collect();
+        let spheres = Binary::new(&spheres, &mut more, |item| item.bounds(world));
+        let tree = tree.and(&spheres, items.len());
         items.extend(more);
+        bounds = bounds.union(tree.bounds());
         let first = self.items.len() / item::QUADRUPLES;
         // A ray within an instance has the two roots there on its stack, and the rest of the leaf
         // waits.
-        let instances = if group == GroupId::TOP { &groups[1..] } else { &[] };
-        let of_leaf = instances.iter().map(|group| group.stack).max().unwrap_or(0);
+        let inner = if group == GroupId::TOP { &groups[1..] } else { &[] };
+        let of_leaf = inner.iter().map(|group| group.stack).max().unwrap_or(0);
         let mut writer = Writer::new(&mut self.nodes, node::ITEMS, first, of_leaf);
         let item_root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         // Three roots wait together.
         let stack = 3 + of_triangles.max(writer.stack);
         self.bounded = first..first + items.len();
+        // Instances without bounds are refused where their group is.
+        let unbounded: Vec<&PlainItem> = unbounded.iter().filter(|item| instance(item).is_none()).collect();
         let open = node::leaf(node::ITEMS, first + items.len(), unbounded.len()).ok_or(BvhError::TooLarge)?;
-        if let (Some(&item), true) = (unbounded.first(), group != GroupId::TOP) {
-            return Err(match item {
-                PlainItem::Shape(geometry, _) => BvhError::Unbounded(geometry),
-                PlainItem::Instance(id) => BvhError::Nested(id),
-            });
+        if let (Some(PlainItem::Shape(geometry, _)), true) = (unbounded.first(), group != GroupId::TOP) {
+            return Err(BvhError::Unbounded(*geometry));
         }
         let mut keys = Vec::new();
         let first_key = first + items.len() + unbounded.len();
-        for item in items.into_iter().chain(unbounded) {
-            self.items.extend(match item {
-                PlainItem::Shape(geometry, primitive) => {
+        for item in items.into_iter().chain(unbounded.into_iter().map(Item::from)) {
+            let words = match item {
+                Item::Shape(geometry, primitive) => {
                     item::shape(world, geometry, primitive, is_cut_out(geometry))?
                 }
-                PlainItem::Instance(id) if group != GroupId::TOP => return Err(BvhError::Nested(id)),
-                PlainItem::Instance(id) => {
-                    let mut at = 0;
-                    if let Some(moves) = world.render_from_instance(id).keys() {
-                        at = (first_key + keys.len()) as u32;
-                        keys.extend(item::motion(&moves));
-                    }
-                    item::instance(world, id, groups, at)
+                Item::Instance(path) => {
+                    let at = (first_key + keys.len()) as u32;
+                    let motions = item::motions(world, &path);
+                    keys.extend(motions.iter().flat_map(item::keys));
+                    self.instances.push((path, (self.items.len() / item::QUADRUPLES) as u32));
+                    item::instance(world, &path, groups, [at, motions.len() as u32])
                 }
-            });
+            };
+            self.items.extend(words);
         }
         self.has_motion |= !keys.is_empty();
         self.items.extend(keys.into_iter().flatten());
-        Ok(Group { roots: [root, item_root], unbounded: open, size, stack })
+        let size = largest_coordinate(&bounds);
+        Ok(Group { roots: [root, item_root], unbounded: open, size, bounds, instances, stack })
+    }
+
+    /// Says which light is the first of the shapes in an instance.
+    pub(crate) fn set_first_light(&mut self, item: u32, light: u32) {
+        self.items[item::QUADRUPLES * item as usize + item::QUADRUPLES - 1][3] = light;
     }
 
     /// The geometry and the primitive of an item; `None` for an instance.
@@ -178,7 +190,7 @@ impl Bvh {
 }
 
 /// A group in the buffers.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Group {
     /// The references of its triangles and of its items.
     roots: [u32; 2],
@@ -186,13 +198,44 @@ struct Group {
     unbounded: u32,
     /// The largest coordinate of its boxes.
     size: f32,
+    /// The box of what is in the buffers: instances within it are items of the top group.
+    bounds: Bounds3,
+    /// Its instances.
+    instances: Vec<InstanceId>,
     /// The entries that a ray's stack needs within it.
     stack: usize,
 }
 
-/// The largest coordinate of a tree's boxes.
-fn largest_coordinate(tree: &PlainTree) -> f32 {
-    let children = tree.nodes.first().into_iter().flatten();
-    let largest = |bounds: &Bounds3| bounds.min.abs().max(bounds.max.abs()).max_element();
-    children.map(|child| largest(&child.bounds)).fold(0.0, f32::max)
+impl Group {
+    /// Nothing.
+    const EMPTY: Self = Self {
+        roots: [node::EMPTY; 2],
+        unbounded: node::EMPTY,
+        size: 0.0,
+        bounds: Bounds3::EMPTY,
+        instances: Vec::new(),
+        stack: 0,
+    };
+}
+
+/// Whether the items of a group are those of the CPU: shapes, and instances of shapes in the top
+/// group.
+fn is_flat(world: &World, group: GroupId, instances: &[InstanceId], groups: &[Group]) -> bool {
+    let places_shapes = |&id: &InstanceId| {
+        let placed = world.group_of_instance(id).0 as usize;
+        group == GroupId::TOP && groups[placed].instances.is_empty()
+    };
+    instances.iter().all(places_shapes)
+}
+
+fn instance(item: &PlainItem) -> Option<InstanceId> {
+    match *item {
+        PlainItem::Shape(..) => None,
+        PlainItem::Instance(id) => Some(id),
+    }
+}
+
+/// The largest coordinate of a box; 0 of an empty one.
+fn largest_coordinate(bounds: &Bounds3) -> f32 {
+    if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() }
 }

@@ -27,7 +27,7 @@ pub const TRIANGLES: u32 = 1 << 31;
 pub const ITEMS: u32 = 3 << 30;
 
 /// A leaf of nothing.
-const EMPTY: u32 = TRIANGLES;
+pub const EMPTY: u32 = TRIANGLES;
 
 /// The reference of a leaf; `None` where it has too many primitives, or those before it are too
 /// many.

@@ -1,5 +1,5 @@
-//! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit plus twice the
-//! offset of the image, if it has one, and numbers.
+//! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit plus 2 where no
+//! ray hits the surface plus four times the offset of what else a surface has, and numbers.
 //!
 //! | kind | numbers |
 //! |---|---|
@@ -15,10 +15,13 @@
 //! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
 //! | 13 infinite behind a portal | those that `portals.rs` describes |
 //! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
+//! | 14 surface in an instance | the offset of its record in the instance's space, the item of the instance |
 //!
-//! The spectrum of an image is its illuminant; a pixel is the scale and the coefficients of an RGB
-//! spectrum. The image of a surface is the offset of a pyramid of one level, in which colours are
-//! interpolated, and that of their space.
+//! Of the record of a surface that is in an instance only kind and numbers count. What else a
+//! surface has is the image of its emission, the colour space of that, and the texture of its
+//! alpha, each an offset or 0. The spectrum of an image is its illuminant; a pixel is the scale and
+//! the coefficients of an RGB spectrum. The image of a surface is a pyramid of one level, in which
+//! colours are interpolated.
 
 use std::f32::consts::TAU;
 
@@ -47,12 +50,13 @@ const GONIOMETRIC: u32 = 10;
 const PROJECTION: u32 = 11;
 const PATCH: u32 = 12;
 const PORTAL_INFINITE: u32 = 13;
+const PLACED: u32 = 14;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
     pub fn lights(&mut self) -> (u32, u32) {
         let mut offsets = Vec::new();
-        // All primitives of a geometry have the same spectrum and image.
+        // All primitives of a geometry have the same spectrum, image and alpha.
         let mut shared = None;
         for light in self.scene.lights().iter() {
             offsets.push(self.light(&light, &mut shared));
@@ -180,13 +184,25 @@ impl Flattener<'_> {
         shared: &mut Option<[u32; 2]>,
     ) -> u32 {
         let emission = &self.scene.emissions()[area.emission.0 as usize];
-        let refused = [
-            (!area.instance.is_top(), "area lights in instances"),
-            (area.alpha.is_some() || area.invisible, "area lights with alpha"),
-        ];
-        if let Some((_, what)) = refused.into_iter().find(|(is, _)| *is) {
-            return self.no_light(what, span);
+        let [spectrum, more] = *shared.get_or_insert_with(|| self.emission(area, emission, span));
+        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
+        let flags = u32::from(emission.two_sided) + 2 * u32::from(area.invisible);
+        let words = [spectrum, scale.to_bits(), flags + 4 * more];
+        if area.instance.is_top() {
+            return self.surface(area, primitive, words, span);
         }
+        // Instances share the surface.
+        let id = (area.geometry.0, primitive);
+        let known = self.surfaces.get(&id).copied();
+        let surface = known.unwrap_or_else(|| self.surface(area, primitive, [0; 3], span));
+        self.surfaces.insert(id, surface);
+        // There are no instances where the world is refused.
+        let item = self.instances.get(&area.instance).copied().unwrap_or(0);
+        self.slab.add([PLACED].into_iter().chain(words).chain([surface, item]))
+    }
+
+    /// A primitive that emits, with these words of its light; its offset.
+    fn surface(&mut self, area: &AreaLight, primitive: u32, words: [u32; 3], span: Span) -> u32 {
         let shape = self.scene.world().geometry(area.geometry).shape(primitive);
         let Some(shape) = shape.as_deref() else {
             return self.no_light("area lights of this shape", span);
@@ -200,7 +216,10 @@ impl Flattener<'_> {
         } else {
             return self.no_light("area lights of this shape", span);
         };
-        if let (Shape::Triangle(triangle), Some(_)) = (shape, &emission.image) {
+        let emission = &self.scene.emissions()[area.emission.0 as usize];
+        if let Shape::Triangle(triangle) = shape
+            && (emission.image.is_some() || area.alpha.is_some())
+        {
             numbers.extend(triangle.uv.iter().flat_map(|uv| uv.to_array()));
         }
         let distribution = match shape {
@@ -208,24 +227,29 @@ impl Flattener<'_> {
             _ => 0,
         };
         self.parts.emission_images |= distribution != 0;
-        let [spectrum, image] = *shared.get_or_insert_with(|| self.emission(emission, span));
-        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
-        let sides = u32::from(emission.two_sided);
-        let at = self.slab.add([kind, spectrum, scale.to_bits(), sides + 2 * image]);
+        let at = self.slab.add([kind].into_iter().chain(words));
         self.slab.add_numbers(numbers);
         self.slab.add([distribution]);
         at
     }
 
-    /// The offsets of the spectrum of a surface's emission and of its image, or 0.
-    fn emission(&mut self, emission: &AreaEmission, span: Span) -> [u32; 2] {
+    /// The offset of the spectrum of a surface's emission, and of what else it has, or 0.
+    fn emission(&mut self, area: &AreaLight, emission: &AreaEmission, span: Span) -> [u32; 2] {
+        let alpha = match area.alpha.filter(|_| !area.invisible) {
+            Some(alpha) => {
+                self.parts.light_holes = true;
+                self.number_texture(alpha, span)
+            }
+            None => 0,
+        };
         let Some(EmissionImage { image, color_space, .. }) = &emission.image else {
-            return [self.spectrum(&emission.radiance.spectrum), 0];
+            let more = if alpha == 0 { 0 } else { self.slab.add([0, 0, alpha]) };
+            return [self.spectrum(&emission.radiance.spectrum), more];
         };
         self.parts.emission_images = true;
         let pyramid = self.image(std::slice::from_ref(image), WrapMode::Clamp, span);
         let space = self.color_space(color_space);
-        [self.spectrum(&color_space.illuminant()), self.slab.add([pyramid, space])]
+        [self.spectrum(&color_space.illuminant()), self.slab.add([pyramid, space, alpha])]
     }
 }
 

@@ -32,8 +32,9 @@ use std::collections::HashMap;
 
 use description::{Diagnostic, Span};
 use film::Film;
-use geometry::{GeometryId, InstanceId, Shape};
+use geometry::{GeometryId, InstanceId, InstancePath, Shape};
 use sampling::Sampler;
+use scene::light::Light;
 use scene::light_sampler::LightSampler;
 use scene::material::Material;
 use scene::{GeometryEntry, Scene, View};
@@ -164,6 +165,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         textures: Default::default(),
         pyramids: Default::default(),
         texels: Default::default(),
+        instances: Default::default(),
+        surfaces: Default::default(),
         largest_buffer,
         follows_bodies: matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_))
             && !has_media(scene)
@@ -185,6 +188,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();
     head.materials = flattener.materials();
+    let bvh = flattener.bvh(algorithm);
+    head.top = bvh.top;
     (head.lights, head.infinite) = flattener.lights();
     head.light_count = scene.lights().len() as u32;
     head.infinite_count = scene.infinite_lights().len() as u32;
@@ -229,8 +234,6 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         flattener.parts.media = true;
         head.media = flattener.media(view.medium);
     }
-    let bvh = flattener.bvh(algorithm);
-    head.top = bvh.top;
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let radius = scene.sphere().radius;
     let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts, radius };
@@ -265,6 +268,10 @@ struct Flattener<'a> {
     textures: HashMap<u32, u32>,
     pyramids: HashMap<u32, u32>,
     texels: images::Texels,
+    /// The items of the instances, where lights are in any.
+    instances: HashMap<InstancePath, u32>,
+    /// The offsets of surfaces that emit in instances, by geometry and primitive.
+    surfaces: HashMap<(u32, u32), u32>,
     largest_buffer: usize,
     /// Whether paths go on under surfaces.
     follows_bodies: bool,
@@ -315,7 +322,8 @@ impl Flattener<'_> {
             entry.alpha.is_some() || is_open(entry)
         };
         let error = match Bvh::new(self.scene.world(), &is_cut_out) {
-            Ok(bvh) => {
+            Ok(mut bvh) => {
+                self.place_lights(&mut bvh);
                 self.parts.motion = bvh.has_motion;
                 if bvh.has_motion && algorithm.begins_at_lights() {
                     self.refuse("light paths among shapes that move", Span::NONE);
@@ -326,12 +334,26 @@ impl Flattener<'_> {
         };
         let (what, span) = match error {
             BvhError::Shape(id) => (self.name_of_shape(id), self.span_of_geometry(id)),
-            BvhError::Nested(id) => ("instances within instances", self.span_of_instance(id)),
+            BvhError::Nested(id) => ("as many instances within instances", self.span_of_instance(id)),
             BvhError::Unbounded(id) => ("instances of infinite planes", self.span_of_geometry(id)),
             BvhError::TooLarge => ("as many primitives", Span::NONE),
         };
         self.refuse(what, span);
         Bvh::default()
+    }
+
+    /// Tells instances the first light of their shapes, and lights their instances.
+    fn place_lights(&mut self, bvh: &mut Bvh) {
+        let is_placed = |light: &Light| matches!(light, Light::Area(area) if !area.instance.is_top());
+        let instances = std::mem::take(&mut bvh.instances);
+        if self.scene.lights().rows().any(|(_, light)| is_placed(light)) {
+            self.parts.placed_lights = true;
+            for (path, item) in &instances {
+                let firsts = path.ids().iter().map(|id| self.scene.instances()[id.0 as usize].first_light);
+                bvh.set_first_light(*item, firsts.sum());
+            }
+            self.instances = instances.into_iter().collect();
+        }
     }
 
     /// The name of a geometry that kernels do not intersect.

@@ -1,13 +1,13 @@
-//! Pictures of shapes and cameras that move by both engines.
+//! Pictures of shapes, lights and cameras that move by both engines.
 
 use alhazen_gpu::Algorithm;
-use description::{LightTracingDesc, PathDesc};
+use description::{LightSamplerDesc, LightTracingDesc, PathDesc};
 
 use crate::pictures::Case;
 use crate::texts::PAN;
 
 /// Shapes and an instance that move, turn and stretch while the shutter is open, before the motion
-/// is over, one at rest of the same object, and a mesh with normals that is a mirror.
+/// is over, one at rest of the same object, a mesh with normals that is a mirror, and a light.
 const TURNING: &str = r#"
 TransformTimes 1 4
 LookAt 0 -6 2  0 0 0.6  0 0 1
@@ -51,7 +51,60 @@ AttributeBegin
     Rotate 150 1 0.5 0
     ActiveTransform All
     Shape "cylinder" "float radius" 0.2 "float zmin" -0.4 "float zmax" 0.4
+    AreaLightSource "diffuse" "rgb L" [ 4 6 9 ]
+    Translate -0.8 0.4 0
+    Shape "sphere" "float radius" 0.2
 AttributeEnd
+"#;
+
+/// Lanterns of all shapes that emit, turned, stretched and mirrored, alone and in strings, at rest
+/// and in motion, also within what moves.
+const LANTERNS: &str = r#"
+LookAt 0 -5 2  0 0 0.5  0 0 1
+Camera "perspective" "float fov" 45 "float shutterclose" 1
+Film "rgb"
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.1 0.1 0.2 ]
+Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
+ObjectBegin "lantern"
+    AreaLightSource "diffuse" "rgb L" [ 8 5 3 ]
+    Shape "trianglemesh" "point3 P" [ -0.4 -0.2 0  0.4 -0.2 0  0 -0.3 0.6  0.3 -0.4 0.5 ]
+        "integer indices" [ 0 1 2 2 1 3 ]
+    AreaLightSource "diffuse" "rgb L" [ 3 6 8 ] "bool twosided" true "float power" 9
+    Shape "bilinearmesh" "point3 P" [ -0.4 0.2 0.1  0.3 0.2 0  -0.4 0.3 0.5  0.3 0.1 0.6 ]
+    Shape "bilinearmesh" "point3 P" [ -0.3 0 0.9  0.3 0 0.9  -0.3 0.3 0.9  0.3 0.3 0.9 ]
+    Translate -0.6 0 0.3
+    Shape "sphere" "float radius" 0.15
+    Translate 1.2 0 0
+    Shape "disk" "float radius" 0.2 "float innerradius" 0.05
+    Shape "cylinder" "float radius" 0.08 "float zmin" -0.3 "float zmax" -0.05
+ObjectEnd
+ObjectBegin "string"
+    Shape "sphere" "float radius" 0.2
+    Translate 0 0 0.5
+    ObjectInstance "lantern"
+    Translate 0.9 0.5 0.2
+    ActiveTransform EndTime
+    Rotate 50 0.3 1 0.2
+    Translate 0.2 0.1 0.3
+    ActiveTransform All
+    ObjectInstance "lantern"
+ObjectEnd
+Shape "disk" "float radius" 9 "float height" -0.4
+AttributeBegin
+    Translate -1.6 0 0
+    Scale 1.2 0.7 -0.9
+    ObjectInstance "lantern"
+AttributeEnd
+Translate 0.3 0.4 0
+Scale 0.7 0.7 0.7
+ObjectInstance "string"
+Translate 0.9 -1 0
+ActiveTransform EndTime
+Rotate 40 1 0.1 0.5
+Translate 0.3 0.2 0.3
+ActiveTransform All
+ObjectInstance "string"
 "#;
 
 #[test]
@@ -61,6 +114,16 @@ fn shapes_in_motion_have_the_picture_of_the_cpu() {
     assert_eq!(case.compare("turning", &path), None);
     let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
     assert_eq!(refusals.expect("a refusal")[0].what, "light paths among shapes that move");
+}
+
+/// Each motion is interpolated by itself, within others.
+#[test]
+fn lights_in_instances_have_the_picture_of_the_cpu() {
+    let case = Case::of_text(LANTERNS);
+    for light_sampler in [LightSamplerDesc::Bvh, LightSamplerDesc::Uniform] {
+        let settings = PathDesc { light_sampler, max_depth: 3, ..PathDesc::default() };
+        assert_eq!(case.compare("lanterns", &Algorithm::Path(settings)), None, "{light_sampler:?}");
+    }
 }
 
 #[test]

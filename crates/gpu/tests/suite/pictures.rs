@@ -452,11 +452,6 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
             "area lights of this shape",
             "Shape \"sphere\"",
         ),
-        (
-            "ActiveTransform EndTime\nTranslate 1 0 0\nAreaLightSource \"diffuse\"\nShape \"sphere\"",
-            "area lights in instances",
-            "Shape \"sphere\"",
-        ),
     ];
     for (rest, what, place) in cases {
         let text = format!("{begin}{rest}\n");
@@ -519,6 +514,11 @@ Film "rgb"
 WorldBegin
 LightSource "infinite" "rgb L" [ 1 1 1 ]
 Shape "sphere" "float radius" 0.5 "float alpha" 0.3
+AttributeBegin
+    AreaLightSource "diffuse"
+    Translate 0.8 -0.2 0.3
+    Shape "sphere" "float radius" 0.3 "float alpha" 0.4
+AttributeEnd
 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 Shape "disk" "float radius" 2 "float height" -0.5
 MakeNamedMaterial "white" "string type" "diffuse" "rgb reflectance" [ 1 1 1 ]

@@ -67,7 +67,7 @@ Shape "sphere" "float radius" 0.5
 "#;
 
 /// Shapes and instances of meshes with holes, one of which is seen through others, under shadow
-/// rays; and with alphas between 0 and 1, whose holes are other ones on both sides, but as many.
+/// rays; and lights with holes, or invisible.
 pub const HOLES: &str = r#"
 LookAt 0 3 5  0 0.8 0  0 1 0
 Camera "perspective" "float fov" 40
@@ -95,6 +95,12 @@ ObjectInstance "screen"
 Rotate 30 0 1 0
 Translate 0 0.3 -2.4
 ObjectInstance "screen"
+AreaLightSource "diffuse" "rgb L" [ 5 4 3 ]
+Translate -0.8 0.4 2.4
+Shape "sphere" "float radius" 0.3 "texture alpha" "spots"
+Shape "trianglemesh" "point3 P" [ 1 -0.4 -1  1.8 -0.4 -1  1 0.4 -1.3  1.8 0.4 -1.3 ] "integer indices" [ 0 1 2  1 3 2 ]
+    "point2 uv" [ 0 0  0.4 0  0 0.4  0.4 0.5 ] "texture alpha" "holes"
+Shape "disk" "float radius" 0.4 "float height" 1.5 "float alpha" 0
 "#;
 
 /// Lights of all shapes with an image: triangles with texture coordinates and without, a rectangle,

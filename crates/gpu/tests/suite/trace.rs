@@ -16,7 +16,7 @@ pub const KERNEL: &str = "
     const HAS_CURVES = true;
     fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     const HAS_MOTION = false;
-    fn moved_rows(item: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
+    fn moved_rows(first_key: u32, motions: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
@@ -108,8 +108,9 @@ fn compare(tracer: &Tracer, world: &World, rays: &[(Ray, f32)]) -> Comparison {
     for ((ray, end), (hit, any)) in rays.iter().zip(results) {
         let expected = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default());
         assert_eq!(any, hit.is_some(), "{ray:?}");
-        let is_same =
-            |a: &Hit, b: &Hit| (a.geometry, a.primitive, a.instance) == (b.geometry, b.primitive, b.instance);
+        // Of instances within others the GPU knows the innermost.
+        let place = |hit: &Hit| (hit.geometry, hit.primitive, hit.instance.ids().last().copied());
+        let is_same = |a: &Hit, b: &Hit| place(a) == place(b);
         comparison.hits += expected.is_some() as usize;
         match (expected, hit) {
             (None, None) => {}
@@ -252,6 +253,33 @@ fn instances_are_met() {
     // The CPU transforms rays in doubles.
     let found = compare(tracer, &builder.build(), &random_rays(20_000, 6.0));
     assert!(found.hits > 1000 && found.other <= 4 && found.distance < 1e-4, "{found:?}");
+}
+
+/// A wood of trees, each of branches with leaves, and an object that is nothing but instances.
+#[test]
+fn instances_within_instances_are_met() {
+    let Some(tracer) = tracer() else { return };
+    let mut builder = World::builder();
+    builder.add_geometry(GroupId::TOP, soup(100));
+    let groups = [builder.add_group(), builder.add_group(), builder.add_group()];
+    builder.add_geometry(groups[0], ball(8));
+    builder.add_geometry(groups[1], soup(40));
+    builder.add_geometry(groups[1], Shape::from(Sphere::whole(&Transform::IDENTITY, false, 0.4)));
+    let mut random = Random::new(9);
+    for (outer, inner, count, scale) in
+        [(groups[1], groups[0], 6, 0.3), (groups[2], groups[1], 4, 0.5), (GroupId::TOP, groups[2], 12, 0.8)]
+    {
+        for _ in 0..count {
+            let [[a, b], [c, angle]] = [random.get_2d(), random.get_2d()];
+            let place = Transform::translate((Vec3::new(a, b, c) - Vec3::splat(0.5)) * 3.0);
+            let turn = Transform::rotate(360.0 * angle, Vec3::new(1.0, 2.0, 3.0));
+            let transform =
+                place.after(&turn).after(&Transform::scale(Vec3::new(scale, -scale, 0.7 * scale)));
+            builder.add_instance(outer, Instance { group: inner, render_from_instance: transform.into() });
+        }
+    }
+    let found = compare(tracer, &builder.build(), &random_rays(20_000, 6.0));
+    assert!(found.hits > 1000 && found.other <= 10 && found.distance < 1e-4, "{found:?}");
 }
 
 /// Spheres, cylinders, disks and patches, some of them parts, and a plane below.

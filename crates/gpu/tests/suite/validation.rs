@@ -45,6 +45,8 @@ fn parts(bits: u32) -> Parts {
         holes,
         images,
         emission_images,
+        placed_lights: false,
+        light_holes: false,
         portals: false,
         noise,
         coats,
@@ -105,6 +107,10 @@ fn kernels_are_valid() {
         }
         add(&"motion", shaders::pixels(&path, Parts { motion: true, ..parts }));
         add(&"portals", shaders::pixels(&path, Parts { portals: true, ..parts }));
+        let lights = Parts { placed_lights: true, light_holes: true, ..parts };
+        for algorithm in [&path, &Algorithm::Bdpt(Default::default())] {
+            add(&"placed lights", shaders::pixels(algorithm, lights));
+        }
         add(&"lenses", shaders::pixels(&path, Parts { lenses: true, ..parts }));
         let bodies = Parts { subsurface: true, ..parts };
         add(&"bodies", shaders::pixels(&path, bodies));
