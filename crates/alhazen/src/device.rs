@@ -7,7 +7,7 @@ use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use geometry::RayStats;
 use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
-use integrators::{Cancelled, Control, Integrator, PassError, Session};
+use integrators::{Cancelled, Control, FirstHits, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
 use scene::{Scene, View};
@@ -100,13 +100,21 @@ impl Integrator for OnDevice {
     fn pass(
         &mut self,
         pass: u32,
-        _scene: &Scene,
+        scene: &Scene,
         view: &View,
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, PassError> {
+        let filter = film.filter().clone();
+        let hits = FirstHits::new(pass, scene, view, &filter, &self.sampler);
         let is_cancelled = || control.cancel.load(Ordering::Relaxed);
-        match self.renderer.pass(pass, view, film, is_cancelled) {
+        match self.renderer.pass(
+            pass,
+            view,
+            film,
+            &|tile, pixel, lambda| hits.of(tile, pixel, lambda),
+            is_cancelled,
+        ) {
             Ok(Some(rays)) => Ok(RayStats { rays, ..RayStats::default() }),
             Ok(None) => Err(PassError::Cancelled),
             Err(gpu::PassError::OutOfMemory(problem)) => Err(PassError::OutOfMemory(problem)),

@@ -28,4 +28,4 @@ pub use dynamic::{Moving, MovingError, Sorter, Start, Update};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
-pub use renderer::{Kernels, PassError, Renderer, Schedule};
+pub use renderer::{FindFirstHit, Kernels, PassError, Renderer, Schedule};

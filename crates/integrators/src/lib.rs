@@ -56,5 +56,5 @@ pub use metropolis::Mlt;
 pub use photons::{MAX_PHOTON_PATHS, PhotonMapping, Sppm, Vcm};
 pub use radiosity::Radiosity;
 pub use session::{Limits, Progress, Session, SessionState, Stop, noise};
-pub use transport::{Record, Step, Tracer};
+pub use transport::{FirstHits, Record, Step, Tracer};
 pub use wavefront::{WaveIntegrator, Wavefront};

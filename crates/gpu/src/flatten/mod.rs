@@ -31,7 +31,7 @@ mod textures;
 use std::collections::HashMap;
 
 use description::{Diagnostic, Span};
-use film::Film;
+use film::{Film, LayerSet};
 use geometry::{GeometryId, InstanceId, InstancePath, Shape};
 use sampling::Sampler;
 use scene::light::Light;
@@ -303,7 +303,11 @@ impl Flattener<'_> {
         self.parts.force_diffuse = view.options.force_diffuse;
         let whole = [
             (!knows_media && has_media(self.scene), "participating media or interfaces"),
-            (film.layers() != film::LayerSet::NONE, "layers beside the colour"),
+            (film.layers().has_parts(), "layers of parts of the light"),
+            (
+                film.layers() != LayerSet::NONE && algorithm.begins_at_lights(),
+                "layers beside the colour with light paths",
+            ),
         ];
         for (is, what) in whole {
             if is {

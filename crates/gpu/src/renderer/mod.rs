@@ -3,7 +3,7 @@
 //! A pass renders one sample of each pixel, in strips of the film's tiles, so that the results of a
 //! strip need little memory however large the picture is. The CPU adds them to the film while the
 //! device makes those of the next strip. So it adds the splats of light paths, a list with room for
-//! the most that those of a strip have.
+//! the most that those of a strip have. It finds the first hits for layers beside the colour, too.
 //!
 //! Metropolis light transport has [`Chains`] beside, and photon mapping [`Photons`] before.
 
@@ -31,6 +31,7 @@ use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
+pub use strip::FindFirstHit;
 use strip::{AddToTile, PixelSample, Started};
 use wavefront::Wavefront;
 
@@ -169,7 +170,8 @@ impl Renderer {
     }
 
     /// Adds the sample of an index of each pixel to the film, strip by strip, until `is_cancelled`.
-    /// The view is the one that was flattened. Returns the number of rays, or `None` if strips are
+    /// The view is the one that was flattened; `first_hit` is asked where the film has layers of
+    /// first hits. Returns the number of rays, or `None` if strips are
     /// missing.
     ///
     /// # Errors
@@ -179,6 +181,7 @@ impl Renderer {
         index: u32,
         view: &View,
         film: &mut Film,
+        first_hit: &FindFirstHit,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<u64>, PassError> {
         let lanes = InstructionSet::detect();
@@ -208,7 +211,7 @@ impl Renderer {
             let lambda = grid.as_ref().map(|grid| &grid.shutter.lambda);
             std::mem::replace(&mut tiles, rest).into_par_iter().for_each(|mut tile| {
                 let tile = &mut tile;
-                lanes.dispatch_large(AddToTile { view, strip, samples, lambda, tile });
+                lanes.dispatch_large(AddToTile { view, strip, samples, lambda, first_hit, tile });
             });
             Ok::<_, GpuError>(())
         };

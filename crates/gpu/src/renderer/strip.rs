@@ -1,6 +1,6 @@
 //! The samples of a strip of pixels, which the device makes and the host adds to the film.
 
-use film::FilmTile;
+use film::{FilmTile, FirstHit, Sample};
 use lanes::{Kernel, MAX_LANES, Real};
 use math::Bounds2i;
 use scene::{ShutterSample, View};
@@ -32,6 +32,10 @@ impl PixelSample {
     }
 }
 
+/// Finds the first hit of the sample of a pixel, at the wavelengths that its path has left, for the
+/// layers of a tile.
+pub type FindFirstHit<'a> = dyn Fn(&FilmTile, [i32; 2], &SampledWavelengths) -> Option<FirstHit> + Sync + 'a;
+
 /// A strip whose samples are on their way from the device.
 pub(super) struct Started {
     pub strip: Bounds2i,
@@ -45,6 +49,7 @@ pub(super) struct AddToTile<'a, 'film> {
     pub samples: &'a [PixelSample],
     /// The wavelengths of all samples, where they share them.
     pub lambda: Option<&'a SampledWavelengths>,
+    pub first_hit: &'a FindFirstHit<'a>,
     pub tile: &'a mut FilmTile<'film>,
 }
 
@@ -53,7 +58,8 @@ impl Kernel for AddToTile<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { view, strip, samples, lambda: shared, tile } = self;
+        let Self { view, strip, samples, lambda: shared, first_hit: find, tile } = self;
+        let has_hits = tile.wants_first_hit();
         let bounds = tile.bounds();
         let width = bounds.width() as usize;
         let row = |y: usize| {
@@ -64,14 +70,18 @@ impl Kernel for AddToTile<'_, '_> {
         for y in 0..bounds.height() as usize {
             for (i, samples) in row(y).chunks(R::LANES).enumerate() {
                 let first = y * width + i * R::LANES;
-                if shared.is_some() || samples.iter().any(PixelSample::is_terminated) {
+                if has_hits || shared.is_some() || samples.iter().any(PixelSample::is_terminated) {
                     for (x, sample) in (i * R::LANES..).zip(samples) {
                         let pixel = [bounds.min[0] + x as i32, bounds.min[1] + y as i32];
                         let mut lambda = shared.copied().unwrap_or_else(|| sample.wavelengths(view));
                         if sample.is_terminated() {
                             lambda.terminate_secondary();
                         }
-                        tile.add_sample(pixel, &SampledSpectrum::new(sample.l), &lambda, sample.weight);
+                        let l = SampledSpectrum::new(sample.l);
+                        let first_hit = if has_hits { find(tile, pixel, &lambda) } else { None };
+                        let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
+                        let radiance = Sample::new(&l, &lambda, sample.weight);
+                        tile.add(pixel, &Sample { alpha, first_hit, ..radiance });
                     }
                     continue;
                 }

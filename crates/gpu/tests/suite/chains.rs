@@ -28,7 +28,7 @@ const SAMPLES: u32 = 8;
 /// A pass by the GPU.
 fn pass(case: &Case, renderer: &Renderer, index: u32) -> Image {
     let mut film = case.film();
-    let rays = renderer.pass(index, &case.view, &mut film, || false).expect("a pass");
+    let rays = renderer.pass(index, &case.view, &mut film, &|_, _, _| None, || false).expect("a pass");
     // A path for each mutation, and a ray for each pixel.
     assert!(rays > Some(2 * u64::from(SIZE[0] * SIZE[1])), "{rays:?}");
     film.develop().expect("a picture")

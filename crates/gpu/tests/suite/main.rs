@@ -8,6 +8,7 @@ mod chains;
 mod dynamic;
 mod faults;
 mod laws;
+mod layers;
 mod measured;
 mod media;
 mod motion;

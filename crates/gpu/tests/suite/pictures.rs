@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use alhazen_gpu::{Algorithm, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders};
+use alhazen_gpu::{
+    Algorithm, FindFirstHit, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders,
+};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
     MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, SimplePathDesc, WhittedDesc,
@@ -13,7 +15,7 @@ use film::Film;
 use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
-    AmbientOcclusion, Bdpt, Control, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
+    AmbientOcclusion, Bdpt, Control, FirstHits, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
     RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, VolPath, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
@@ -163,8 +165,11 @@ impl Case {
     /// The film with them.
     pub fn exposed(&self, renderer: &Renderer) -> Film {
         let mut film = self.film();
+        let filter = film.filter().clone();
         for index in 0..SAMPLES {
-            let rays = renderer.pass(index, &self.view, &mut film, || false).expect("a pass");
+            let hits = FirstHits::new(index, &self.scene, &self.view, &filter, &self.sampler);
+            let find: &FindFirstHit = &|tile, pixel, lambda| hits.of(tile, pixel, lambda);
+            let rays = renderer.pass(index, &self.view, &mut film, find, || false).expect("a pass");
             let [width, height] = self.desc.film.resolution;
             assert!(rays >= Some((width * height / 4) as u64), "{rays:?}");
         }

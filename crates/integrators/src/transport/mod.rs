@@ -6,6 +6,7 @@
 //! | `tracer` | scene, view, random numbers and statistics of a sample; cancellation |
 //! | `pixel_samples` | camera rays of all pixels of a pass |
 //! | `first_hit` | the first hit of a camera ray, for the AOVs of the film |
+//! | `first_hits` | those of all samples of a pass, for other engines |
 //! | `parts` | the first event of a path, for layers of parts of the light |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
@@ -18,6 +19,7 @@
 
 pub(crate) mod direct;
 pub(crate) mod first_hit;
+mod first_hits;
 pub(crate) mod media;
 pub(crate) mod parts;
 pub(crate) mod path_state;
@@ -31,5 +33,6 @@ pub(crate) mod surroundings;
 mod tracer;
 mod visibility;
 
+pub use first_hits::FirstHits;
 pub use record::{Record, Step};
 pub use tracer::Tracer;
