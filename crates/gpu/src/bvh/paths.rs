@@ -7,7 +7,7 @@ use math::{Bounds3, gamma};
 use super::item::Item;
 use super::{BvhError, Group};
 
-/// The most instances that are made of paths. Building the tree of more takes long.
+/// The most items of a tree that is built anew, which takes long.
 const MOST: usize = 1 << 20;
 
 /// The items of a group with their boxes: its shapes, and of the top group all paths to shapes.
@@ -43,7 +43,7 @@ fn add(
     let Some(&last) = path.ids().last() else { return Ok(()) };
     let group = &groups[world.group_of_instance(last).0 as usize];
     if !group.bounds.is_empty() {
-        if boxed.len() == MOST {
+        if boxed.len() >= MOST {
             return Err(BvhError::Nested(last));
         }
         let bounds = path.ids().iter().rev().fold(group.bounds, |bounds, &id| {
