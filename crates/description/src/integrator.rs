@@ -166,8 +166,8 @@ settings! {
     pub struct WhittedDesc {
         /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
-        /// Light of a sky of one colour reaches all surfaces, as if nothing were in between: no rays
-        /// look for its shadows.
+        /// Light of a sky of one colour reaches all surfaces, as if nothing were in between: no
+        /// rays look for its shadows.
         ambient: bool = false => ["ambient"];
         /// Where the light of mirror reflections is from.
         reflections: ReflectionsDesc = ReflectionsDesc::Traced => ["reflections"];

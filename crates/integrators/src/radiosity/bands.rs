@@ -1,10 +1,10 @@
 //! Spectra at fixed wavelengths.
 //!
 //! A radiosity solution is computed once for all pixels, so that it has fixed wavelengths:
-//! [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths sample
-//! their wavelengths ([`ShutterSample::wavelengths`]). The sensor's integral ∫ L(λ) c̄(λ)
-//! dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS. With 32
-//! bands, the error is mostly due to the steps of the sensor's tables, of a nanometre each, and
+//! [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths
+//! sample their wavelengths ([`ShutterSample::wavelengths`]). The sensor's integral ∫ L(λ) c̄(λ)
+//! dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS. With
+//! 32 bands, the error is mostly due to the steps of the sensor's tables, of a nanometre each, and
 //! depends on s: half a per cent for s = ½, a quarter of a per cent at most in X, Y and Z of
 //! daylight, of coloured daylight and of the lamp of the measured Cornell box for s = 0.56. Every
 //! sample then has all wavelengths, without the noise of random ones.
