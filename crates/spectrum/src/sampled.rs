@@ -6,7 +6,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, 
 /// Number of wavelengths that a path carries.
 pub const N: usize = 4;
 
-/// A function of wavelength known at the [`N`] wavelengths of a [`SampledWavelengths`].
+/// A function of wavelength known at the [`N`] wavelengths of a path
+/// ([`SampledWavelengths`](crate::SampledWavelengths)).
 ///
 /// Arithmetic is per wavelength. The values are meaningless without their wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
