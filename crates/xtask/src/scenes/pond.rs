@@ -223,13 +223,13 @@ AttributeBegin
   Scale 0.12 0.12 0.12
   Texture "grains" "float" "fbm" "integer octaves" 5 "float roughness" 0.7
 AttributeEnd
-Texture "sand" "spectrum" "mix" "rgb tex1" [ 0.16 0.12 0.07 ] "rgb tex2" [ 0.42 0.36 0.25 ] "texture amount" "grains"
+Texture "sand" "spectrum" "mix" "rgb tex1" [ 0.28 0.23 0.15 ] "rgb tex2" [ 0.4 0.34 0.235 ] "texture amount" "grains"
 Texture "height" "float" "imagemap" "string filename" "bed.pfm" "string wrap" "clamp" "string encoding" "linear"
 Texture "bed" "spectrum" "mix" "texture tex1" "sand" "texture tex2" "soil" "texture amount" "height"
 Material "diffuse" "texture reflectance" "bed"
 Shape "plymesh" "string filename" "ground.ply"
 
-Texture "veins" "spectrum" "mix" "rgb tex1" [ 0.13 0.12 0.11 ] "rgb tex2" [ 0.42 0.4 0.36 ] "texture amount" "grains"
+Texture "veins" "spectrum" "mix" "rgb tex1" [ 0.24 0.23 0.21 ] "rgb tex2" [ 0.33 0.315 0.28 ] "texture amount" "grains"
 MakeNamedMaterial "stone" "string type" "diffuse" "texture reflectance" "veins"
 MakeNamedMaterial "lily" "string type" "coateddiffuse" "rgb reflectance" [ 0.09 0.19 0.04 ] "float roughness" 0.25
 MakeNamedMaterial "reed" "string type" "diffusetransmission" "rgb reflectance" [ 0.12 0.17 0.04 ] "rgb transmittance" [ 0.1 0.16 0.03 ]
