@@ -35,8 +35,8 @@ fn every_layer_can_be_shown() {
         let frame = frame(Some(layer));
         let codes = develop(&frame, &DisplaySettings::default());
         let distinct: std::collections::HashSet<_> = codes.chunks_exact(4).collect();
-        // Without motion, volumes and transmission these are black, and all samples are in view; the
-        // lamp is as bright everywhere.
+        // Without motion, volumes and transmission these are black, and all samples are in view.
+        // The lamp is as bright everywhere.
         let is_empty = [Layer::Motion, Layer::Volume, Layer::Transmission, Layer::Specular].contains(&layer);
         let is_even = [Layer::Samples, Layer::Alpha, Layer::Variance, Layer::Emission].contains(&layer);
         assert!(is_empty || is_even || distinct.len() > 2, "{layer}: {}", distinct.len());
