@@ -6,7 +6,8 @@
 //! sphere's weights sum to at most one, its new velocity is a mean of those after each impulse
 //! alone, so that kinetic energy does not grow, because no single impulse makes it grow.
 
-use math::{Point3, Vector3};
+use lanes::{MAX_LANES, Real};
+use math::{Point3, Vec3, Vector3};
 
 /// Of the speed of approach, what is left after a bounce.
 const RESTITUTION: f32 = 0.45;
@@ -20,62 +21,117 @@ const SLOP: f32 = 0.002;
 /// A sphere that another one may touch within a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Who: the index of a body, or what moves it is not known to be one of.
-    pub other: u32,
-    /// The place among moving bodies of a sphere that moves, else [`Contact::FIXED`].
+    /// The place of the other one's vector, else [`Contact::FIXED`].
     pub partner: u32,
     /// From the other to this one, of unit length.
     pub normal: Vector3,
-    /// The distance of the surfaces, which is below zero where they overlap.
-    pub gap: f32,
+    /// How fast both may come closer without touching within the step.
+    pub room: f32,
     /// This one's share of changes: 1 at a sphere that does not give way.
     pub share: f32,
-    /// The velocity of a sphere that does not give way.
-    pub velocity: Vector3,
-    /// Centre of it.
+    /// The centre of a sphere that is fixed.
     pub center: Point3,
     /// The sum of the radii.
     pub reach: f32,
 }
 
 impl Contact {
-    /// The partner of contacts with spheres that do not give way.
+    /// The partner of contacts with spheres that stay where they are.
     pub const FIXED: u32 = u32::MAX;
+}
 
-    /// How fast both come closer, given both velocities.
-    #[inline]
-    pub fn approach(&self, velocity: Vector3, other: Vector3) -> f32 {
-        -(velocity - other).dot(self.normal)
+/// A contact of each of as many spheres as a vector has lanes, in columns.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub struct Row {
+    pub partner: [u32; MAX_LANES],
+    normal: [[f32; MAX_LANES]; 3],
+    room: [f32; MAX_LANES],
+    share: [f32; MAX_LANES],
+    center: [[f32; MAX_LANES]; 3],
+    reach: [f32; MAX_LANES],
+}
+
+impl Row {
+    /// Contacts that change nothing.
+    pub const NONE: Self = Self {
+        partner: [Contact::FIXED; MAX_LANES],
+        normal: [[0.0; MAX_LANES]; 3],
+        room: [f32::INFINITY; MAX_LANES],
+        share: [0.0; MAX_LANES],
+        center: [[0.0; MAX_LANES]; 3],
+        reach: [f32::NEG_INFINITY; MAX_LANES],
+    };
+
+    /// Replaces a contact.
+    pub fn set(&mut self, lane: usize, contact: &Contact) {
+        let Contact { partner, normal, room, share, center, reach } = *contact;
+        self.partner[lane] = partner;
+        for axis in 0..3 {
+            self.normal[axis][lane] = normal[axis];
+            self.center[axis][lane] = center[axis];
+        }
+        (self.room[lane], self.share[lane], self.reach[lane]) = (room, share, reach);
+    }
+}
+
+/// What contacts change: a vector of each sphere.
+pub trait Change: Copy + Sync {
+    /// The vectors of spheres that are fixed, of lanes of a row from one on.
+    fn fixed<R: Real>(self, row: &Row, from: usize) -> Vec3<R>;
+
+    /// Which contacts change a sphere's vector, and how each does alone, given both vectors.
+    fn of<R: Real>(self, row: &Row, from: usize, own: Vec3<R>, other: Vec3<R>) -> (R::Mask, Vec3<R>);
+}
+
+/// Impulses, which change velocities.
+#[derive(Clone, Copy, Debug)]
+pub struct Impulses;
+
+impl Change for Impulses {
+    #[inline(always)]
+    fn fixed<R: Real>(self, _: &Row, _: usize) -> Vec3<R> {
+        Vec3::splat(R::zero())
     }
 
-    /// The change of this sphere's velocity by the contact alone, given both velocities, within
-    /// `dt`.
-    #[inline]
-    pub fn impulse(&self, velocity: Vector3, other: Vector3, dt: f32) -> Vector3 {
-        let relative = velocity - other;
-        let approach = -relative.dot(self.normal);
-        let room = self.gap.max(0.0) / dt;
-        if approach <= room {
-            return Vector3::ZERO;
-        }
+    #[inline(always)]
+    fn of<R: Real>(self, row: &Row, from: usize, own: Vec3<R>, other: Vec3<R>) -> (R::Mask, Vec3<R>) {
+        let (normal, room) = (columns(&row.normal, from), R::load(&row.room[from..]));
+        let relative = own - other;
+        let approach = -relative.dot(normal);
         // A sphere that bounces does so at once, another one moves on until both touch.
-        let after = if approach > BOUNCE { RESTITUTION * approach } else { -room };
+        let bounces = approach.gt(R::splat(BOUNCE));
+        let after = R::select(bounces, R::splat(RESTITUTION) * approach, -room);
         let along = approach + after;
-        let sliding = relative + self.normal * approach;
+        let sliding = relative + normal * approach;
         let speed = sliding.length();
-        let brake = if speed > 0.0 { (FRICTION * along / speed).min(1.0) } else { 0.0 };
-        (self.normal * along - sliding * brake) * self.share
+        let brake = (R::splat(FRICTION) * along / speed).min(R::one());
+        let brake = R::select(speed.gt(R::zero()), brake, R::zero());
+        (approach.gt(room), (normal * along - sliding * brake) * R::load(&row.share[from..]))
+    }
+}
+
+/// Motions that take a share of overlaps away, which change centres.
+#[derive(Clone, Copy, Debug)]
+pub struct Separations;
+
+impl Change for Separations {
+    #[inline(always)]
+    fn fixed<R: Real>(self, row: &Row, from: usize) -> Vec3<R> {
+        columns(&row.center, from)
     }
 
-    /// The motion that takes a share of an overlap away, given both centres.
-    #[inline]
-    pub fn separation(&self, center: Point3, other: Point3) -> Vector3 {
-        let way = center - other;
+    #[inline(always)]
+    fn of<R: Real>(self, row: &Row, from: usize, own: Vec3<R>, other: Vec3<R>) -> (R::Mask, Vec3<R>) {
+        let way = own - other;
         let distance = way.length();
-        let depth = self.reach - distance - SLOP;
-        if depth <= 0.0 || distance == 0.0 {
-            return Vector3::ZERO;
-        }
-        way * (depth * self.share / distance)
+        let depth = R::load(&row.reach[from..]) - distance - R::splat(SLOP);
+        let overlaps = depth.gt(R::zero()) & distance.gt(R::zero());
+        (overlaps, way * (depth * R::load(&row.share[from..]) / distance))
     }
+}
+
+#[inline(always)]
+fn columns<R: Real>([x, y, z]: &[[f32; MAX_LANES]; 3], from: usize) -> Vec3<R> {
+    Vec3::new(R::load(&x[from..]), R::load(&y[from..]), R::load(&z[from..]))
 }

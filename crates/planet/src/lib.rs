@@ -5,7 +5,7 @@
 //! and collisions, and whoever walks there ([`Walker`]). [`scene`] writes the planet as it is in
 //! the pbrt format.
 //!
-//! The same steps give the same bits, whatever the number of threads.
+//! The same steps give the same bits, whatever the number of threads and the instruction set.
 
 mod bodies;
 mod contacts;
@@ -13,6 +13,7 @@ mod grid;
 mod land;
 mod noise;
 mod planet;
+mod rounds;
 mod scene;
 mod substance;
 mod tree;

@@ -1,13 +1,15 @@
 //! A planet that moves: gravity, collisions, rest.
 
+use lanes::InstructionSet;
 use math::{Frame, Point3, Vec3, Vector3};
 use rayon::prelude::*;
 
 use crate::Substance;
 use crate::bodies::{Bodies, State};
-use crate::contacts::Contact;
-use crate::grid::{Entry, Grid};
+use crate::contacts::{Contact, Impulses, Separations};
+use crate::grid::{Entry, Grid, Near, Query};
 use crate::land::{Land, MOON, core_radius};
+use crate::rounds::{CHUNK, Contacts, Vectors, first_constant};
 
 /// Gravity, in metres per second squared: the same at all heights, so that nothing escapes.
 const GRAVITY: f32 = 9.0;
@@ -31,10 +33,6 @@ const STEPS_TO_REST: u8 = 20;
 /// Rounds of impulses, and of separation.
 const ROUNDS: usize = 8;
 const SEPARATIONS: usize = 8;
-/// As many bodies are done by a thread at once.
-const CHUNK: usize = 128;
-/// In place of a body: who walks.
-const NOBODY: u32 = u32::MAX;
 
 /// The energy of what is loose, relative to that of a ball of one metre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,6 +74,7 @@ pub struct Planet {
     is_stirred: Vec<bool>,
     stirred: Vec<u32>,
     stirred_grid: Grid,
+    instruction_set: InstructionSet,
 }
 
 impl Planet {
@@ -113,9 +112,16 @@ impl Planet {
             is_stirred: vec![false; count],
             stirred: Vec::new(),
             stirred_grid: Grid::default(),
+            instruction_set: InstructionSet::detect(),
         };
         planet.settle();
         planet
+    }
+
+    /// Computes with an instruction set instead of the best one. The results are the same.
+    #[must_use]
+    pub fn with_instruction_set(self, instruction_set: InstructionSet) -> Self {
+        Self { instruction_set, ..self }
     }
 
     /// Its spheres.
@@ -192,7 +198,7 @@ impl Planet {
     /// to a speed in metres per second.
     pub fn blast(&mut self, p: Point3, distance: f32, speed: f32) {
         let mut struck = Vec::new();
-        let mut strike = |entry: &Entry| struck.push(entry.body);
+        let mut strike = |entry: Entry| struck.push(entry.body);
         self.settled.around(p, distance, &mut strike);
         self.stirred_grid.around(p, distance, &mut strike);
         struck.sort_unstable();
@@ -218,14 +224,14 @@ impl Planet {
         self.sort_moving();
         self.fall(dt);
         self.sort_stirred(dt);
-        let (contacts, ranges) = self.contacts(&movers, dt);
-        let struck = self.collide(&contacts, &ranges, dt);
+        let (contacts, struck) = self.contacts(&movers, dt);
+        self.collide(&contacts, &movers);
         let before: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
         self.advance(dt);
-        self.separate(&contacts, &ranges);
+        self.separate(&contacts, &movers);
         self.hold_back(&before, dt);
         self.wake(struck);
-        self.rest(&ranges);
+        self.rest(&contacts);
     }
 
     /// The moon on its way, if there is one.
@@ -296,71 +302,89 @@ impl Planet {
         Entry { center: center[body], radius: radius[body], reach, body: body as u32 }
     }
 
-    /// The contacts of all bodies that move, one after another, and where those of each begin and
-    /// end.
-    fn contacts(&mut self, movers: &[Mover], dt: f32) -> (Vec<Contact>, Vec<[u32; 2]>) {
+    /// The contacts of all bodies that move, and the bodies that are struck so hard that they will.
+    fn contacts(&mut self, movers: &[Mover], dt: f32) -> (Vec<Contacts>, Vec<u32>) {
         for (place, &body) in self.moving.iter().enumerate() {
             self.place[body as usize] = place as u32;
         }
-        let of_chunk = |bodies: &[u32]| {
-            let (mut contacts, mut ends) = (Vec::with_capacity(8 * CHUNK), Vec::with_capacity(CHUNK));
-            for &body in bodies {
-                self.add_contacts(body as usize, movers, dt, &mut contacts);
-                ends.push(contacts.len() as u32);
-            }
-            (contacts, ends)
-        };
-        let chunks: Vec<_> = self.moving.par_chunks(CHUNK).map(of_chunk).collect();
-        let (mut contacts, mut ranges) = (Vec::new(), Vec::with_capacity(self.moving.len()));
-        for (of_chunk, ends) in chunks {
-            let first = contacts.len() as u32;
-            let mut begin = first;
-            for end in ends {
-                ranges.push([begin, first + end]);
-                begin = first + end;
-            }
-            contacts.extend(of_chunk);
-        }
-        (contacts, ranges)
+        let chunks = self.moving.par_chunks(CHUNK);
+        let found: Vec<_> = chunks.map(|bodies| self.contacts_of(bodies, movers, dt)).collect();
+        let (contacts, struck): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        (contacts, struck.concat())
     }
 
-    /// Adds the contacts of a body that moves.
-    fn add_contacts(&self, body: usize, movers: &[Mover], dt: f32, contacts: &mut Vec<Contact>) {
-        let Bodies { center, radius, velocity, .. } = &self.bodies;
-        let (p, size, v) = (center[body], radius[body], velocity[body]);
-        let mass = self.bodies.mass(body);
-        let mut add = |other: u32, q: Point3, (radius, share): (f32, f32), w: Vector3| {
-            let way = p - q;
-            let distance = way.length();
-            let (reach, gap) = (size + radius, distance - size - radius);
-            // The same for both: which is the first decides where both centres are one.
-            let aside = if (body as u32) < other { Vec3::Z } else { -Vec3::Z };
-            let normal = if distance > 0.0 { way / distance } else { aside };
-            if gap > NEAR + dt * (v - w).length() {
-                return;
-            }
-            let partner = self.place.get(other as usize).copied().unwrap_or(Contact::FIXED);
-            contacts.push(Contact { other, partner, normal, gap, share, velocity: w, center: q, reach });
+    fn contacts_of(&self, bodies: &[u32], movers: &[Mover], dt: f32) -> (Contacts, Vec<u32>) {
+        let Bodies { center, radius, velocity, state, .. } = &self.bodies;
+        let query = |&body: &u32| {
+            let i = body as usize;
+            Query { point: center[i], distance: radius[i] + NEAR + dt * velocity[i].length() }
         };
-        add(0, Vec3::ZERO, (self.radius, 1.0), Vector3::ZERO);
-        for mover in movers {
-            add(NOBODY, mover.center, (mover.radius, 1.0), mover.velocity);
+        let queries: Vec<Query> = bodies.iter().map(query).collect();
+        let near = |grid| self.instruction_set.dispatch(Near { grid, queries: &queries });
+        let (settled, stirred) = (near(&self.settled), near(&self.stirred_grid));
+        let (mut contacts, mut counts, mut struck) = (Vec::with_capacity(8 * CHUNK), Vec::new(), Vec::new());
+        for (query, &body) in bodies.iter().enumerate() {
+            let first = contacts.len();
+            let i = body as usize;
+            let (p, size, v, mass) = (center[i], radius[i], velocity[i], self.bodies.mass(i));
+            let contact = |q: Point3, reach: f32, velocity: Vector3, is_first: bool| {
+                let way = p - q;
+                let (distance, reach) = (way.length(), size + reach);
+                let gap = distance - reach;
+                if gap > NEAR + dt * (v - velocity).length() {
+                    return None;
+                }
+                // The same for both: which is the first decides where both centres are one.
+                let aside = if is_first { Vec3::Z } else { -Vec3::Z };
+                let normal = if distance > 0.0 { way / distance } else { aside };
+                let (partner, room) = (Contact::FIXED, gap.max(0.0) / dt);
+                Some(Contact { partner, normal, room, share: 1.0, center: q, reach })
+            };
+            contacts.extend(contact(Vec3::ZERO, self.radius, Vector3::ZERO, false));
+            for (mover, partner) in movers.iter().zip(first_constant(self.moving.len()) as u32..) {
+                let contact = contact(mover.center, mover.radius, mover.velocity, true);
+                contacts.extend(contact.map(|contact| Contact { partner, ..contact }));
+            }
+            for &place in settled.of(query) {
+                let Entry { center, radius, body: other, .. } = self.settled.entry(place);
+                // Those that have moved since are in the other grid.
+                if self.is_stirred[other as usize] {
+                    continue;
+                }
+                if let Some(contact) = contact(center, radius, Vector3::ZERO, body < other) {
+                    let speed = -v.dot(contact.normal);
+                    let is_struck = match state[other as usize] {
+                        State::Resting => speed > WAKE,
+                        State::Held => {
+                            let ratio = size / radius;
+                            speed * ratio * ratio * ratio > self.bodies.substance(other as usize).firmness()
+                        }
+                        State::Moving => false,
+                    };
+                    if is_struck {
+                        struck.push(other);
+                    }
+                    contacts.push(contact);
+                }
+            }
+            for &place in stirred.of(query) {
+                let Entry { center, radius, body: other, .. } = self.stirred_grid.entry(place);
+                if other == body {
+                    continue;
+                }
+                let j = other as usize;
+                if let Some(contact) = contact(center, radius, velocity[j], body < other) {
+                    let moves = state[j] == State::Moving;
+                    let share = if moves { self.share(mass, j) } else { 1.0 };
+                    if state[j] == State::Resting && -v.dot(contact.normal) > WAKE {
+                        struck.push(other);
+                    }
+                    contacts.push(Contact { partner: self.place[j], share, ..contact });
+                }
+            }
+            counts.push((contacts.len() - first) as u32);
         }
-        let distance = size + NEAR + dt * v.length();
-        self.settled.around(p, distance, |entry| {
-            // Those that have moved since are in the other grid.
-            if !self.is_stirred[entry.body as usize] {
-                add(entry.body, entry.center, (entry.radius, 1.0), Vector3::ZERO);
-            }
-        });
-        self.stirred_grid.around(p, distance, |entry| {
-            let other = entry.body as usize;
-            if other != body {
-                let moves = self.bodies.state[other] == State::Moving;
-                let share = if moves { self.share(mass, other) } else { 1.0 };
-                add(entry.body, entry.center, (entry.radius, share), velocity[other]);
-            }
-        });
+        (Contacts::new(&contacts, counts), struck)
     }
 
     /// The share of changes of a body of this mass, beside another one that moves.
@@ -369,40 +393,14 @@ impl Planet {
         others / (mass + others)
     }
 
-    /// Changes velocities by impulses. Gives the bodies that are struck so hard that they move.
-    fn collide(&mut self, contacts: &[Contact], ranges: &[[u32; 2]], dt: f32) -> Vec<u32> {
-        let mut velocities: Vec<Vector3> =
-            self.moving.iter().map(|&i| self.bodies.velocity[i as usize]).collect();
-        let of = |range: [u32; 2]| &contacts[range[0] as usize..range[1] as usize];
-        let struck = |(place, &range): (usize, &[u32; 2])| {
-            let (v, bodies) = (velocities[place], &self.bodies);
-            let size = bodies.radius[self.moving[place] as usize];
-            let is_struck = move |contact: &&Contact| {
-                let speed = contact.approach(v, contact.velocity);
-                match bodies.state.get(contact.other as usize) {
-                    Some(State::Resting) => speed > WAKE,
-                    Some(State::Held) if contact.other > 0 => {
-                        let other = contact.other as usize;
-                        let ratio = size / bodies.radius[other];
-                        speed * ratio * ratio * ratio > bodies.substance(other).firmness()
-                    }
-                    _ => false,
-                }
-            };
-            of(range).iter().filter(is_struck).map(|contact| contact.other)
-        };
-        let struck = ranges.par_iter().enumerate().with_min_len(CHUNK).flat_map_iter(struck).collect();
-        for _ in 0..ROUNDS {
-            let change = |contact: &Contact, v: Vector3| {
-                let other = velocities.get(contact.partner as usize).copied().unwrap_or(contact.velocity);
-                contact.impulse(v, other, dt)
-            };
-            velocities = relaxed(&velocities, contacts, ranges, change);
-        }
-        for (&body, velocity) in self.moving.iter().zip(velocities) {
+    /// Changes velocities by impulses.
+    fn collide(&mut self, contacts: &[Contacts], movers: &[Mover]) {
+        let of_bodies = self.moving.iter().map(|&i| self.bodies.velocity[i as usize]);
+        let mut velocities = Vectors::new(of_bodies, movers.iter().map(|mover| mover.velocity));
+        velocities.relax(self.instruction_set, ROUNDS, contacts, Impulses);
+        for (&body, velocity) in self.moving.iter().zip(velocities.iter()) {
             self.bodies.velocity[body as usize] = velocity;
         }
-        struck
     }
 
     fn advance(&mut self, dt: f32) {
@@ -413,16 +411,11 @@ impl Planet {
     }
 
     /// Takes overlaps away, which velocities do not feel.
-    fn separate(&mut self, contacts: &[Contact], ranges: &[[u32; 2]]) {
-        let mut centers: Vec<Point3> = self.moving.iter().map(|&i| self.bodies.center[i as usize]).collect();
-        for _ in 0..SEPARATIONS {
-            let change = |contact: &Contact, p: Point3| {
-                let other = centers.get(contact.partner as usize).copied().unwrap_or(contact.center);
-                contact.separation(p, other)
-            };
-            centers = relaxed(&centers, contacts, ranges, change);
-        }
-        for (&body, center) in self.moving.iter().zip(centers) {
+    fn separate(&mut self, contacts: &[Contacts], movers: &[Mover]) {
+        let of_bodies = self.moving.iter().map(|&i| self.bodies.center[i as usize]);
+        let mut centers = Vectors::new(of_bodies, movers.iter().map(|mover| mover.center));
+        centers.relax(self.instruction_set, SEPARATIONS, contacts, Separations);
+        for (&body, center) in self.moving.iter().zip(centers.iter()) {
             self.bodies.center[body as usize] = center;
         }
     }
@@ -459,7 +452,7 @@ impl Planet {
             }
             let (p, size, bodies) = (self.bodies.center[i], self.bodies.radius[i], &self.bodies);
             let height = p.length();
-            let mut carry = |entry: &Entry| {
+            let mut carry = |entry: Entry| {
                 let other = entry.body as usize;
                 let is_carried = match bodies.state[other] {
                     State::Held => was_held && grows(bodies.substance(other)),
@@ -487,15 +480,15 @@ impl Planet {
     }
 
     /// Lets bodies rest that have been slow for some time and touch something.
-    fn rest(&mut self, ranges: &[[u32; 2]]) {
+    fn rest(&mut self, contacts: &[Contacts]) {
         let Bodies { velocity, state, .. } = &mut self.bodies;
         // Those woken in this step come later, and have no contacts yet.
         let touching: Vec<(usize, bool)> = {
-            let mut ranges = ranges.iter();
+            let mut counts = contacts.iter().flat_map(|contacts| &contacts.counts);
             let with_contacts = self.moving.iter().map(|&i| {
                 let i = i as usize;
                 let is_old = self.place[i] != Contact::FIXED;
-                (i, is_old && ranges.next().is_some_and(|range| range[0] < range[1]))
+                (i, is_old && counts.next().is_some_and(|&count| count > 0))
             });
             with_contacts.collect()
         };
@@ -509,34 +502,6 @@ impl Planet {
         }
         self.moving.retain(|&i| state[i as usize] == State::Moving);
     }
-}
-
-/// Changes a vector of each moving body by those of all its contacts at once. A contact counts by
-/// one over the larger number of contacts that change something, of the two bodies.
-fn relaxed(
-    vectors: &[Vec3],
-    contacts: &[Contact],
-    ranges: &[[u32; 2]],
-    change: impl Fn(&Contact, Vec3) -> Vec3 + Sync,
-) -> Vec<Vec3> {
-    let of = |range: &[u32; 2]| &contacts[range[0] as usize..range[1] as usize];
-    let bodies = || vectors.par_iter().zip(ranges).with_min_len(CHUNK);
-    let counts: Vec<u32> = bodies()
-        .map(|(&vector, range)| {
-            of(range).iter().filter(|contact| change(contact, vector) != Vec3::ZERO).count() as u32
-        })
-        .collect();
-    let changed = |(place, (&vector, range)): (usize, (&Vec3, &[u32; 2]))| {
-        if counts[place] == 0 {
-            return vector;
-        }
-        of(range).iter().fold(vector, |sum, contact| {
-            let of_partner = counts.get(contact.partner as usize).copied().unwrap_or(0);
-            sum + change(contact, vector) / counts[place].max(of_partner) as f32
-        })
-    };
-    let places = vectors.par_iter().zip(ranges).enumerate().with_min_len(CHUNK);
-    places.map(changed).collect()
 }
 
 /// The place of a point's cell of a metre on a Z-order curve.

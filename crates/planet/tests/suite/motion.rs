@@ -1,17 +1,18 @@
 //! Motion.
 
 use alhazen_planet::{Input, Planet, State, Walker};
+use lanes::InstructionSet;
 use math::Vec3;
 use sampling::Rng;
 
 const STEP: f32 = 1.0 / 30.0;
 
 #[test]
-fn the_same_steps_give_the_same_bits_for_any_number_of_threads() {
-    let run = |threads: usize| {
+fn the_same_steps_give_the_same_bits_for_any_number_of_threads_and_lanes() {
+    let run = |threads: usize, set: InstructionSet| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut planet = Planet::new(3000);
+            let mut planet = Planet::new(3000).with_instruction_set(set);
             let mut walker = Walker::new(&planet);
             let input = Input { forward: 1.0, runs: true, ..Input::default() };
             for step in 0..60 {
@@ -25,10 +26,12 @@ fn the_same_steps_give_the_same_bits_for_any_number_of_threads() {
             (planet.bodies().center.clone(), planet.moving(), walker.center())
         })
     };
-    let one = run(1);
+    let one = run(1, InstructionSet::Scalar);
     assert!(one.1 > 100, "{} spheres move", one.1);
-    assert_eq!(one, run(2));
-    assert_eq!(one, run(3));
+    assert_eq!(one, run(2, InstructionSet::detect()));
+    for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
+        assert_eq!(one, run(3, set), "{set:?}");
+    }
 }
 
 /// Balls that fall in a heap on one place of a core.
