@@ -49,6 +49,8 @@ pub struct Development<'film> {
     layers: LayerSet,
     buckets: Option<Buckets>,
     output_from_sensor: Matrix3,
+    /// The light paths that splats are of.
+    light_paths: u64,
     channels: Vec<Channel>,
     /// The metadata of the picture.
     pub metadata: ImageMetadata,
@@ -103,7 +105,8 @@ impl<'film> Development<'film> {
             Buckets::describe(&mut metadata);
         }
         let output_from_sensor = color_space.rgb_from_xyz() * film.exposure.sensor.xyz_from_sensor_rgb();
-        Self { film, second, layers, buckets, output_from_sensor, channels, metadata }
+        let light_paths = [Some(film), second].into_iter().flatten().map(|film| film.splats.paths()).sum();
+        Self { film, second, layers, buckets, output_from_sensor, light_paths, channels, metadata }
     }
 
     /// Writes the names of a layer's identifiers to the header, if the film has the layer: of these
@@ -182,13 +185,11 @@ impl<'film> Development<'film> {
 
     /// What splats add to a response of the sensor, a bucket or a part of the light.
     fn splats(&self, tile: usize, pixel: usize, component: usize) -> f64 {
-        match self.films().map(|film| film.splats.paths()).sum::<u64>() {
-            0 => 0.0,
-            paths => {
-                let units = self.films().map(|film| film.splats.units(tile, pixel, component));
-                value(units.fold(0, i128::saturating_add)) / paths as f64
-            }
+        if self.light_paths == 0 {
+            return 0.0;
         }
+        let units = self.films().map(|film| film.splats.units(tile, pixel, component));
+        value(units.fold(0, i128::saturating_add)) / self.light_paths as f64
     }
 
     /// The colour of a response of the sensor.
@@ -309,6 +310,18 @@ impl PixelSource for Development<'_> {
         for tile in grid.row(y as usize / side) {
             let (first, width) = (grid.range(tile).start, grid.bounds(tile).width() as usize);
             let row = y as usize % side * width;
+            let has_samples = !self.film.counts.is_empty();
+            let is_plain = has_samples && self.second.is_none() && self.light_paths == 0;
+            if is_plain
+                && self.channels.len() == 3
+                && let Some(sums) = self.film.color.values(tile, first + row..first + row + width)
+            {
+                for [r, g, b, weight] in sums {
+                    let mean = if weight == 0.0 { [0.0; 3] } else { [r, g, b].map(|c| c / weight) };
+                    self.color(mean).into_iter().zip(values.by_ref()).for_each(|(c, value)| *value = c);
+                }
+                continue;
+            }
             for pixel in row..row + width {
                 self.pixel(tile, first, pixel, |number| {
                     if let Some(value) = values.next() {

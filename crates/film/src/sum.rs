@@ -156,6 +156,18 @@ impl Sums {
         value(self.units(place, component))
     }
 
+    /// The values of the `N` sums that each of these pixels of a tile has; `None` if the tile has
+    /// sums with high bits.
+    pub(crate) fn values<const N: usize>(
+        &self,
+        tile: usize,
+        pixels: Range<usize>,
+    ) -> Option<impl Iterator<Item = [f64; N]>> {
+        debug_assert_eq!(self.components, N);
+        let (low, _) = self.low[pixels.start * N..pixels.end * N].as_chunks::<N>();
+        self.high[tile].is_empty().then(|| low.iter().map(|low| low.map(low_value)))
+    }
+
     /// Adds the sums of another film of the same pixels.
     pub(crate) fn merge(&mut self, other: &Self, grid: Grid) {
         for (tile, mut sums) in self.tiles(grid).enumerate() {

@@ -53,7 +53,7 @@ pub struct Near<'a> {
 }
 
 /// The places of spheres in a grid, those of each query one after another.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Found {
     places: Vec<u32>,
     ends: Vec<u32>,
@@ -155,7 +155,9 @@ impl Kernel for Near<'_> {
 
     #[inline(always)]
     fn run<R: Real>(self) -> Found {
-        let mut found = Found::default();
+        let count = self.queries.len();
+        let (places, ends) = (Vec::with_capacity(8 * count), Vec::with_capacity(count));
+        let mut found = Found { places, ends };
         for &query in self.queries {
             self.grid.append_near::<R>(query, &mut found.places);
             found.ends.push(found.places.len() as u32);

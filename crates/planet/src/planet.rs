@@ -266,11 +266,20 @@ impl Planet {
 
     /// Gravity.
     fn fall(&mut self, dt: f32) {
-        for &i in &self.moving {
+        let fallen = |&i: &u32| {
             let i = i as usize;
             let velocity = self.bodies.velocity[i] + self.gravity(self.bodies.center[i]) * dt;
             let speed = velocity.length();
-            self.bodies.velocity[i] = if speed > FASTEST { velocity * (FASTEST / speed) } else { velocity };
+            if speed > FASTEST { velocity * (FASTEST / speed) } else { velocity }
+        };
+        let velocities = self.moving.par_iter().with_min_len(CHUNK).map(fallen).collect();
+        self.set_velocities(velocities);
+    }
+
+    /// Replaces the velocities of those that move.
+    fn set_velocities(&mut self, velocities: Vec<Vector3>) {
+        for (&body, velocity) in self.moving.iter().zip(velocities) {
+            self.bodies.velocity[body as usize] = velocity;
         }
     }
 
@@ -423,14 +432,13 @@ impl Planet {
     /// Takes speed from bodies that have not come as far as it says: those below others in a heap,
     /// whose impulses the rounds have not balanced.
     fn hold_back(&mut self, before: &[Point3], dt: f32) {
-        for (&body, before) in self.moving.iter().zip(before) {
-            let (center, velocity) =
-                (self.bodies.center[body as usize], &mut self.bodies.velocity[body as usize]);
+        let held = |(&body, before): (&u32, &Point3)| {
+            let (center, velocity) = (self.bodies.center[body as usize], self.bodies.velocity[body as usize]);
             let (moved, speed) = (center.distance(*before) / dt, velocity.length());
-            if moved < speed {
-                *velocity *= moved / speed;
-            }
-        }
+            if moved < speed { velocity * (moved / speed) } else { velocity }
+        };
+        let velocities = self.moving.par_iter().zip(before).with_min_len(CHUNK).map(held).collect();
+        self.set_velocities(velocities);
     }
 
     /// Lets bodies move, and what they carry: what touches them from above.
@@ -473,7 +481,7 @@ impl Planet {
     fn sort_moving(&mut self) {
         let center = &self.bodies.center;
         let key = |&i: &u32| u64::from(place_on_curve(center[i as usize])) << 32 | u64::from(i);
-        let mut keys: Vec<u64> = self.moving.iter().map(key).collect();
+        let mut keys: Vec<u64> = self.moving.par_iter().with_min_len(CHUNK).map(key).collect();
         keys.par_sort_unstable();
         self.moving.clear();
         self.moving.extend(keys.into_iter().map(|key| key as u32));

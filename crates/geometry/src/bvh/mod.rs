@@ -8,11 +8,13 @@
 
 mod build;
 mod node;
+mod packet;
 mod traverse;
 
 use math::Bounds3;
 use node::WideNode;
 pub(crate) use node::{Child, RaySlabs, WIDTH};
+pub(crate) use packet::Packet;
 
 pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};

@@ -17,6 +17,7 @@
 
 #![allow(unsafe_code)]
 
+use super::packet::PacketSlabs;
 use lanes::Vector;
 use math::{Bounds3, Ray, Vec3, gamma};
 
@@ -83,13 +84,13 @@ pub(crate) struct WideNode {
 #[derive(Clone, Copy)]
 pub(crate) struct RaySlabs<V> {
     /// The offsets in bytes of the planes that are crossed first and last along each axis.
-    first: [usize; 3],
-    last: [usize; 3],
-    inverse: [V; 3],
+    pub first: [usize; 3],
+    pub last: [usize; 3],
+    pub inverse: [V; 3],
     /// o/d, with the origin moved forward for near planes and back for far planes, which widens the
     /// boxes.
-    near: [V; 3],
-    far: [V; 3],
+    pub near: [V; 3],
+    pub far: [V; 3],
 }
 
 impl RaySlabs<f32> {
@@ -107,14 +108,14 @@ impl RaySlabs<f32> {
 
     /// A ray that meets every box.
     #[inline(always)]
-    fn everywhere() -> Self {
+    pub fn everywhere() -> Self {
         let [first, last] = planes_along(&Vec3::ONE);
         Self { first, last, inverse: [f32::MIN_POSITIVE; 3], near: [1e30; 3], far: [-1e30; 3] }
     }
 
     /// A ray that crosses first planes from `front` and last planes from `back`.
     #[inline(always)]
-    fn along(d: &Vec3, inverse: Vec3, [front, back]: [Vec3; 2], margin: f32) -> Self {
+    pub fn along(d: &Vec3, inverse: Vec3, [front, back]: [Vec3; 2], margin: f32) -> Self {
         let shift = Vec3::splat(margin).copysign(inverse);
         let [first, last] = planes_along(d);
         let (near, far) = ((front + shift) * inverse, (back - shift) * inverse);
@@ -134,77 +135,6 @@ impl RaySlabs<f32> {
     }
 }
 
-/// A packet of rays, and intervals around their origins and directions ([Reshetov et al. 2005]).
-#[derive(Clone, Copy)]
-pub(crate) struct PacketSlabs<V> {
-    /// One ray in each lane.
-    rays: RaySlabs<V>,
-    /// The intervals as two rays, each in all lanes: their inverse directions have the least and
-    /// the greatest magnitude along each axis. They cross first planes from the foremost origin
-    /// and last planes from the rearmost one, so that one of both does before and one after all
-    /// rays.
-    least: RaySlabs<V>,
-    greatest: RaySlabs<V>,
-}
-
-impl<V: Vector<WIDTH>> PacketSlabs<V> {
-    /// All directions must have the same signs.
-    ///
-    /// # Safety
-    /// The processor must have the instruction set of `V`.
-    #[inline(always)]
-    pub unsafe fn new(rays: &[(Ray, f32); WIDTH], bounds: &Bounds3) -> Self {
-        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for (ray, _) in rays {
-            low = low.min(ray.o);
-            high = high.max(ray.o);
-        }
-        let size = size(low.abs().max(high.abs()), bounds);
-        let margin = size * MARGIN;
-        let mut lanes = [[0.0; WIDTH]; 3];
-        let mut origins = [[0.0; WIDTH]; 3];
-        let (mut least, mut greatest) = (Vec3::INFINITY, Vec3::ZERO);
-        let mut all_moderate = true;
-        for (lane, (ray, _)) in rays.iter().enumerate() {
-            let largest = ray.d.abs().max_element();
-            all_moderate &= is_moderate(size, largest);
-            let inverse = inverse(ray.d, largest);
-            for axis in 0..3 {
-                lanes[axis][lane] = inverse[axis];
-                origins[axis][lane] = ray.o[axis];
-            }
-            least = least.min(inverse.abs());
-            greatest = greatest.max(inverse.abs());
-        }
-        // SAFETY: as the caller promises.
-        unsafe {
-            if !all_moderate {
-                let [rays, least, greatest] = [RaySlabs::everywhere().lanes(); 3];
-                return Self { rays, least, greatest };
-            }
-            // Without `map`, which would be called, and call each intrinsic.
-            let d = rays[0].0.d;
-            let (mut front, mut back) = (high, low);
-            for axis in 0..3 {
-                if d[axis].is_sign_negative() {
-                    (front[axis], back[axis]) = (low[axis], high[axis]);
-                }
-            }
-            let least = RaySlabs::along(&d, least.copysign(d), [front, back], margin).lanes();
-            let greatest = RaySlabs::along(&d, greatest.copysign(d), [front, back], margin).lanes();
-            let mut rays: RaySlabs<V> = greatest;
-            for axis in 0..3 {
-                let shift = V::splat(margin.copysign(lanes[axis][0]));
-                let o = V::load(&origins[axis]);
-                rays.inverse[axis] = V::load(&lanes[axis]);
-                rays.near[axis] = rays.inverse[axis].mul(o.add(shift));
-                rays.far[axis] = rays.inverse[axis].mul(o.sub(shift));
-            }
-            Self { rays, least, greatest }
-        }
-    }
-}
-
 /// 1/d, finite along every axis.
 #[inline(always)]
 fn inverse(d: Vec3, largest: f32) -> Vec3 {
@@ -217,7 +147,7 @@ fn inverse(d: Vec3, largest: f32) -> Vec3 {
 /// Whether nothing overflows in slab tests, and no inverse is too small for floats, given a bound
 /// of all coordinates and the largest component of the direction.
 #[inline(always)]
-fn is_moderate(size: f32, largest: f32) -> bool {
+pub(super) fn is_moderate(size: f32, largest: f32) -> bool {
     size < 1e30 && size < 1e20 * largest && 1e-25 < largest && largest < 1e37
 }
 
@@ -233,11 +163,11 @@ fn planes_along(d: &Vec3) -> [[usize; 3]; 2] {
 }
 
 /// The distance that planes are moved by, relative to the bound of coordinates.
-const MARGIN: f32 = gamma(8);
+pub(super) const MARGIN: f32 = gamma(8);
 
 /// A bound of the coordinates of an origin and of a tree.
 #[inline(always)]
-fn size(o: Vec3, bounds: &Bounds3) -> f32 {
+pub(super) fn size(o: Vec3, bounds: &Bounds3) -> f32 {
     (bounds.min.abs().max(bounds.max.abs()) + o.abs()).max_element()
 }
 

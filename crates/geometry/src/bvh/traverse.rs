@@ -9,7 +9,8 @@
 
 #![allow(unsafe_code)]
 
-use super::node::{Child, PacketSlabs, RaySlabs, WIDTH, WideNode};
+use super::node::{Child, RaySlabs, WIDTH, WideNode};
+use super::packet::{Packet, PacketSlabs};
 use super::{Bvh, MAX_DEPTH};
 use lanes::{Simd, Vector, prefetch};
 use math::Ray;
@@ -163,15 +164,15 @@ impl Bvh {
     }
 
     /// Traverses the tree with a packet of rays. Passes `leaves` the blocks that any ray may meet
-    /// before its end. Returns the number of boxes tested. The rays must be finite, and their
-    /// directions must have the same signs.
+    /// before its end in `t_max`. Returns the number of boxes tested. The rays must be finite, and
+    /// their directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instruction set.
     #[inline(always)]
     pub unsafe fn traverse_packet<S: Simd>(
         &self,
-        rays: &[(Ray, f32); WIDTH],
+        packet: &Packet,
         t_max: &mut [f32; WIDTH],
         leaves: &mut impl PacketLeaves,
     ) -> u64 {
@@ -181,7 +182,7 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let packet = PacketSlabs::<S::F32x16>::new(rays, &self.bounds);
+            let packet = PacketSlabs::<S::F32x16>::new(packet, &self.bounds);
             let zero = S::F32x16::splat(0.0);
             let mut furthest = largest(t_max);
             let mut stack = [const { MaybeUninit::<StackEntry>::uninit() }; STACK];

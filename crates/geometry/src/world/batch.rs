@@ -14,14 +14,16 @@ use super::columns::{HitColumns, RayColumns};
 use super::facet_rays::{AnyHits, FacetRays, NearestHits};
 use super::facets::Facets;
 use super::filter::Filter;
+use super::group::Group;
 use super::hit::Hit;
 use super::instance::InstancePath;
 use super::query::{Any, Nearest, Query};
 use super::ray_order::coherent_order;
-use super::ray_packet::{TracePacket, are_coherent};
+use super::ray_packet::TracePacket;
 use super::stats::RayStats;
 use super::trace::{Trace, TraceEach, is_valid};
-use crate::bvh::WIDTH;
+use crate::bvh::{Packet, WIDTH};
+use lanes::{Simd, Task};
 use math::{Ray, Vec3};
 
 impl World {
@@ -99,23 +101,23 @@ impl World {
                 }
             }
             // Rays without a direction fill the last ones up.
-            let mut few = [(Ray::new(Vec3::ZERO, Vec3::ZERO, 0.0), 0.0); WIDTH];
+            let packet = if order.is_none() && turns.len() == WIDTH {
+                rays.packet_from(first)
+            } else {
+                rays.packet(turns.clone().map(place))
+            };
+            let mut few = [Ray::new(Vec3::ZERO, Vec3::ZERO, 0.0); WIDTH];
             for (ray, turn) in few.iter_mut().zip(turns.clone()) {
-                *ray = (rays.ray(place(turn)), rays.t_max(place(turn)));
+                *ray = rays.ray(place(turn));
             }
-            let mut asked: [Q::Of<'_>; WIDTH] = std::array::from_fn(|i| queries.of(&few[i].0, few[i].1));
+            let mut asked: [Q::Of<'_>; WIDTH] = std::array::from_fn(|i| queries.of(&few[i], packet.t_max[i]));
             stats.rays += turns.len() as u64;
-            let is_packet = are_coherent(&few, size);
+            let task = TraceFew { group, size, packet: &packet, rays: &few, queries: &mut asked, stats };
             // SAFETY: the processor has the instruction set of a world.
-            unsafe {
-                if is_packet {
-                    set.run(TracePacket { group, rays: &few, queries: &mut asked, stats });
-                } else {
-                    set.run(TraceEach { group, rays: &few, queries: &mut asked, stats });
-                }
-            }
-            for ((query, (ray, _)), turn) in asked.iter_mut().zip(&few).zip(turns) {
-                if !group.has_only_triangles() && !query.is_answered() && is_valid(ray) {
+            let is_packet = unsafe { set.run(task) };
+            let is_done = if is_packet { !group.has_items() } else { group.has_only_triangles() };
+            for ((query, ray), turn) in asked.iter_mut().zip(&few).zip(turns) {
+                if !is_done && !query.is_answered() && is_valid(ray) {
                     let tables = &self.tables;
                     let mut trace = Trace { tables, ray, instance: InstancePath::TOP, stats };
                     if is_packet {
@@ -126,6 +128,39 @@ impl World {
                 }
                 queries.answer(place(turn), query.answer());
             }
+        }
+    }
+}
+
+/// Sixteen rays: if they are coherent, all traverse the triangles and the spheres of the top group
+/// together, otherwise one after another its triangles.
+struct TraceFew<'a, Q> {
+    group: &'a Group,
+    size: f32,
+    packet: &'a Packet,
+    /// The same rays.
+    rays: &'a [Ray; WIDTH],
+    /// A query for each ray.
+    queries: &'a mut [Q; WIDTH],
+    stats: &'a mut RayStats,
+}
+
+impl<Q: Query> Task for TraceFew<'_, Q> {
+    /// Whether they are coherent.
+    type Output = bool;
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> bool {
+        let Self { group, size, packet, rays, queries, stats } = self;
+        // SAFETY: the caller promises the instruction set.
+        unsafe {
+            let is_packet = packet.is_coherent::<S::F32x16>(size);
+            if is_packet {
+                TracePacket { group, packet, rays, queries, stats }.run::<S>();
+            } else {
+                TraceEach { group, rays, queries, stats }.run::<S>();
+            }
+            is_packet
         }
     }
 }

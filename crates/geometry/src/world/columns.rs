@@ -3,6 +3,7 @@
 use super::geometry::GeometryId;
 use super::hit::Hit;
 use super::instance::InstancePath;
+use crate::bvh::{Packet, WIDTH};
 use lanes::{Int, MAX_LANES, Mask, Real};
 use math::{Ray, Vec2, Vec3, Vector3};
 
@@ -73,6 +74,28 @@ impl<'a> RayColumns<'a> {
             None => R::splat(f32::INFINITY),
         };
         (o, d, t_max)
+    }
+
+    /// The rays at some places, and those without a direction where there are fewer.
+    #[inline(always)]
+    pub(super) fn packet(&self, places: impl Iterator<Item = usize>) -> Packet {
+        let mut packet = Packet::NONE;
+        for (lane, place) in places.enumerate().take(WIDTH) {
+            for axis in 0..3 {
+                packet.o[axis][lane] = self.o[axis][place];
+                packet.d[axis][lane] = self.d[axis][place];
+            }
+            packet.t_max[lane] = self.t_max(place);
+        }
+        packet
+    }
+
+    /// The same of sixteen rays from a place on.
+    #[inline(always)]
+    pub(super) fn packet_from(&self, first: usize) -> Packet {
+        let of = |column: &[f32]| *column[first..].first_chunk().unwrap_or(&[0.0; WIDTH]);
+        let t_max = self.t_max.map_or([f32::INFINITY; WIDTH], of);
+        Packet { o: self.o.map(of), d: self.d.map(of), t_max }
     }
 
     /// Prefetches a ray.

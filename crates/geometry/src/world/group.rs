@@ -115,6 +115,11 @@ impl Group {
         self.unbounded.is_empty() & self.spheres.blocks.is_empty() & self.items.is_empty()
     }
 
+    /// Whether it has anything but triangles and sets of spheres.
+    pub fn has_items(&self) -> bool {
+        !self.unbounded.is_empty() || !self.items.is_empty()
+    }
+
     /// Whether other groups are placed in it.
     pub fn has_instances(&self) -> bool {
         self.items.iter().any(|item| matches!(item, Item::Instance(_)))

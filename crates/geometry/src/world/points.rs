@@ -82,7 +82,7 @@ impl PointColumns {
 
     /// Room for `len` points, and for as many more as lanes may have.
     fn reset(&mut self, len: usize) {
-        let len = len.next_multiple_of(MAX_LANES);
+        let len = len.next_multiple_of(MAX_LANES).max(self.found.len());
         self.values.iter_mut().for_each(|column| column.resize(len, 0.0));
         self.found.resize(len, 0);
     }

@@ -9,53 +9,29 @@
 use super::group::Group;
 use super::instance::InstancePath;
 use super::query::Query;
-use super::spheres::{SphereBlock, UnitRays};
+use super::spheres::{ScaledRays, SphereBlock};
 use super::stats::RayStats;
-use super::trace::{TriangleLeaves, is_valid};
+use super::trace::TriangleLeaves;
 use super::triangle_block::TriangleBlock;
-use crate::bvh::{Leaves, PacketLeaves, WIDTH};
+use crate::bvh::{Leaves, Packet, PacketLeaves, WIDTH};
 use crate::shape::SphereRay;
-use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
+use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use lanes::{Simd, Task, Vector};
 use math::Ray;
 use std::ops::Range;
 
-/// The largest difference between directions of a packet, relative to their length, and between
-/// origins, relative to the size of what is traversed.
-const SPREAD: f32 = 0.1;
-
-/// Whether rays are worth tracing as a packet through something of a size: they have similar
-/// origins, and similar directions with the same signs and the same main axis.
-#[inline(always)]
-pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH], size: f32) -> bool {
-    let lead = rays[0].0;
-    let axis = main_axis(lead.d);
-    let of_origins = SPREAD * SPREAD * size * size;
-    let of_directions = lead.d.length_squared() * (SPREAD * SPREAD);
-    for (ray, t_max) in rays {
-        let is_coherent = is_valid(ray)
-            && *t_max >= 0.0
-            && ray.o.distance_squared(lead.o) <= of_origins
-            && ray.d.distance_squared(lead.d) < of_directions
-            && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
-            && main_axis(ray.d) == axis;
-        if !is_coherent {
-            return false;
-        }
-    }
-    true
-}
-
 /// Coherent rays that traverse the triangles and the spheres of the top group together.
 pub(super) struct TracePacket<'a, Q> {
     pub group: &'a Group,
-    pub rays: &'a [(Ray, f32); WIDTH],
+    pub packet: &'a Packet,
+    /// The same rays.
+    pub rays: &'a [Ray; WIDTH],
     /// A query for each ray.
     pub queries: &'a mut [Q; WIDTH],
     pub stats: &'a mut RayStats,
 }
 
-/// Up to this many rays of a packet are tested against triangles individually.
+/// Up to this many rays of a packet are tested against primitives individually.
 const FEW: u32 = 4;
 
 impl<Q: Query> Task for TracePacket<'_, Q> {
@@ -63,27 +39,26 @@ impl<Q: Query> Task for TracePacket<'_, Q> {
 
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
-        let Self { group, rays, queries, stats } = self;
-        let mut t_max = std::array::from_fn(|i| rays[i].1);
+        let Self { group, packet, rays, queries, stats } = self;
+        let mut t_max = packet.t_max;
         if !group.triangles.is_empty() {
-            let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i].0));
+            let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i]));
             // SAFETY: the caller promises the instruction set.
             unsafe {
                 let lanes = Sheared::each(&sheared);
                 let mut leaves =
                     PacketTriangles::<S, Q> { group, sheared: &sheared, lanes, queries, primitives: 0 };
-                stats.extents += group.triangles.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
+                stats.extents += group.triangles.tree.traverse_packet::<S>(packet, &mut t_max, &mut leaves);
                 stats.primitives += leaves.primitives;
             }
         }
         if !group.spheres.blocks.is_empty() {
-            let (blocks, exact) =
-                (&*group.spheres.blocks, std::array::from_fn(|i| SphereRay::new(&rays[i].0)));
             // SAFETY: the caller promises the instruction set.
             unsafe {
-                let lanes = UnitRays::<S::F32x16>::each(rays);
-                let mut leaves = PacketSpheres { blocks, lanes, exact, queries, primitives: 0 };
-                stats.extents += group.spheres.tree.traverse_packet::<S>(rays, &mut t_max, &mut leaves);
+                let lanes = ScaledRays::<S::F32x16>::each(packet);
+                let blocks = &*group.spheres.blocks;
+                let mut leaves = PacketSpheres::<S, Q> { blocks, lanes, rays, queries, primitives: 0 };
+                stats.extents += group.spheres.tree.traverse_packet::<S>(packet, &mut t_max, &mut leaves);
                 stats.primitives += leaves.primitives;
             }
         }
@@ -186,16 +161,16 @@ fn offer<V: Vector<WIDTH>, Q: Query>(
 }
 
 /// The spheres of a group, tested against the rays of a packet.
-struct PacketSpheres<'a, V, Q> {
+struct PacketSpheres<'a, S: Simd, Q> {
     blocks: &'a [SphereBlock],
-    lanes: UnitRays<V>,
-    exact: [SphereRay; WIDTH],
+    lanes: ScaledRays<S::F32x16>,
+    rays: &'a [Ray; WIDTH],
     queries: &'a mut [Q; WIDTH],
     /// How many were tested, each against one ray.
     primitives: u64,
 }
 
-impl<V: Vector<WIDTH>, Q: Query> PacketLeaves for PacketSpheres<'_, V, Q> {
+impl<S: Simd, Q: Query> PacketLeaves for PacketSpheres<'_, S, Q> {
     type Block = SphereBlock;
 
     #[inline(always)]
@@ -209,7 +184,7 @@ impl<V: Vector<WIDTH>, Q: Query> PacketLeaves for PacketSpheres<'_, V, Q> {
             for lane in 0..block.len() {
                 self.primitives += WIDTH as u64;
                 // SAFETY: the caller promises the instruction set.
-                let ends = unsafe { V::load(t_max) };
+                let ends = unsafe { S::F32x16::load(t_max) };
                 let mut meeting = block.meeting(lane, &self.lanes, ends);
                 while meeting != 0 {
                     let i = meeting.trailing_zeros() as usize % WIDTH;
@@ -217,12 +192,9 @@ impl<V: Vector<WIDTH>, Q: Query> PacketLeaves for PacketSpheres<'_, V, Q> {
                     if t_max[i] < 0.0 {
                         continue;
                     }
-                    let query = &mut self.queries[i];
-                    t_max[i] = if block.offer(lane, &self.exact[i], InstancePath::TOP, query) {
-                        -1.0
-                    } else {
-                        query.t_max()
-                    };
+                    let (ray, query) = (SphereRay::new(&self.rays[i]), &mut self.queries[i]);
+                    let is_answered = block.offer(lane, &ray, InstancePath::TOP, query);
+                    t_max[i] = if is_answered { -1.0 } else { query.t_max() };
                 }
             }
         }

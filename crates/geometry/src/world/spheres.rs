@@ -15,7 +15,7 @@ use super::geometry::{Geometry, GeometryId};
 use super::hit::Hit;
 use super::instance::InstancePath;
 use super::query::{Query, offer_all};
-use crate::bvh::{BuildQuality, Bvh, Extent, Primitives, Reference, WIDTH};
+use crate::bvh::{BuildQuality, Bvh, Extent, Packet, Primitives, Reference, WIDTH};
 use crate::shape::SphereRay;
 use crate::sphere_set::SphereSet;
 use lanes::Vector;
@@ -96,15 +96,17 @@ impl Primitives for Sets<'_> {
 const ERROR: f32 = 16.0 * MACHINE_EPSILON;
 
 /// A ray in every lane, or one ray of a packet in each, prepared for tests against spheres.
-pub(super) struct UnitRays<V> {
+pub(super) struct ScaledRays<V> {
     o: [V; 3],
-    /// Of unit length.
+    /// Of which the largest component is one.
     d: [V; 3],
-    /// The length of the original direction, and more by the error.
-    length: V,
+    /// 1/d².
+    inverse: V,
+    /// The largest component of the original direction, and more by the error.
+    scale: V,
 }
 
-impl<V> UnitRays<V> {
+impl<V> ScaledRays<V> {
     /// A ray in every lane.
     ///
     /// # Safety
@@ -114,15 +116,9 @@ impl<V> UnitRays<V> {
     where
         V: Vector<N>,
     {
-        let (d, length) = unit(ray.d);
         // SAFETY: as the caller promises.
-        unsafe {
-            Self {
-                o: [V::splat(ray.o.x), V::splat(ray.o.y), V::splat(ray.o.z)],
-                d: [V::splat(d.x), V::splat(d.y), V::splat(d.z)],
-                length: V::splat(length),
-            }
-        }
+        let splat = |v: Vec3| unsafe { [V::splat(v.x), V::splat(v.y), V::splat(v.z)] };
+        Self::new(splat(ray.o), splat(ray.d))
     }
 
     /// A ray in each lane.
@@ -130,27 +126,28 @@ impl<V> UnitRays<V> {
     /// # Safety
     /// The processor must have the instruction set of `V`.
     #[inline(always)]
-    pub unsafe fn each<const N: usize>(rays: &[(Ray, f32); N]) -> Self
+    pub unsafe fn each(packet: &Packet) -> Self
+    where
+        V: Vector<WIDTH>,
+    {
+        let Packet { o, d, .. } = packet;
+        // SAFETY: as the caller promises.
+        let load = |v: &[[f32; WIDTH]; 3]| unsafe { [V::load(&v[0]), V::load(&v[1]), V::load(&v[2])] };
+        Self::new(load(o), load(d))
+    }
+
+    #[inline(always)]
+    fn new<const N: usize>(o: [V; 3], [x, y, z]: [V; 3]) -> Self
     where
         V: Vector<N>,
     {
-        let (mut o, mut d, mut length) = ([[0.0; N]; 3], [[0.0; N]; 3], [0.0; N]);
-        for (lane, (ray, _)) in rays.iter().enumerate() {
-            let unit = unit(ray.d);
-            for axis in 0..3 {
-                o[axis][lane] = ray.o[axis];
-                d[axis][lane] = unit.0[axis];
-            }
-            length[lane] = unit.1;
-        }
-        // SAFETY: as the caller promises.
-        unsafe {
-            Self {
-                o: [V::load(&o[0]), V::load(&o[1]), V::load(&o[2])],
-                d: [V::load(&d[0]), V::load(&d[1]), V::load(&d[2])],
-                length: V::load(&length),
-            }
-        }
+        // SAFETY: a vector is the proof of the instruction set.
+        let splat = |x| unsafe { V::splat(x) };
+        let largest = x.abs().max(y.abs()).max(z.abs());
+        let shrink = splat(1.0).div(largest);
+        let [x, y, z] = [x.mul(shrink), y.mul(shrink), z.mul(shrink)];
+        let inverse = splat(1.0).div(x.mul_add(x, y.mul_add(y, z.mul(z))));
+        Self { o, d: [x, y, z], inverse, scale: largest.mul(splat(1.0 + ERROR)) }
     }
 
     /// A bit for each sphere that a ray may meet up to `t_max`.
@@ -161,10 +158,10 @@ impl<V> UnitRays<V> {
     {
         // SAFETY: a vector is the proof of the instruction set.
         let splat = |x| unsafe { V::splat(x) };
-        let end = t_max.mul(self.length);
+        let end = t_max.mul(self.scale);
         let [dx, dy, dz] = self.d;
         let [mx, my, mz] = [center[0].sub(self.o[0]), center[1].sub(self.o[1]), center[2].sub(self.o[2])];
-        let s = mx.mul_add(dx, my.mul_add(dy, mz.mul(dz))).max(splat(0.0)).min(end);
+        let s = mx.mul_add(dx, my.mul_add(dy, mz.mul(dz))).mul(self.inverse).max(splat(0.0)).min(end);
         let [px, py, pz] = [s.neg_mul_add(dx, mx), s.neg_mul_add(dy, my), s.neg_mul_add(dz, mz)];
         let distance2 = px.mul_add(px, py.mul_add(py, pz.mul(pz)));
         let size = mx.abs().add(my.abs()).add(mz.abs()).add(radius);
@@ -172,14 +169,6 @@ impl<V> UnitRays<V> {
         // Squares may underflow.
         distance2.le(reach.mul_add(reach, splat(f32::MIN_POSITIVE)))
     }
-}
-
-/// A direction of unit length, and its original length, which is larger by the error.
-#[inline(always)]
-fn unit(d: Vec3) -> (Vec3, f32) {
-    let d = d.as_dvec3();
-    let length = d.length();
-    ((d / length).as_vec3().into(), length as f32 * (1.0 + ERROR))
 }
 
 /// Eight spheres of any sets.
@@ -275,7 +264,7 @@ impl SphereBlock {
 
     /// A bit for each sphere that the ray may meet up to `t_max`.
     #[inline(always)]
-    pub fn met_by<V: Vector<{ Self::WIDTH }>>(&self, ray: &UnitRays<V>, t_max: f32) -> u32 {
+    pub fn met_by<V: Vector<{ Self::WIDTH }>>(&self, ray: &ScaledRays<V>, t_max: f32) -> u32 {
         // SAFETY: `ray` is the proof of the instruction set.
         let (splat, load) = (|x| unsafe { V::splat(x) }, |x| unsafe { V::load(x) });
         let center = [load(&self.center[0]), load(&self.center[1]), load(&self.center[2])];
@@ -284,7 +273,7 @@ impl SphereBlock {
 
     /// A bit for each ray of a packet that may meet the sphere of a lane up to its `t_max`.
     #[inline(always)]
-    pub fn meeting<V: Vector<WIDTH>>(&self, lane: usize, rays: &UnitRays<V>, t_max: V) -> u32 {
+    pub fn meeting<V: Vector<WIDTH>>(&self, lane: usize, rays: &ScaledRays<V>, t_max: V) -> u32 {
         // SAFETY: `rays` is the proof of the instruction set.
         let splat = |x: f32| unsafe { V::splat(x) };
         let center = [splat(self.center[0][lane]), splat(self.center[1][lane]), splat(self.center[2][lane])];

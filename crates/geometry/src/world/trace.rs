@@ -8,7 +8,7 @@ use super::group::{Group, Item};
 use super::hit::Hit;
 use super::instance::InstancePath;
 use super::query::{Query, offer_all};
-use super::spheres::{SphereBlock, Spheres, UnitRays};
+use super::spheres::{ScaledRays, SphereBlock, Spheres};
 use super::stats::RayStats;
 use super::tables::Tables;
 use super::triangle_block::TriangleBlock;
@@ -180,7 +180,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
 pub(super) struct TraceEach<'a, Q> {
     pub group: &'a Group,
     /// Those that are not valid are left out.
-    pub rays: &'a [(Ray, f32); WIDTH],
+    pub rays: &'a [Ray; WIDTH],
     /// A query for each ray.
     pub queries: &'a mut [Q; WIDTH],
     pub stats: &'a mut RayStats,
@@ -194,12 +194,15 @@ impl<Q: Query> Task for TraceEach<'_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
         let Self { group, rays, queries, stats } = self;
+        if group.triangles.is_empty() {
+            return;
+        }
         let mut prepared = [const { MaybeUninit::uninit() }; WIDTH];
-        for (prepared, (ray, _)) in prepared.iter_mut().zip(rays) {
+        for (prepared, ray) in prepared.iter_mut().zip(rays) {
             prepared.write(PreparedRay::new(ray, group));
         }
         let (mut extents, mut primitives) = (0, 0);
-        for ((prepared, (ray, _)), query) in prepared.iter().zip(rays).zip(queries) {
+        for ((prepared, ray), query) in prepared.iter().zip(rays).zip(queries) {
             if is_valid(ray) {
                 // SAFETY: all were written; the caller promises the instruction set.
                 let tested = unsafe {
@@ -394,7 +397,7 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
         let mut t_max = query.t_max();
         // SAFETY: the caller promises the instruction set.
         unsafe {
-            let lanes = UnitRays::<S::F32x8>::of(trace.ray);
+            let lanes = ScaledRays::<S::F32x8>::of(trace.ray);
             let mut leaves = SphereLeaves {
                 blocks: &spheres.blocks,
                 trace,
@@ -415,7 +418,7 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
 struct SphereLeaves<'a, 'b, V, Q> {
     blocks: &'a [SphereBlock],
     trace: &'a Trace<'b>,
-    lanes: UnitRays<V>,
+    lanes: ScaledRays<V>,
     exact: SphereRay,
     query: &'a mut Q,
     /// How many were tested.

@@ -2,7 +2,7 @@
 
 use geometry::PatchPoints;
 use lanes::{Each, Int, Mask, Real};
-use math::{Ray, RayDifferential, Vec3, offset_ray_origin};
+use math::{Ray, RayDifferential, Vec2, Vec3, offset_ray_origin};
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
 use scene::Interfaces;
 use scene::light::{Light, LightId, LightSampleContext};
@@ -85,8 +85,15 @@ impl<M: MaterialModel> Shade<'_, '_, M, AllLights> {
         let flags = bsdf.flags();
         let mut sum = self.paths.l.get::<R>(rows);
         for id in 0..self.pass.pixels.scene.lights().len() as u32 {
-            let u = draw_2d::<R>(&self.pass, &mut vertices.address);
-            let sky = match self.pass.pixels.scene.light(LightId(id)).row() {
+            let light = self.pass.pixels.scene.light(LightId(id)).row();
+            // There is nothing to choose where light comes from one direction or point.
+            let u = if matches!(light, Light::Distant(_) | Light::Point(_)) {
+                vertices.address.skip(2);
+                Vec2::splat(R::zero())
+            } else {
+                draw_2d::<R>(&self.pass, &mut vertices.address)
+            };
+            let sky = match light {
                 Light::UniformInfinite(sky) if *has_ambient => Some(sky),
                 _ => None,
             };
@@ -147,7 +154,7 @@ impl<M: MaterialModel> Shade<'_, '_, M, AllLights> {
                 };
                 let beta = SampledSpectrum::new(beta.map(|lanes| lanes[lane]));
                 let depth = self.segments.depth[turn] + 1;
-                self.queues.wait(row as u32, PathState { beta, ..PathState::new(ray, depth) });
+                self.queues.waiting.push(row as u32, PathState { beta, ..PathState::new(ray, depth) });
             });
         }
     }

@@ -308,7 +308,7 @@ impl<'a> Batch<'a> {
         let mut goes_on = vec![false; self.columns.paths.len()];
         next.rows.iter().for_each(|&row| goes_on[row as usize] = true);
         for &row in self.columns.segments.rows.iter().filter(|&&row| !goes_on[row as usize]) {
-            if let Some(state) = waiting.get_mut(row as usize).and_then(Vec::pop) {
+            if let Some(state) = waiting.pop(row) {
                 next.push(row, &state);
             }
         }

@@ -15,17 +15,48 @@ pub(super) struct Queues {
     pub shadows: [ShadowRays; 2],
     /// Those of scenes with media.
     pub passages: Passages,
-    /// Rays that wait until their path has no other, the last first; one stack for each path.
-    pub waiting: Vec<Vec<PathState>>,
+    pub waiting: Waiting,
 }
 
-impl Queues {
-    /// Lets a ray of a path wait.
-    pub fn wait(&mut self, path: u32, state: PathState) {
+/// Rays that wait until their path has no other: a stack for each path. All stacks share memory,
+/// because most paths have none.
+#[derive(Default)]
+pub(super) struct Waiting {
+    /// The rays, each with the index of the one below it.
+    rays: Vec<(Option<PathState>, u32)>,
+    /// The index of the last ray of each path, as far as there is one.
+    last: Vec<u32>,
+}
+
+impl Waiting {
+    const NONE: u32 = u32::MAX;
+
+    /// Removes all rays.
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.last.clear();
+    }
+
+    /// Whether no ray has waited.
+    pub fn is_empty(&self) -> bool {
+        self.rays.is_empty()
+    }
+
+    /// Adds a ray of a path.
+    pub fn push(&mut self, path: u32, state: PathState) {
         let path = path as usize;
-        if self.waiting.len() <= path {
-            self.waiting.resize_with(path + 1, Vec::new);
+        if self.last.len() <= path {
+            self.last.resize(path + 1, Self::NONE);
         }
-        self.waiting[path].push(state);
+        let below = std::mem::replace(&mut self.last[path], self.rays.len() as u32);
+        self.rays.push((Some(state), below));
+    }
+
+    /// Takes the last ray of a path.
+    pub fn pop(&mut self, path: u32) -> Option<PathState> {
+        let last = self.last.get_mut(path as usize)?;
+        let (state, below) = self.rays.get_mut(*last as usize)?;
+        *last = *below;
+        state.take()
     }
 }

@@ -44,7 +44,7 @@ impl Whitted {
             let children = Node { ray, medium: None, beta, depth, reflected_at: None }
                 .children(&surface, &bsdf, sampler);
             for Node { ray, beta, depth, .. } in children.into_iter().rev().flatten() {
-                queues.wait(path, PathState { beta, ..PathState::new(ray, depth) });
+                queues.waiting.push(path, PathState { beta, ..PathState::new(ray, depth) });
             }
         }
         paths.dimension[path as usize] = sampler.dimension();

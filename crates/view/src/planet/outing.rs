@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::Overrides;
 #[cfg(feature = "gpu")]
 use alhazen::description::Diagnostic;
-use alhazen::description::{CameraDesc, IntegratorDesc, TransformDesc};
+use alhazen::description::{CameraDesc, FilterDesc, IntegratorDesc, TransformDesc};
 #[cfg(feature = "gpu")]
 use alhazen::device::Kernels;
 use alhazen::geometry::GeometryId;
@@ -81,7 +81,9 @@ impl Outing {
         let name = "planet.pbrt";
         let text = scene(&planet, &walker.viewpoint(&planet), "planet");
         let mut imported = import(Path::new(name), &MemoryAssets::default().with(name, text));
-        // A shadow ray towards the sun is as much as a frame has time for.
+        // A frame has time for a sample of each pixel and a shadow ray towards the sun. Few samples
+        // make a sharper picture with the filter that is a pixel.
+        imported.desc.filter.value = FilterDesc::Box { radius: [0.5; 2] };
         if let IntegratorDesc::Whitted(whitted) = &mut imported.desc.integrator.value {
             whitted.ambient = true;
         }
