@@ -40,6 +40,7 @@ pub fn equal_area_sphere_to_square<R: Real>(d: Vector3<R>) -> Vec2<R> {
 }
 
 /// Wraps a point slightly outside of [0, 1]² to the point inside with the same direction.
+#[inline(always)]
 pub fn wrap_equal_area_square<R: Real>(p: Vec2<R>) -> Vec2<R> {
     let (zero, one, two) = (R::zero(), R::one(), R::splat(2.0));
     let (is_left, is_right) = (p.x.lt(zero), p.x.gt(one));

@@ -300,7 +300,8 @@ impl Planet {
         if resting > 2000.max(self.bodies.len() / 16) {
             self.settle();
         }
-        let entries: Vec<Entry> = self.stirred.iter().map(|&i| self.entry(i as usize, dt)).collect();
+        let stirred = self.stirred.par_iter().with_min_len(CHUNK);
+        let entries: Vec<Entry> = stirred.map(|&i| self.entry(i as usize, dt)).collect();
         self.stirred_grid.rebuild(&entries);
     }
 

@@ -220,7 +220,7 @@ impl Points<'_> {
                     let lane = here.bits().trailing_zeros() as usize % MAX_LANES;
                     if let Geometry::Spheres(set) = world.geometry(GeometryId(geometries[lane])) {
                         let sphere = R::Int::select(here, primitive, R::Int::splat(0));
-                        let [o, d] = [&rays.o, &rays.d].each(|of| gather(of, places));
+                        let (o, d) = (gather(&rays.o, places), gather(&rays.d, places));
                         let of = SphereHits { sphere, o, d, t: R::gather(&hits.t, places) };
                         let (of_spheres, are_found) = of.points(set);
                         of_lanes = select(here & are_found, &of_spheres, &of_lanes);

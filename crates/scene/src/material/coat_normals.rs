@@ -26,6 +26,7 @@ impl CoatNormals {
 
     /// The normals of the coat in the shading frame of the base, where the mask is true; that of
     /// the base where it would be below, and elsewhere.
+    #[inline(always)]
     pub fn at<R: Real>(&self, uv: Point2<R>, mask: R::Mask) -> Vector3<R> {
         let [mut x, mut y, mut z] = [[0.0; MAX_LANES], [0.0; MAX_LANES], [1.0; MAX_LANES]];
         let (u, v) = (uv.x.to_array(), uv.y.to_array());

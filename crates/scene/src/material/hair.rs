@@ -84,8 +84,10 @@ impl MaterialModel for HairMaterial {
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
     ) -> Hair<R> {
-        let roughness = |id| textures.float(id, context).clamp(R::splat(1e-2), R::one());
-        let (beta_m, beta_n) = (roughness(self.beta_m), roughness(self.beta_n));
+        // Without a closure, which would be called without the instruction set.
+        let least = R::splat(1e-2);
+        let beta_m = textures.float(self.beta_m, context).clamp(least, R::one());
+        let beta_n = textures.float(self.beta_n, context).clamp(least, R::one());
         let eta = textures.float(self.eta, context).max(R::splat(1e-2));
         let alpha = textures.float(self.alpha, context);
         let sigma_a = self.sigma_a(textures, context, lambda, beta_n);

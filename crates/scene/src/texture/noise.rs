@@ -33,7 +33,7 @@ pub(crate) fn noise<R: Real>(p: Point3<R>) -> R {
     let from_high = from_low - Vec3::splat(R::one());
     let [x, y, z] = cell.to_array().each(lattice_index);
     let (dx, dy, dz) = ([from_low.x, from_high.x], [from_low.y, from_high.y], [from_low.z, from_high.z]);
-    let [wx, wy, wz] = from_low.to_array().each(fade);
+    let (wx, wy, wz) = (fade(from_low.x), fade(from_low.y), fade(from_low.z));
     let mut planes = [R::zero(); 2];
     let next = R::Int::splat(1);
     for (i, plane) in planes.iter_mut().enumerate() {
