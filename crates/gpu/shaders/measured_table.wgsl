@@ -1,6 +1,9 @@
 // Measured surfaces: the records of `src/flatten/measured.rs`, and the methods of `MeasuredTable`
 // and of its `PiecewiseBilinear2d`. `Measured` is a law.
 
+// The record of a table.
+alias MeasuredTable = u32;
+
 // Where the numbers of grids begin: of facets, their areas, visible normals, samples, reflectances.
 const MEASURED_NDF = 8u;
 const MEASURED_SIGMA = 11u;

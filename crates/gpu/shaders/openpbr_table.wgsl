@@ -1,6 +1,9 @@
 // What the layers of principled surfaces do with light: the records of `src/flatten/openpbr.rs`,
 // and the methods of `OpenPbrTable`.
 
+// The record of a table.
+alias OpenPbrTable = u32;
+
 const OPENPBR_COSINES = 37u;
 // Where the axes of a table begin, and the words of each.
 const OPENPBR_AXES = 8u;

@@ -4,7 +4,7 @@
 //! sense for one lane only is defined for `f32` alone.
 
 use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
-use lanes::{Mask, Real};
+use lanes::Real;
 use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -135,98 +135,10 @@ macro_rules! vector {
                 $vector { $($c: f(self.$c, b.$c)),* }
             }
 
-            /// The Euclidean length.
-            #[inline(always)]
-            pub fn length(self) -> R {
-                self.dot(self).sqrt()
-            }
-
-            /// The square of the length.
-            #[inline(always)]
-            pub fn length_squared(self) -> R {
-                self.dot(self)
-            }
-
-            /// The distance to `b`.
-            #[inline(always)]
-            pub fn distance(self, b: Self) -> R {
-                (self - b).length()
-            }
-
-            /// The square of the distance to `b`.
-            #[inline(always)]
-            pub fn distance_squared(self, b: Self) -> R {
-                (self - b).length_squared()
-            }
-
-            /// The vector of length one with the same direction; not finite for the zero vector.
-            #[inline(always)]
-            pub fn normalize(self) -> Self {
-                self * (R::one() / self.length())
-            }
-
-            /// The vector of length one with the same direction, and where there is one: not where
-            /// the length is zero or not finite, or nearly so.
-            #[inline(always)]
-            pub fn normalize_masked(self) -> (Self, R::Mask) {
-                let inverse = R::one() / self.length();
-                let valid = inverse.gt(R::zero()) & inverse.lt(R::splat(f32::INFINITY));
-                (self * inverse, valid)
-            }
-
-            /// Where all coordinates are finite.
-            #[inline(always)]
-            pub fn are_finite(self) -> R::Mask {
-                let largest = R::splat(f32::MAX);
-                R::Mask::splat(true) $(& self.$c.abs().le(largest))*
-            }
-
             /// The absolute value of each coordinate.
             #[inline(always)]
             pub fn abs(self) -> Self {
                 self.map(R::abs)
-            }
-
-            /// The smaller of each pair of coordinates; that of `b` where either is NaN.
-            #[inline(always)]
-            pub fn min(self, b: Self) -> Self {
-                self.zip(b, R::min)
-            }
-
-            /// The larger of each pair of coordinates; that of `b` where either is NaN.
-            #[inline(always)]
-            pub fn max(self, b: Self) -> Self {
-                self.zip(b, R::max)
-            }
-
-            /// Each coordinate limited to the range from that of `low` to that of `high`.
-            #[inline(always)]
-            pub fn clamp(self, low: Self, high: Self) -> Self {
-                self.max(low).min(high)
-            }
-
-            /// The magnitudes of `self` with the signs of `sign`.
-            #[inline(always)]
-            pub fn copysign(self, sign: Self) -> Self {
-                self.zip(sign, R::copysign)
-            }
-
-            /// `self`·(1 − t) + b·t.
-            #[inline(always)]
-            pub fn lerp(self, b: Self, t: R) -> Self {
-                self * (R::one() - t) + b * t
-            }
-
-            /// The point halfway to `b`.
-            #[inline(always)]
-            pub fn midpoint(self, b: Self) -> Self {
-                (self + b) * R::splat(0.5)
-            }
-
-            /// The reciprocal of each coordinate.
-            #[inline(always)]
-            pub fn recip(self) -> Self {
-                self.map(|c| R::one() / c)
             }
         }
 
@@ -385,8 +297,98 @@ macro_rules! vector {
     };
 }
 
+/// The methods of vectors of all sizes that are made of others.
+macro_rules! methods {
+    ($vector:ident) => {
+        impl<R: Real> $vector<R> {
+            /// The Euclidean length.
+            #[inline(always)]
+            pub fn length(self) -> R {
+                self.dot(self).sqrt()
+            }
+
+            /// The square of the length.
+            #[inline(always)]
+            pub fn length_squared(self) -> R {
+                self.dot(self)
+            }
+
+            /// The distance to `b`.
+            #[inline(always)]
+            pub fn distance(self, b: Self) -> R {
+                (self - b).length()
+            }
+
+            /// The square of the distance to `b`.
+            #[inline(always)]
+            pub fn distance_squared(self, b: Self) -> R {
+                (self - b).length_squared()
+            }
+
+            /// The vector of length one with the same direction; not finite for the zero vector.
+            #[inline(always)]
+            pub fn normalize(self) -> Self {
+                self * (R::one() / self.length())
+            }
+
+            /// The vector of length one with the same direction, and where there is one: not where
+            /// the length is zero or not finite, or nearly so.
+            #[inline(always)]
+            pub fn normalize_masked(self) -> (Self, R::Mask) {
+                let inverse = R::one() / self.length();
+                let valid = inverse.gt(R::zero()) & inverse.lt(R::splat(f32::INFINITY));
+                (self * inverse, valid)
+            }
+
+            /// The smaller of each pair of coordinates; that of `b` where either is NaN.
+            #[inline(always)]
+            pub fn min(self, b: Self) -> Self {
+                self.zip(b, R::min)
+            }
+
+            /// The larger of each pair of coordinates; that of `b` where either is NaN.
+            #[inline(always)]
+            pub fn max(self, b: Self) -> Self {
+                self.zip(b, R::max)
+            }
+
+            /// Each coordinate limited to the range from that of `low` to that of `high`.
+            #[inline(always)]
+            pub fn clamp(self, low: Self, high: Self) -> Self {
+                self.max(low).min(high)
+            }
+
+            /// The magnitudes of `self` with the signs of `sign`.
+            #[inline(always)]
+            pub fn copysign(self, sign: Self) -> Self {
+                self.zip(sign, R::copysign)
+            }
+
+            /// `self`·(1 − t) + b·t.
+            #[inline(always)]
+            pub fn lerp(self, b: Self, t: R) -> Self {
+                self * (R::one() - t) + b * t
+            }
+
+            /// The point halfway to `b`.
+            #[inline(always)]
+            pub fn midpoint(self, b: Self) -> Self {
+                (self + b) * R::splat(0.5)
+            }
+
+            /// The reciprocal of each coordinate.
+            #[inline(always)]
+            pub fn recip(self) -> Self {
+                self.map(|c| R::one() / c)
+            }
+        }
+    };
+}
+
 vector!(Vec2(x 0, y 1), 2, Vec2 DVec2 BVec2);
 vector!(Vec3(x 0, y 1, z 2), 3, Vec3 DVec3 BVec3);
+methods!(Vec2);
+methods!(Vec3);
 
 impl<R: Real> Vec2<R> {
     /// The scalar product.
@@ -455,6 +457,13 @@ impl<R: Real> Vec3<R> {
             y: self.z * b.x - b.z * self.x,
             z: self.x * b.y - b.x * self.y,
         }
+    }
+
+    /// Where all coordinates are finite.
+    #[inline(always)]
+    pub fn are_finite(self) -> R::Mask {
+        let largest = R::splat(f32::MAX);
+        self.x.abs().le(largest) & self.y.abs().le(largest) & self.z.abs().le(largest)
     }
 
     /// The first two coordinates.

@@ -159,14 +159,14 @@ pub enum Directions {
 impl Directions {
     /// Whether reflection may be sampled.
     #[inline]
-    pub const fn reflection(self) -> bool {
-        !matches!(self, Self::Transmission)
+    pub fn reflection(self) -> bool {
+        self != Self::Transmission
     }
 
     /// Whether transmission may be sampled.
     #[inline]
-    pub const fn transmission(self) -> bool {
-        !matches!(self, Self::Reflection)
+    pub fn transmission(self) -> bool {
+        self != Self::Reflection
     }
 
     /// Whether a BxDF with `flags` scatters to some of these directions.

@@ -41,7 +41,7 @@ fn Layered_Diffuse_through(this_: Layered_Diffuse, w: vec3f) -> f32 {
 fn Layered_Conductor_f_closed(this_: Layered_Conductor, albedo_1: vec4f, wo: vec3f, wi: vec3f) -> vec4f {
     let rounds = i32(min(this_.max_depth / 2 + u32(this_.max_depth % 2 != 0), u32(2147483647i)));
     var f = albedo_1;
-    for (var i = 0u; i < 4; i++) {
+    for (var i = 0u; i < sampled_N; i++) {
         let round_1 = albedo_1[i] * this_.inner;
         f[i] = (albedo_1[i] * (1.0f - powi(round_1, rounds))) / (1.0f - round_1);
     }
@@ -52,7 +52,7 @@ fn Layered_Conductor_f_closed(this_: Layered_Conductor, albedo_1: vec4f, wo: vec
 fn Layered_Diffuse_f_closed(this_: Layered_Diffuse, albedo_1: vec4f, wo: vec3f, wi: vec3f) -> vec4f {
     let rounds = i32(min(this_.max_depth / 2 + u32(this_.max_depth % 2 != 0), u32(2147483647i)));
     var f = albedo_1;
-    for (var i = 0u; i < 4; i++) {
+    for (var i = 0u; i < sampled_N; i++) {
         let round_1 = albedo_1[i] * this_.inner;
         f[i] = (albedo_1[i] * (1.0f - powi(round_1, rounds))) / (1.0f - round_1);
     }

@@ -92,12 +92,12 @@ const Directions_Transmission = 2u;
 
 // Whether reflection may be sampled.
 fn Directions_reflection(this_: u32) -> bool {
-    return !(this_ == Directions_Transmission);
+    return this_ != Directions_Transmission;
 }
 
 // Whether transmission may be sampled.
 fn Directions_transmission(this_: u32) -> bool {
-    return !(this_ == Directions_Reflection);
+    return this_ != Directions_Reflection;
 }
 
 // Whether a BxDF with `flags` scatters to some of these directions.
@@ -115,8 +115,20 @@ fn Directions_meet(this_: u32, flags: u32) -> bool {
 // lobes that are not requested the weight 0; and where there is one: not where all weights are
 // 0.
 fn Directions_probability_of_reflection(this_: u32, r: f32, t: f32) -> Tuple_f32_bool {
-    let r_1 = select(0.0f, r, Directions_reflection(this_));
-    let t_1 = select(0.0f, t, Directions_transmission(this_));
+    var chosen: f32;
+    if (Directions_reflection(this_)) {
+        chosen = r;
+    } else {
+        chosen = 0.0f;
+    }
+    let r_1 = chosen;
+    var chosen_1: f32;
+    if (Directions_transmission(this_)) {
+        chosen_1 = t;
+    } else {
+        chosen_1 = 0.0f;
+    }
+    let t_1 = chosen_1;
     return Tuple_f32_bool(r_1 / (r_1 + t_1), (r_1 + t_1) > 0.0f);
 }
 

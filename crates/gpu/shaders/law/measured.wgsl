@@ -3,12 +3,12 @@
 
 // Scattering by a measured surface.
 struct Measured {
-    table: u32,
+    table: MeasuredTable,
     lambda: SampledWavelengths,
 }
 
 // The material of a table at four wavelengths.
-fn Measured_new(table: u32, lambda: SampledWavelengths) -> Measured {
+fn Measured_new(table: MeasuredTable, lambda: SampledWavelengths) -> Measured {
     return Measured(table, lambda);
 }
 
@@ -17,7 +17,13 @@ fn Measured_outgoing(this_: Measured, wo: vec3f) -> OutgoingDirection {
     let w = select(wo, -wo, wo.z < 0.0f);
     let theta = spherical_theta(w);
     let phi = arc_atan2(w.y, w.x);
-    let turn_1 = select(0.0f, phi, MeasuredTable_is_isotropic(this_.table));
+    var chosen: f32;
+    if (MeasuredTable_is_isotropic(this_.table)) {
+        chosen = phi;
+    } else {
+        chosen = 0.0f;
+    }
+    let turn_1 = chosen;
     return OutgoingDirection(w, in_square(theta, phi), turn_1, MeasuredTable_between(this_.table, phi, theta));
 }
 

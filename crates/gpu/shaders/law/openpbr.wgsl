@@ -5,7 +5,7 @@ const openpbr_HORIZON: f32 = 1e-6f;
 
 // A principled surface.
 struct OpenPbr {
-    table: u32,
+    table: OpenPbrTable,
     location: array<f32, 12>,
     stack: Stack,
     waves: vec4f,
@@ -42,7 +42,7 @@ struct Weights {
 }
 
 // The surface at the wavelengths of a path, of a material with a table for its numbers.
-fn OpenPbr_new(table: u32, p: OpenPbrParameters, lambda: SampledWavelengths) -> OpenPbr {
+fn OpenPbr_new(table: OpenPbrTable, p: OpenPbrParameters, lambda: SampledWavelengths) -> OpenPbr {
     let black = SampledSpectrum_zero();
     let white = SampledSpectrum_splat(1.0f);
     let base_color = p.base_color * p.base_weight;
@@ -234,11 +234,13 @@ fn OpenPbr_pdf(this_: OpenPbr, wo: vec3f, wi: vec3f, mode: u32, directions: u32)
 
 // The layers pass on what they did before: what is wider loses a little.
 fn OpenPbr_regularize(this_: ptr<function, OpenPbr>, mask: bool) {
-    var part = (*this_).stack.base;
-    TrowbridgeReitz_regularize(&part, mask);
+    var base = (*this_).stack.base;
+    var coat = (*this_).stack.coat;
+    TrowbridgeReitz_regularize(&base, mask);
+    TrowbridgeReitz_regularize(&coat, mask);
+    let part = base;
+    let part_1 = coat;
     (*this_).stack.base = part;
-    var part_1 = (*this_).stack.coat;
-    TrowbridgeReitz_regularize(&part_1, mask);
     (*this_).stack.coat = part_1;
 }
 

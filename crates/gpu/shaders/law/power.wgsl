@@ -5,7 +5,7 @@
 fn power_pow(x: f32, y: f32) -> f32 {
     let infinity = infinity();
     let base = abs(x);
-    let log_1 = power_log2(base);
+    let log_1 = log2_parts(base);
     let product_1 = y * log_1.v0;
     let rest = product_rest(y, log_1.v0, product_1) + (y * log_1.v1);
     let rest_1 = select(0.0f, rest, abs(product_1) < 200.0f);
@@ -63,7 +63,7 @@ fn coarse_inverse_sqrt(x: f32) -> f32 {
 }
 
 // log₂ of a positive number in two parts, with a relative error of about 2⁻³².
-fn power_log2(x: f32) -> Tuple_f32_f32 {
+fn log2_parts(x: f32) -> Tuple_f32_f32 {
     let parts = logarithmic_parts(x);
     let f = parts.v0;
     let n = parts.v1;

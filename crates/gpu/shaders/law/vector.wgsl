@@ -29,11 +29,6 @@ fn Vec3_normalize_masked(this_: vec3f) -> Tuple_Vec3_bool {
     return Tuple_Vec3_bool(this_ * inverse, valid);
 }
 
-// Where all coordinates are finite.
-fn Vec3_are_finite(this_: vec3f) -> bool {
-    return ((true & (abs(this_.x) <= 3.4028234e38f)) & (abs(this_.y) <= 3.4028234e38f)) & (abs(this_.z) <= 3.4028234e38f);
-}
-
 // The magnitudes of `self` with the signs of `sign`.
 fn Vec3_copysign(this_: vec3f, sign_1: vec3f) -> vec3f {
     return vec3f(copysign(this_.x, sign_1.x), copysign(this_.y, sign_1.y), copysign(this_.z, sign_1.z));
@@ -52,6 +47,11 @@ fn Vec3_dot(this_: vec3f, b: vec3f) -> f32 {
 // The vector product.
 fn Vec3_cross(this_: vec3f, b: vec3f) -> vec3f {
     return vec3f((this_.y * b.z) - (b.y * this_.z), (this_.z * b.x) - (b.z * this_.x), (this_.x * b.y) - (b.x * this_.y));
+}
+
+// Where all coordinates are finite.
+fn Vec3_are_finite(this_: vec3f) -> bool {
+    return ((abs(this_.x) <= 3.4028234e38f) & (abs(this_.y) <= 3.4028234e38f)) & (abs(this_.z) <= 3.4028234e38f);
 }
 
 const Vec3_X: vec3f = vec3f(1.0f, 0.0f, 0.0f);

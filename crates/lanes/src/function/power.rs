@@ -9,7 +9,7 @@ use std::f32::consts::LN_2;
 pub fn pow<R: Real>(x: R, y: R) -> R {
     let (zero, one, infinity) = (R::zero(), R::one(), R::splat(f32::INFINITY));
     let base = x.abs();
-    let log = log2(base);
+    let log = log2_parts(base);
     // The product in two parts. Large ones give zero or infinity.
     let product = y * log.0;
     let rest = product_rest(y, log.0, product) + y * log.1;
@@ -115,7 +115,7 @@ pub fn hypot<R: Real>(x: R, y: R) -> R {
 
 /// log₂ of a positive number in two parts, with a relative error of about 2⁻³².
 #[inline(always)]
-fn log2<R: Real>(x: R) -> (R, R) {
+fn log2_parts<R: Real>(x: R) -> (R, R) {
     let (f, n) = logarithmic_parts(x);
     let mantissa = R::one() + f;
     // The nearest of 2^(−1/3), 1 and 2^(1/3), and its logarithm in two parts, the first of 13 bits.

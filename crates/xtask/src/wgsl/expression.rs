@@ -1,129 +1,93 @@
 //! Expressions.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use quote::ToTokens;
-use syn::{BinOp, Expr, ExprBinary, ExprIf, ExprStruct, Lit, Member, Pat, UnOp};
+use syn::{Expr, ExprBinary, ExprForLoop, ExprRange, ExprStruct, Item, Lit, Member, RangeLimits, UnOp};
 
-use super::body::{Body, Branch, Mode, Result};
-use super::intrinsics;
-use super::names;
-use super::types::Type;
-use super::value::{Closure, Value, bare};
+use super::body::{Body, Mode};
+use super::intrinsics::standard_constant;
+use super::types::{Type, last_name, length};
+use super::value::{Value, bare};
+use super::{Result, names};
 
 impl Body<'_, '_> {
     /// The value of an expression, after the statements that it needs.
     pub fn expression(&mut self, expression: &Expr) -> Result<Value> {
         match expression {
-            Expr::Paren(inside) => self.expression(&inside.expr),
-            Expr::Group(inside) => self.expression(&inside.expr),
-            Expr::Lit(literal) => self.literal(&literal.lit),
-            Expr::Path(path) => self.path(&path.path),
-            Expr::Tuple(tuple) if tuple.elems.is_empty() => Ok(Value::Unit),
-            Expr::Tuple(tuple) => Ok(Value::Tuple(self.all(tuple.elems.iter())?)),
-            Expr::Array(array) => Ok(Value::Array(self.all(array.elems.iter())?)),
+            Expr::Paren(inside) => return self.expression(&inside.expr),
+            Expr::Lit(literal) => return self.literal(&literal.lit),
+            Expr::Path(path) => return self.path(&path.path),
+            Expr::Tuple(tuple) if tuple.elems.is_empty() => {}
+            Expr::Tuple(tuple) => return self.all(&tuple.elems).map(Value::Tuple),
+            Expr::Array(array) => return self.all(&array.elems).map(Value::Array),
             Expr::Repeat(repeat) => {
-                let (value, (count, _)) = (self.expression(&repeat.expr)?, self.plain(&repeat.len)?);
+                let value = self.expression(&repeat.expr)?;
                 let value = self.stored("element", value, false)?;
-                let count =
-                    if count.ends_with("_N") { 4 } else { count.parse().map_err(|_| "an array's length")? };
-                Ok(Value::Array(vec![value; count]))
+                return Ok(Value::Array(vec![value; length(&repeat.len)?]));
             }
-            Expr::Unary(unary) => self.unary(&unary.op, &unary.expr),
-            Expr::Binary(binary) => self.binary(binary),
+            Expr::Unary(unary) => return self.unary(&unary.op, &unary.expr),
+            Expr::Binary(binary) => return self.binary(binary),
             Expr::Cast(cast) => {
                 let (text, _) = self.plain(&cast.expr)?;
-                let (ty, _) = self.context.names.parse(&cast.ty).ok_or("the type of a cast")?;
-                let spelled = self.translator.spell(&ty)?;
-                Ok(Value::Plain(format!("{spelled}({})", bare(&text)), ty))
+                let ty = Type::parse(&cast.ty, &self.context.parameters)?;
+                return Ok(Value::Plain(format!("{}({})", self.translator.spell(&ty)?, bare(&text)), ty));
             }
             Expr::Reference(reference) if reference.mutability.is_some() => {
                 let (text, ty) = self.plain(&reference.expr)?;
-                Ok(Value::Place(text, ty))
+                return Ok(Value::Place(text, ty));
             }
-            Expr::Reference(reference) => self.expression(&reference.expr),
+            Expr::Reference(reference) => return self.expression(&reference.expr),
             Expr::Field(field) => {
                 let base = self.expression(&field.base)?;
-                self.field(base, &field.member)
+                return self.field(base, &field.member);
             }
             Expr::Index(index) => {
-                let (base, at) = (self.expression(&index.expr)?, self.plain(&index.index)?.0);
-                self.element(base, &at)
-            }
-            Expr::Struct(literal) => self.structure(literal),
-            Expr::Call(call) => {
-                let arguments = self.all(call.args.iter())?;
-                match &*call.func {
-                    Expr::Path(path) => self.call_path(&path.path, arguments),
-                    function => {
-                        let function = self.expression(function)?;
-                        self.apply(&function, arguments)
-                    }
+                let (base, (at, _)) = (self.expression(&index.expr)?, self.plain(&index.index)?);
+                if let (Value::Array(values), Ok(index)) = (&base, at.parse::<usize>()) {
+                    return values.get(index).cloned().ok_or("an index".into());
                 }
+                let (text, ty) = self.materialized(base)?;
+                let (element, count) = self.translator.array(&ty)?;
+                return Ok(Value::Plain(part(&text, &element, count, bare(&at)), element));
+            }
+            Expr::Struct(literal) => return self.structure(literal),
+            Expr::Call(call) => {
+                let (function, arguments) = (self.expression(&call.func)?, self.all(&call.args)?);
+                return self.apply(&function, arguments);
             }
             Expr::MethodCall(call) => {
-                let receiver = self.expression(&call.receiver)?;
-                let mut arguments = vec![receiver];
-                arguments.extend(self.all(call.args.iter())?);
-                self.method(&call.method.to_string(), arguments)
+                let mut arguments = vec![self.expression(&call.receiver)?];
+                arguments.extend(self.all(&call.args)?);
+                return self.method(&call.method.to_string(), arguments);
             }
-            Expr::Closure(closure) => Ok(Value::Closure(Rc::new(Closure {
-                inputs: closure.inputs.iter().cloned().collect(),
-                body: (*closure.body).clone(),
-                context: self.context.clone(),
-            }))),
-            Expr::If(_) | Expr::Match(_) => self.branches(expression, Mode::Value),
-            Expr::Block(block) => {
-                self.context.scopes.push(Default::default());
-                let value = self.block_value(&block.block);
-                self.context.scopes.pop();
-                value
+            Expr::Closure(closure) => {
+                return Ok(Value::Closure(Rc::new((closure.clone(), self.context.clone()))));
+            }
+            Expr::If(_) | Expr::Match(_) | Expr::Block(_) | Expr::Return(_) => {
+                return self.evaluate(expression, Mode::Take);
             }
             Expr::Assign(assign) => {
                 let value = self.expression(&assign.right)?;
                 self.assign(&assign.left, value)?;
-                Ok(Value::Unit)
             }
-            Expr::Return(_) => self.effect(expression).map(|()| Value::Unit),
-            Expr::Break(_) => {
-                self.line("break;");
-                Ok(Value::Unit)
-            }
-            Expr::Continue(_) => {
-                self.line("continue;");
-                Ok(Value::Unit)
-            }
-            Expr::ForLoop(repeat) => {
-                self.for_loop(&repeat.pat, &repeat.expr, &repeat.body).map(|()| Value::Unit)
-            }
+            Expr::Break(_) => self.line("break;"),
+            Expr::ForLoop(repeat) => return self.for_loop(repeat),
             Expr::While(repeat) => {
-                let (lines, ()) = self.captured(|body| {
+                return self.braced("loop ", |body| {
                     let (condition, _) = body.plain(&repeat.cond)?;
                     body.line(&format!("if (!{condition}) {{ break; }}"));
-                    body.statements(&repeat.body.stmts)
-                })?;
-                self.line("loop {");
-                self.append(lines);
-                self.line("}");
-                Ok(Value::Unit)
+                    body.block(&repeat.body, Mode::Ignore)
+                });
             }
-            Expr::Macro(expression) if expression.mac.path.is_ident("matches") => {
-                let parse = |input: syn::parse::ParseStream| {
-                    let value: Expr = input.parse()?;
-                    input.parse::<syn::Token![,]>()?;
-                    Ok((value, Pat::parse_multi(input)?))
-                };
-                let (value, pattern) =
-                    expression.mac.parse_body_with(parse).map_err(|error| error.to_string())?;
-                let (text, ty) = self.plain(&value)?;
-                Ok(Value::bool(self.test(&pattern, &text, &ty)?.unwrap_or("true".into())))
-            }
-            _ => Err(format!("the expression {}", expression.to_token_stream())),
+            _ => return Err(format!("the expression {}", expression.to_token_stream())),
         }
+        Ok(Value::Unit)
     }
 
-    fn all<'x>(&mut self, expressions: impl Iterator<Item = &'x Expr>) -> Result<Vec<Value>> {
-        expressions.map(|expression| self.expression(expression)).collect()
+    fn all<'x>(&mut self, expressions: impl IntoIterator<Item = &'x Expr>) -> Result<Vec<Value>> {
+        expressions.into_iter().map(|expression| self.expression(expression)).collect()
     }
 
     /// An expression as one of WGSL, and its type.
@@ -134,64 +98,60 @@ impl Body<'_, '_> {
 
     /// A value as an expression of WGSL, and its type.
     pub fn materialized(&mut self, value: Value) -> Result<(String, Type)> {
-        let ty = value.ty();
         match value {
             Value::Plain(text, ty) | Value::Place(text, ty) => Ok((text, ty)),
-            Value::Tuple(values) | Value::Array(values) => {
-                let ty = ty.ok_or("a value without a type")?;
+            Value::Tuple(ref values) | Value::Array(ref values) => {
+                let ty = value.ty().ok_or("a part without a type")?;
                 let spelled = self.translator.spell(&ty)?;
-                let texts = values.into_iter().map(|value| {
-                    let (text, _) = self.materialized(value)?;
+                let texts = values.iter().map(|value| {
+                    let (text, _) = self.materialized(value.clone())?;
                     Ok(bare(&text).to_owned())
                 });
-                let texts: Vec<String> = texts.collect::<Result<_>>()?;
-                Ok((format!("{spelled}({})", texts.join(", ")), ty))
+                Ok((format!("{spelled}({})", texts.collect::<Result<Vec<_>>>()?.join(", ")), ty))
             }
             _ => Err("no value of WGSL".into()),
         }
     }
 
     fn literal(&mut self, literal: &Lit) -> Result<Value> {
-        match literal {
-            Lit::Float(float) => Ok(Value::real(format!("{}f", float.base10_digits()))),
+        let (text, ty) = match literal {
+            Lit::Float(float) => (format!("{}f", float.base10_digits()), Type::Real),
             Lit::Int(integer) => {
-                let text: String = integer.token().to_string().replace('_', "");
+                let text = integer.token().to_string().replace('_', "");
                 let digits = text.strip_suffix(integer.suffix()).unwrap_or(&text);
-                Ok(match integer.suffix() {
-                    "u32" | "usize" => Value::Plain(format!("{digits}u"), Type::Uint),
-                    "i32" => Value::Plain(format!("{digits}i"), Type::Sint),
-                    _ => Value::Plain(digits.to_owned(), Type::Literal),
-                })
+                match integer.suffix() {
+                    "u32" | "usize" => (format!("{digits}u"), Type::Uint),
+                    "i32" => (format!("{digits}i"), Type::Sint),
+                    _ => (digits.to_owned(), Type::Literal),
+                }
             }
-            Lit::Bool(value) => Ok(Value::bool(value.value.to_string())),
-            _ => Err(format!("the literal {}", literal.to_token_stream())),
-        }
+            Lit::Bool(value) => (value.value.to_string(), Type::Bool),
+            _ => return Err(format!("the literal {}", literal.to_token_stream())),
+        };
+        Ok(Value::Plain(text, ty))
     }
 
     /// A name that is not called.
     fn path(&mut self, path: &syn::Path) -> Result<Value> {
-        let unknown = || format!("the name {}", path.to_token_stream());
-        let last = path.segments.last().ok_or_else(unknown)?.ident.to_string();
-        if let Some(name) = path.get_ident()
-            && let Some(value) = self.lookup(&name.to_string())
-        {
+        let name = last_name(path);
+        if let Some(value) = self.lookup(&name).filter(|_| path.get_ident().is_some()) {
             return Ok(value);
         }
         let owner = self.owner_of(path);
-        if let Some(Type::Named(name, _)) = &owner
-            && let Some(variant) = self.translator.variant(name, &last)
+        if let Some(ty) = &owner
+            && let Some(variant) = self.translator.variant(ty, &name)
         {
-            return Ok(Value::Plain(variant, Type::named(name)));
+            return Ok(Value::Plain(variant, ty.clone()));
         }
-        let owner_name = owner.as_ref().and_then(Type::name);
-        if let Some(index) = self.translator.library.constant(self.context.source, owner_name, &last) {
-            let (name, ty) = self.translator.constant(index)?;
-            return Ok(Value::Plain(name, ty));
+        let library = self.translator.library;
+        if let Some(index) = library.find(Some(self.context.source), owner.as_ref(), &name)
+            && let Item::Const(constant) = &library.definitions[index].item
+        {
+            let ty = Type::parse(&constant.ty, &self.translator.parameters(owner.as_ref()))?;
+            return Ok(Value::Plain(self.translator.named(index, owner), ty));
         }
-        if let Some(constant) = intrinsics::standard_constant(owner.as_ref(), &last) {
-            return Ok(constant);
-        }
-        Ok(Value::Function(path.clone()))
+        let constant = standard_constant(owner.as_ref(), &name);
+        Ok(constant.unwrap_or_else(|| Value::Function(path.clone())))
     }
 
     fn unary(&mut self, operator: &UnOp, operand: &Expr) -> Result<Value> {
@@ -200,147 +160,100 @@ impl Body<'_, '_> {
             return Ok(value);
         }
         let (text, ty) = self.materialized(value)?;
-        match operator {
-            UnOp::Neg(_) if names::is_number(&text) && !text.starts_with('-') => {
-                Ok(Value::Plain(format!("-{text}"), ty))
-            }
-            UnOp::Neg(_) => Ok(Value::Plain(format!("(-{text})"), ty)),
-            UnOp::Not(_) if ty == Type::Bool => Ok(Value::bool(format!("!{text}"))),
-            UnOp::Not(_) if ty == Type::Uint => Ok(Value::Plain(format!("~{text}"), ty)),
-            UnOp::Not(_) => self.method("not", vec![Value::Plain(text, ty)]),
-            _ => Err("an operator".into()),
-        }
+        let text = match (operator, &ty) {
+            (UnOp::Neg(_), _) if names::is_number(&text) && !text.starts_with('-') => format!("-{text}"),
+            (UnOp::Neg(_), _) => format!("(-{text})"),
+            (UnOp::Not(_), Type::Bool) => format!("!{text}"),
+            _ => return self.method("not", vec![Value::Plain(text, ty)]),
+        };
+        Ok(Value::Plain(text, ty))
     }
 
     fn binary(&mut self, binary: &ExprBinary) -> Result<Value> {
         let sign = binary.op.to_token_stream().to_string();
         let (left, left_type) = self.plain(&binary.left)?;
         let (right, right_type) = self.plain(&binary.right)?;
-        let is_assignment =
-            sign.len() > 1 && sign.ends_with('=') && !["==", "<=", ">=", "!="].contains(&&*sign);
-        if is_assignment {
-            self.line(&format!("{} {sign} {};", bare(&left), bare(&right)));
-            return Ok(Value::Unit);
-        }
         // Exclusive or.
-        let sign = if left_type == Type::Bool && sign == "^" { "!=" } else { &sign };
-        let text = format!("({left} {sign} {right})");
-        let ty = match binary.op {
-            BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_) => {
-                Type::Bool
+        let sign = if sign == "^" && left_type == Type::Bool { "!=" } else { &sign };
+        let ty = match sign {
+            "<" | "<=" | ">" | ">=" | "==" | "!=" => Type::Bool,
+            _ if sign.ends_with('=') => {
+                self.line(&format!("{} {sign} {};", bare(&left), bare(&right)));
+                return Ok(Value::Unit);
             }
-            BinOp::Shl(_) | BinOp::Shr(_) => left_type,
+            "<<" | ">>" => left_type,
             // A vector with a number is a vector.
             _ if matches!(right_type, Type::Named(..)) || left_type == Type::Literal => right_type,
             _ => left_type,
         };
-        Ok(Value::Plain(text, ty))
+        Ok(Value::Plain(format!("({left} {sign} {right})"), ty))
     }
 
     /// A part of a value.
     pub fn field(&mut self, base: Value, member: &Member) -> Result<Value> {
-        let name = match member {
-            Member::Named(name) => name.to_string(),
-            Member::Unnamed(index) => index.index.to_string(),
-        };
-        if let Value::Tuple(values) = &base {
-            let index: usize = name.parse().map_err(|_| "a field of a tuple")?;
-            return values.get(index).cloned().ok_or("a field of a tuple".into());
+        let name = member.to_token_stream().to_string();
+        let missing = || format!("the field {name}");
+        if let (Value::Tuple(values), Ok(index)) = (&base, name.parse::<usize>()) {
+            return values.get(index).cloned().ok_or_else(missing);
         }
         let (text, ty) = self.materialized(base)?;
         if let Some(inside) = self.translator.inside(&ty) {
             return Ok(Value::Plain(text, inside));
         }
-        if let (Type::Tuple(types), Ok(index)) = (&ty, name.parse::<usize>()) {
-            let ty = types.get(index).cloned().ok_or("a field of a tuple")?;
-            return Ok(Value::Plain(format!("{text}.v{index}"), ty));
-        }
-        let fields = self.translator.fields(&ty).ok_or_else(|| format!("the fields of {ty:?}"))?;
-        let (_, field) = fields.into_iter().find(|(known, _)| *known == name).ok_or("a field")?;
+        let mut fields = self.translator.fields(&ty)?.into_iter();
+        let (_, field) = fields.find(|(known, _)| *known == name).ok_or_else(missing)?;
         Ok(Value::Plain(format!("{text}.{}", names::member(&name)), field))
-    }
-
-    /// The element of a value at an index.
-    pub fn element(&mut self, base: Value, at: &str) -> Result<Value> {
-        if let (Value::Array(values), Ok(index)) = (&base, at.parse::<usize>()) {
-            return values.get(index).cloned().ok_or("an index".into());
-        }
-        let (text, ty) = self.materialized(base)?;
-        let (element, count) = match self.translator.inside(&ty).unwrap_or(ty) {
-            Type::Array(element, count) => (*element, count),
-            ty if ty.coordinates().is_some() => (Type::Real, 3),
-            ty => return Err(format!("an element of {ty:?}")),
-        };
-        Ok(Value::Plain(part(&text, &element, count, bare(at)), element))
     }
 
     /// The parts of a tuple or array.
     pub fn elements(&mut self, value: Value) -> Result<Vec<Value>> {
         match value {
-            Value::Tuple(values) | Value::Array(values) => Ok(values),
+            Value::Tuple(values) | Value::Array(values) => return Ok(values),
             // What is referred to has parts that may be changed.
             Value::Place(text, Type::Array(ty, count)) => {
-                Ok((0..count).map(|i| Value::Place(format!("{text}[{i}]"), (*ty).clone())).collect())
+                return Ok((0..count).map(|i| Value::Place(format!("{text}[{i}]"), (*ty).clone())).collect());
             }
-            value => {
-                let value = self.stored("parts", value, false)?;
-                let (text, ty) = self.materialized(value)?;
-                match self.translator.inside(&ty).unwrap_or(ty) {
-                    Type::Array(ty, count) => {
-                        let part = |i: usize| part(&text, &ty, count, &i.to_string());
-                        Ok((0..count).map(|i| Value::Plain(part(i), (*ty).clone())).collect())
-                    }
-                    Type::Tuple(types) => {
-                        let parts = types.into_iter().enumerate();
-                        Ok(parts.map(|(i, ty)| Value::Plain(format!("{text}.v{i}"), ty)).collect())
-                    }
-                    ty => Err(format!("the parts of {ty:?}")),
-                }
-            }
+            _ => {}
         }
+        let (text, ty) = self.kept("parts", value)?;
+        if let Type::Tuple(types) = ty {
+            let parts = types.into_iter().enumerate();
+            return Ok(parts.map(|(i, ty)| Value::Plain(format!("{text}.v{i}"), ty)).collect());
+        }
+        let (element, count) = self.translator.array(&ty)?;
+        let text_at = |i: usize| part(&text, &element, count, &i.to_string());
+        Ok((0..count).map(|i| Value::Plain(text_at(i), element.clone())).collect())
     }
 
     fn structure(&mut self, literal: &ExprStruct) -> Result<Value> {
-        let ty = self.context.names.path(&literal.path).ok_or("a struct")?;
-        // Arguments that are not written are those of the type whose impl this is.
-        let ty = match (&ty, &self.context.names.owner) {
-            (Type::Named(name, _), Some(owner)) if owner.name() == Some(name) => owner.clone(),
-            _ => ty,
-        };
-        let mut values = Vec::new();
+        let ty = Type::of_path(&literal.path, &self.context.parameters)?;
+        let mut values = BTreeMap::new();
         for field in &literal.fields {
-            let value = self.expression(&field.expr)?;
-            let (text, ty) = self.materialized(value)?;
-            values.push((field.member.to_token_stream().to_string(), text, ty));
+            values.insert(field.member.to_token_stream().to_string(), self.plain(&field.expr)?);
         }
-        let ty = self.translator.inferred(ty, &values);
-        let fields = self.translator.fields(&ty).ok_or_else(|| format!("the struct {ty:?}"))?;
-        let rest = match &literal.rest {
-            Some(rest) => {
-                let value = self.expression(rest)?;
-                Some(self.stored("rest", value, false)?)
+        let ty = self.translator.inferred(ty, &values)?;
+        let fields = self.translator.fields(&ty)?;
+        if let Some(rest) = &literal.rest {
+            let rest = self.expression(rest)?;
+            let (rest, _) = self.kept("rest", rest)?;
+            for (name, ty) in &fields {
+                let text = format!("{rest}.{}", names::member(name));
+                values.entry(name.clone()).or_insert((text, ty.clone()));
             }
-            None => None,
-        };
-        let mut texts = Vec::new();
-        for (name, _) in &fields {
-            texts.push(match (values.iter().find(|(known, ..)| known == name), &rest) {
-                (Some((_, text, _)), _) => bare(text).to_owned(),
-                (None, Some(Value::Plain(rest, _) | Value::Place(rest, _))) => {
-                    format!("{rest}.{}", names::member(name))
-                }
-                _ => return Err(format!("no field {name}")),
-            });
         }
-        let spelled = self.translator.spell(&ty)?;
-        Ok(Value::Plain(format!("{spelled}({})", texts.join(", ")), ty))
+        let texts = fields.iter().map(|(name, _)| match values.get(name) {
+            Some((text, _)) => Ok(bare(text)),
+            None => Err(format!("no field {name}")),
+        });
+        let texts = texts.collect::<Result<Vec<_>>>()?.join(", ");
+        Ok(Value::Plain(format!("{}({texts})", self.translator.spell(&ty)?), ty))
     }
 
     fn assign(&mut self, place: &Expr, value: Value) -> Result<()> {
         if let Expr::Tuple(syn::ExprTuple { elems, .. }) | Expr::Array(syn::ExprArray { elems, .. }) = place {
-            let parts = self.elements(value)?;
+            let parts = self.elements(value)?.into_iter();
             let parts: Vec<Value> =
-                parts.into_iter().map(|part| self.stored("part", part, false)).collect::<Result<_>>()?;
+                parts.map(|part| self.stored("part", part, false)).collect::<Result<_>>()?;
             return elems.iter().zip(parts).try_for_each(|(place, part)| self.assign(place, part));
         }
         let ((place, _), (text, _)) = (self.plain(place)?, self.materialized(value)?);
@@ -348,90 +261,29 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    fn for_loop(&mut self, pattern: &Pat, range: &Expr, block: &syn::Block) -> Result<()> {
-        if let Expr::Range(syn::ExprRange { start: Some(start), end: Some(end), limits, .. }) = range {
-            let (start, (end, ty)) = (self.plain(start)?.0, self.plain(end)?);
-            let sign = if matches!(limits, syn::RangeLimits::Closed(_)) { "<=" } else { "<" };
-            let suffix = if ty == Type::Sint { "i" } else { "u" };
-            let counter = self.identifier(&pattern.to_token_stream().to_string());
-            let (lines, ()) = self.captured(|body| {
-                let ty = if ty == Type::Sint { Type::Sint } else { Type::Uint };
-                body.bind(pattern, Value::Plain(counter.clone(), ty))?;
-                body.statements(&block.stmts)
+    fn for_loop(&mut self, repeat: &ExprForLoop) -> Result<Value> {
+        let loops = match &*repeat.expr {
+            Expr::Range(ExprRange { start: Some(start), end: Some(end), limits, .. }) => {
+                let ((start, _), (end, ty)) = (self.plain(start)?, self.plain(end)?);
+                let sign = if matches!(limits, RangeLimits::Closed(_)) { "<=" } else { "<" };
+                let (ty, suffix) = if ty == Type::Sint { (ty, "i") } else { (Type::Uint, "u") };
+                let start = if names::is_number(&start) { start + suffix } else { start };
+                let counter = self.identifier(&repeat.pat.to_token_stream().to_string());
+                let head = format!("for (var {counter} = {start}; {counter} {sign} {end}; {counter}++) ");
+                vec![(head, Value::Plain(counter, ty))]
+            }
+            parts => {
+                let parts = self.expression(parts)?;
+                self.elements(parts)?.into_iter().map(|part| (String::new(), part)).collect()
+            }
+        };
+        for (head, value) in loops {
+            self.braced(&head, |body| {
+                body.bind(&repeat.pat, value)?;
+                body.block(&repeat.body, Mode::Ignore)
             })?;
-            let start = if names::is_number(&start) { start + suffix } else { start };
-            self.line(&format!("for (var {counter} = {start}; {counter} {sign} {end}; {counter}++) {{"));
-            self.append(lines);
-            self.line("}");
-            return Ok(());
         }
-        let range = self.expression(range)?;
-        for part in self.elements(range)? {
-            let (lines, ()) = self.captured(|body| {
-                body.bind(pattern, part)?;
-                body.statements(&block.stmts)
-            })?;
-            self.line("{");
-            self.append(lines);
-            self.line("}");
-        }
-        Ok(())
-    }
-
-    /// An `if` or `match`.
-    pub fn branches(&mut self, expression: &Expr, mode: Mode) -> Result<Value> {
-        match expression {
-            Expr::If(ExprIf { cond, then_branch, else_branch, .. }) => {
-                let block = then_branch.clone();
-                let then = Expr::Block(syn::ExprBlock { attrs: Vec::new(), label: None, block });
-                let condition = Some(self.plain(cond)?.0);
-                let mut branches = vec![Branch { condition, body: &then }];
-                if let Some((_, otherwise)) = else_branch {
-                    branches.push(Branch { condition: None, body: otherwise });
-                }
-                self.write_branches(branches, mode)
-            }
-            Expr::Match(choice) => {
-                let value = self.expression(&choice.expr)?;
-                let value = self.stored("choice", value, false)?;
-                let (text, ty) = self.materialized(value)?;
-                let last = choice.arms.len() - 1;
-                let mut branches = Vec::new();
-                for (i, arm) in choice.arms.iter().enumerate() {
-                    // The last one needs no test, because matches are exhaustive.
-                    let test = self.test(&arm.pat, &text, &ty)?;
-                    let condition = if i == last { None } else { test };
-                    branches.push(Branch { condition, body: &arm.body });
-                }
-                self.write_branches(branches, mode)
-            }
-            _ => Err("a branch".into()),
-        }
-    }
-
-    /// The condition under which a pattern matches; `None` if it always does.
-    fn test(&mut self, pattern: &Pat, text: &str, ty: &Type) -> Result<Option<String>> {
-        match pattern {
-            Pat::Wild(_) => Ok(None),
-            Pat::Path(pattern) => {
-                let variant = pattern.path.segments.last().map(|s| s.ident.to_string()).unwrap_or_default();
-                let name = ty.name().unwrap_or_default();
-                let variant = self.translator.variant(name, &variant).ok_or("a variant")?;
-                Ok(Some(format!("({text} == {variant})")))
-            }
-            Pat::Lit(literal) => {
-                let Value::Plain(literal, _) = self.literal(&literal.lit)? else {
-                    return Err("a literal".into());
-                };
-                Ok(Some(format!("({text} == {literal})")))
-            }
-            Pat::Or(pattern) => {
-                let tests = pattern.cases.iter().map(|case| self.test(case, text, ty));
-                let tests: Option<Vec<String>> = tests.collect::<Result<_>>()?;
-                Ok(tests.map(|tests| format!("({})", tests.join(" || "))))
-            }
-            _ => Err(format!("the pattern {}", pattern.to_token_stream())),
-        }
+        Ok(Value::Unit)
     }
 }
 

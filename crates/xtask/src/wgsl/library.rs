@@ -2,202 +2,95 @@
 
 use std::collections::BTreeMap;
 
-use super::vectors;
 use quote::ToTokens;
-use syn::{Attribute, Block, Expr, Fields, GenericParam, ImplItem, Item, Signature, Visibility};
+use syn::{Block, Item, ItemMacro, Stmt};
 
-/// A function or method.
-pub struct Function {
+use super::Result;
+use super::types::{Type, last_name};
+
+/// What may be translated. The conventions for names tell kinds apart.
+pub struct Definition {
     /// Index of its source.
     pub source: usize,
-    /// Place among all items, in the order of the sources.
-    pub order: usize,
-    /// The type that it is a method of.
-    pub owner: Option<String>,
-    /// Whether files that are not relatives see it.
-    pub public: bool,
-    pub signature: Signature,
-    pub block: Block,
-    pub docs: Vec<String>,
-}
-
-/// A struct.
-pub struct Structure {
-    pub source: usize,
-    pub order: usize,
-    pub fields: Vec<(String, syn::Type)>,
-    /// Whether it is one unnamed field, which stands for it in WGSL.
-    pub transparent: bool,
-    /// Its type parameters but those of numbers with lanes.
-    pub parameters: Vec<String>,
-    pub docs: Vec<String>,
-}
-
-/// A constant of a source or of a type.
-pub struct Constant {
-    pub source: usize,
-    pub order: usize,
-    pub owner: Option<String>,
     pub name: String,
-    pub ty: syn::Type,
-    pub value: Expr,
-}
-
-/// An enum without data.
-pub struct Enumeration {
-    pub source: usize,
-    pub order: usize,
-    pub variants: Vec<String>,
+    /// A function, a constant, a struct, or an enum without data.
+    pub item: Item,
 }
 
 /// All items of some sources.
 #[derive(Default)]
 pub struct Library {
-    /// The names of the sources without folder and ending.
-    pub stems: Vec<String>,
-    pub functions: Vec<Function>,
-    pub structures: BTreeMap<String, Structure>,
-    pub enumerations: BTreeMap<String, Enumeration>,
-    pub constants: Vec<Constant>,
-    order: usize,
+    /// The paths of the sources.
+    pub sources: Vec<String>,
+    pub definitions: Vec<Definition>,
+    /// The places of the definitions of a type, or of none, with a name.
+    places: BTreeMap<(Option<String>, String), Vec<usize>>,
+    macros: BTreeMap<String, String>,
 }
 
 impl Library {
-    /// Adds the items of a source with this stem.
-    pub fn add(&mut self, stem: &str, text: &str) -> Result<(), String> {
-        let file = syn::parse_file(text).map_err(|error| format!("{stem}: {error}"))?;
-        self.stems.push(stem.to_owned());
-        file.items.into_iter().for_each(|item| self.add_item(item));
+    /// Adds the items of a source.
+    pub fn add(&mut self, path: &str, text: &str) -> Result<()> {
+        let file = syn::parse_file(text).map_err(|error| format!("{path}: {error}"))?;
+        self.sources.push(path.to_owned());
+        file.items.into_iter().for_each(|item| self.add_item(None, item));
         Ok(())
     }
 
-    fn add_item(&mut self, item: Item) {
-        let source = self.stems.len() - 1;
-        self.order += 1;
-        let order = self.order;
-        match item {
-            Item::Fn(item) => self.functions.push(Function {
-                source,
-                order,
-                owner: None,
-                public: !matches!(item.vis, Visibility::Inherited),
-                docs: docs(&item.attrs),
-                signature: item.sig,
-                block: *item.block,
-            }),
-            Item::Struct(item) => {
-                let transparent =
-                    matches!(&item.fields, Fields::Unnamed(fields) if fields.unnamed.len() == 1);
-                let name = |i: usize, field: &syn::Field| {
-                    field.ident.as_ref().map_or(i.to_string(), ToString::to_string)
-                };
-                let fields = item.fields.iter().enumerate().map(|(i, f)| (name(i, f), f.ty.clone()));
-                let structure = Structure {
-                    source,
-                    order,
-                    fields: fields.collect(),
-                    transparent,
-                    parameters: parameters(&item.generics),
-                    docs: docs(&item.attrs),
-                };
-                self.structures.insert(item.ident.to_string(), structure);
+    fn add_item(&mut self, owner: Option<String>, item: Item) {
+        let name = match &item {
+            Item::Fn(item) => item.sig.ident.to_string(),
+            Item::Const(item) => item.ident.to_string(),
+            Item::Struct(item) => item.ident.to_string(),
+            Item::Enum(item) if item.variants.iter().all(|v| v.fields.is_empty()) => item.ident.to_string(),
+            Item::Impl(block) => {
+                if let syn::Type::Path(path) = &*block.self_ty {
+                    // What is in an impl is written as elsewhere.
+                    let items = block.items.iter().map(|item| syn::parse2(item.to_token_stream()));
+                    items.flatten().for_each(|item| self.add_item(Some(last_name(&path.path)), item));
+                }
+                return;
             }
-            Item::Enum(item) if item.variants.iter().all(|variant| variant.fields.is_empty()) => {
-                let variants = item.variants.iter().map(|variant| variant.ident.to_string()).collect();
-                let enumeration = Enumeration { source, order, variants };
-                self.enumerations.insert(item.ident.to_string(), enumeration);
-            }
-            Item::Const(item) => self.constants.push(Constant {
-                source,
-                order,
-                owner: None,
-                name: item.ident.to_string(),
-                ty: *item.ty,
-                value: *item.expr,
-            }),
-            Item::Impl(item) => {
-                let syn::Type::Path(path) = &*item.self_ty else { return };
-                let Some(owner) = path.path.segments.last() else { return };
-                let owner = owner.ident.to_string();
-                item.items.into_iter().for_each(|item| self.add_impl_item(&owner, item));
-            }
-            Item::Macro(definition) => {
-                vectors::methods(&definition).into_iter().for_each(|item| self.add_item(item));
-            }
-            _ => {}
-        }
-    }
-
-    fn add_impl_item(&mut self, owner: &str, item: ImplItem) {
-        let source = self.stems.len() - 1;
-        self.order += 1;
-        let (order, owner) = (self.order, Some(owner.to_owned()));
-        match item {
-            ImplItem::Fn(item) => self.functions.push(Function {
-                source,
-                order,
-                owner,
-                public: true,
-                docs: docs(&item.attrs),
-                signature: item.sig,
-                block: item.block,
-            }),
-            ImplItem::Const(item) => self.constants.push(Constant {
-                source,
-                order,
-                owner,
-                name: item.ident.to_string(),
-                ty: item.ty,
-                value: item.expr,
-            }),
-            _ => {}
-        }
-    }
-
-    /// The method of a type.
-    pub fn method(&self, owner: &str, name: &str) -> Option<usize> {
-        let is_it = |f: &Function| f.owner.as_deref() == Some(owner) && f.signature.ident == name;
-        self.functions.iter().position(is_it)
-    }
-
-    /// The function that a name means in a source: its own, else a public one, else one that is
-    /// private to a relative.
-    pub fn function(&self, source: usize, name: &str) -> Option<usize> {
-        let find = |visible: &dyn Fn(&Function) -> bool| {
-            self.functions.iter().position(|f| f.owner.is_none() && f.signature.ident == name && visible(f))
+            Item::Macro(item) => return self.add_macro(item),
+            _ => return,
         };
-        find(&|f| f.source == source).or_else(|| find(&|f| f.public)).or_else(|| find(&|_| true))
+        self.places.entry((owner, name.clone())).or_default().push(self.definitions.len());
+        self.definitions.push(Definition { source: self.sources.len() - 1, name, item });
     }
 
-    /// The constant that a name means in a source.
-    pub fn constant(&self, source: usize, owner: Option<&str>, name: &str) -> Option<usize> {
-        let is_it = |c: &Constant| c.owner.as_deref() == owner && c.name == name;
-        let own = self.constants.iter().position(|c| is_it(c) && c.source == source);
-        own.or_else(|| self.constants.iter().position(is_it))
+    /// Keeps the rule of a macro; adds the items that a use of one makes, if the rule is
+    /// `($parameter:ident) => { … }`.
+    fn add_macro(&mut self, item: &ItemMacro) {
+        let tokens = item.mac.tokens.to_string();
+        if let Some(name) = &item.ident {
+            self.macros.insert(name.to_string(), tokens);
+        } else if let Some(rule) = self.macros.get(&last_name(&item.mac.path))
+            && let Some((parameter, body)) = rule.split_once("=>")
+            && let Some((parameter, _)) = parameter.trim_start_matches('(').split_once(" :")
+            && let Ok(block) =
+                syn::parse_str::<Block>(&body.trim_end_matches(';').replace(parameter, &tokens))
+        {
+            for statement in block.stmts {
+                if let Stmt::Item(item) = statement {
+                    self.add_item(None, item);
+                }
+            }
+        }
     }
 
-    /// Whether several sources have a function of this name.
-    pub fn is_ambiguous(&self, name: &str) -> bool {
-        self.functions.iter().filter(|f| f.owner.is_none() && f.signature.ident == name).count() > 1
+    /// What a name means in a source: an item of its own, else the only one that there is.
+    pub fn find(&self, source: Option<usize>, owner: Option<&Type>, name: &str) -> Option<usize> {
+        let owner = match owner {
+            Some(owner) => Some(owner.name()?.to_owned()),
+            None => None,
+        };
+        let places = self.places.get(&(owner, name.to_owned()))?;
+        let own = places.iter().find(|&&index| Some(self.definitions[index].source) == source);
+        own.or(places.first().filter(|_| places.len() == 1)).copied()
     }
-}
 
-/// The type parameters that are not numbers with lanes.
-fn parameters(generics: &syn::Generics) -> Vec<String> {
-    let names = generics.params.iter().filter_map(|parameter| match parameter {
-        GenericParam::Type(parameter) => Some(parameter.ident.to_string()),
-        _ => None,
-    });
-    names.filter(|name| !["R", "I"].contains(&name.as_str())).collect()
-}
-
-/// The first paragraph of an item's documentation.
-fn docs(attributes: &[Attribute]) -> Vec<String> {
-    let lines = attributes.iter().filter(|a| a.path().is_ident("doc")).filter_map(|attribute| {
-        let syn::Meta::NameValue(meta) = &attribute.meta else { return None };
-        let text = meta.value.to_token_stream().to_string();
-        let text: syn::LitStr = syn::parse_str(&text).ok()?;
-        Some(text.value().trim().to_owned())
-    });
-    lines.take_while(|line| !line.is_empty()).collect()
+    /// The number of items of this name that belong to no type.
+    pub fn count(&self, name: &str) -> usize {
+        self.places.get(&(None, name.to_owned())).map_or(0, Vec::len)
+    }
 }

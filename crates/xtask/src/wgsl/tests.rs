@@ -1,18 +1,23 @@
 //! Small sources and their translations.
 
 use super::library::Library;
+use super::names;
 use super::translate;
 use super::translator::Translator;
 
 /// The translation of all functions named `f` and what they use, without empty lines.
 fn translated(source: &str) -> Result<String, String> {
+    translated_but("", source)
+}
+
+/// The same, but for what there is by hand.
+fn translated_but(by_hand: &str, source: &str) -> Result<String, String> {
     let mut library = Library::default();
     library.add("source", source)?;
-    let mut translator = Translator::new(&library);
+    let mut translator = Translator::new(&library, by_hand);
     translator.root(0, "f")?;
     translate(&mut translator)?;
-    let items: Vec<&str> = translator.tuples().chain(translator.items(0)).collect();
-    Ok(items.concat())
+    Ok(translator.texts_of(None).concat() + &translator.texts_of(Some(0)).concat())
 }
 
 /// Asserts the lines within `f`, the last function.
@@ -173,6 +178,42 @@ fn what_is_not_in_the_subset_is_an_error() {
 }
 
 #[test]
+fn errors_name_the_line_and_what_is_translated() {
+    let source = "fn f<R: Real>(x: R) -> R {\n    let y = {\n        unknown(x)\n    };\n    y\n}";
+    assert_eq!(translated(source).unwrap_err(), "source:3: the function unknown, in f");
+    let source = "struct S<R> { x: T<R> }\nstruct T<R> { y: R }\n\
+        impl<R: Real> T<R> { fn g(&mut self) { self.y = R::one(); } }\n\
+        fn f<R: Real>(s: &mut S<R>) {\n    s.x.g();\n}";
+    assert_eq!(translated(source).unwrap_err(), "source:5: a reference to a part, (*s).x, in f");
+}
+
+#[test]
+fn macros_of_a_name_are_expanded() {
+    let text = translated(
+        "macro_rules! methods { ($vector:ident) => { impl<R: Real> $vector<R> {
+            fn double(self) -> Self { self + self }
+        } } }
+        methods!(Vec3);
+        fn f<R: Real>(v: Vec3<R>) -> Vec3<R> { v.double() }",
+    );
+    let expected = "fn Vec3_double(this_: vec3f) -> vec3f {\n    return this_ + this_;\n}\n\
+        fn f(v: vec3f) -> vec3f {\n    return Vec3_double(v);\n}\n";
+    assert_eq!(text.unwrap(), expected);
+}
+
+#[test]
+fn what_is_by_hand_is_not_translated() {
+    let text = translated_but(
+        "fn g(x: f32) -> Tuple_f32_f32 {",
+        "fn g<R: Real>(x: R) -> (R, R) { x.untranslatable() }
+        fn f<R: Real>(x: R) -> R { g(x).1 }",
+    );
+    let expected = "struct Tuple_f32_f32 {\n    v0: f32,\n    v1: f32,\n}\n\
+        fn f(x: f32) -> f32 {\n    return g(x).v1;\n}\n";
+    assert_eq!(text.unwrap(), expected);
+}
+
+#[test]
 fn pairs_of_arrays_are_taken_apart() {
     assert_body(
         "fn f<R: Real>(x: R) -> R {
@@ -227,4 +268,26 @@ fn the_largest_float_is_not_exceeded() {
 fn arrays_longer_than_vectors_have_no_coordinates() {
     assert_body("fn f<R: Real>(x: [R; 5]) -> R { x[0] + x[4] }", &["return x[0] + x[4];"]);
     assert_body("fn f<R: Real>(x: [R; 4]) -> R { x[0] + x[3] }", &["return x.x + x.w;"]);
+}
+
+#[test]
+fn words_of_wgsl_are_taken() {
+    assert!(
+        names::is_taken("abs")
+            && names::is_taken("yield")
+            && names::is_taken("smooth")
+            && !names::is_taken("smooth_1")
+    );
+    assert_eq!((names::member("self"), names::member("pdf")), ("self_".to_owned(), "pdf".to_owned()));
+}
+
+#[test]
+fn numbers_and_identifiers_are_told_apart() {
+    assert!(
+        names::is_number("-1.5e-3f")
+            && names::is_number("0x7fu")
+            && !names::is_number("x1")
+            && !names::is_number("(1 + 2)")
+    );
+    assert!(names::is_identifier("x_1") && !names::is_identifier("x.y") && !names::is_identifier("1x"));
 }

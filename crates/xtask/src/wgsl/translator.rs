@@ -1,237 +1,183 @@
 //! What is needed of a library, item by item: whatever is translated requests what it uses.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use super::library::{Function, Library};
-use super::names;
-use super::types::{self, Type, TypeNames};
+use quote::ToTokens;
+use syn::{Item, ItemStruct};
 
-/// What has a body that is to be translated, by its index in the library.
-pub enum Request {
-    Function { index: usize, owner: Option<Type>, name: String },
-    Constant { index: usize, owner: Option<Type>, name: String, ty: Type },
-}
+use super::library::Library;
+use super::types::{Parameters, Type};
+use super::{Result, names, stem};
 
 /// The translation of a library's items as they are requested.
 pub struct Translator<'a> {
     pub library: &'a Library,
-    /// By source, place in it and name, so that the output has the order of the input.
-    items: BTreeMap<(usize, usize, String), String>,
-    /// Structs of tuples, which belong to no source.
-    tuples: BTreeMap<String, String>,
-    pending: Vec<Request>,
-    requested: BTreeSet<String>,
+    by_hand: &'a str,
+    /// By place in the library and name, so that the output has the order of the input. Structs of
+    /// tuples have no place. What is requested has no text yet.
+    pub texts: BTreeMap<(Option<usize>, String), String>,
+    pub pending: Vec<(usize, Option<Type>, String)>,
 }
 
 impl<'a> Translator<'a> {
-    pub fn new(library: &'a Library) -> Self {
-        let (items, tuples) = (BTreeMap::new(), BTreeMap::new());
-        Self { library, items, tuples, pending: Vec::new(), requested: BTreeSet::new() }
+    /// The translation of a library, except what there is by hand in WGSL.
+    pub fn new(library: &'a Library, by_hand: &'a str) -> Self {
+        Self { library, by_hand, texts: BTreeMap::new(), pending: Vec::new() }
     }
 
-    /// Requests a function by its name, or a type's method or all methods of numbers with lanes.
-    pub fn root(&mut self, source: usize, root: &str) -> Result<(), String> {
-        let missing = || format!("there is no {root} in {}", self.library.stems[source]);
-        if let Some((owner, method)) = root.split_once("::") {
-            let owner = syn::parse_str(owner).ok().and_then(|path| TypeNames::default().path(&path));
-            let index = owner.as_ref().and_then(|owner| self.library.method(owner.name()?, method));
-            self.function(index.ok_or_else(missing)?, owner);
-        } else {
-            let index = self.library.function(source, root).ok_or_else(missing)?;
-            self.function(index, None);
-        }
+    /// Requests a function by its name, or a type's method.
+    pub fn root(&mut self, source: usize, root: &str) -> Result<()> {
+        let (owner, name) = root.rsplit_once("::").unwrap_or(("", root));
+        let owner = syn::parse_str(owner).ok().and_then(|path| Type::of_path(&path, &Parameters::new()).ok());
+        let index = self.library.find(Some(source), owner.as_ref(), name);
+        let index = index.ok_or_else(|| format!("there is no {root} in {}", self.library.sources[source]))?;
+        self.named(index, owner);
         Ok(())
     }
 
-    /// What is to be translated next.
-    pub fn next(&mut self) -> Option<Request> {
-        self.pending.pop()
+    /// The translations of a source's items, in its order; without a source, the structs of tuples.
+    pub fn texts_of(&self, source: Option<usize>) -> Vec<&str> {
+        let source_of = |index: usize| self.library.definitions[index].source;
+        let texts = self.texts.iter().filter(|((index, _), _)| index.map(source_of) == source);
+        texts.map(|(_, text)| text.as_str()).collect()
     }
 
-    /// Adds a translation of a source's item at its place.
-    pub fn add(&mut self, source: usize, order: usize, name: String, text: String) {
-        self.items.insert((source, order, name), text);
-    }
-
-    /// The translations of a source's items, in its order.
-    pub fn items(&self, source: usize) -> impl Iterator<Item = &str> {
-        self.items.iter().filter(move |((of, ..), _)| *of == source).map(|(_, text)| text.as_str())
-    }
-
-    /// The structs of tuples.
-    pub fn tuples(&self) -> impl Iterator<Item = &str> {
-        self.tuples.values().map(String::as_str)
-    }
-
-    /// Requests a function or method of a type; its name in WGSL.
-    pub fn function(&mut self, index: usize, owner: Option<Type>) -> String {
-        let name = self.function_name(&self.library.functions[index], owner.as_ref());
-        let by_hand = super::BY_HAND.contains(&name.as_str());
-        if self.requested.insert(name.clone()) && !by_hand {
-            self.pending.push(Request::Function { index, owner, name: name.clone() });
+    fn request(&mut self, index: usize, owner: Option<Type>, name: &str) {
+        let key = (Some(index), name.to_owned());
+        let declarations = [format!("fn {name}("), format!("alias {name} =")];
+        let is_by_hand = declarations.iter().any(|declaration| self.by_hand.contains(declaration));
+        if !is_by_hand && !self.texts.contains_key(&key) {
+            self.texts.insert(key, String::new());
+            self.pending.push((index, owner, name.to_owned()));
         }
+    }
+
+    /// Requests a function or constant; its name in WGSL.
+    pub fn named(&mut self, index: usize, owner: Option<Type>) -> String {
+        let definition = &self.library.definitions[index];
+        let (name, is_constant) = (&definition.name, matches!(definition.item, Item::Const(_)));
+        let name = match &owner {
+            Some(owner) => format!("{owner}_{name}"),
+            None if is_constant || self.library.count(name) > 1 || names::is_taken(name) => {
+                format!("{}_{name}", stem(&self.library.sources[definition.source]))
+            }
+            None => name.clone(),
+        };
+        self.request(index, owner, &name);
         name
     }
 
-    fn function_name(&self, function: &Function, owner: Option<&Type>) -> String {
-        let name = function.signature.ident.to_string();
-        match owner {
-            Some(owner) => format!("{}_{name}", self.mangled(owner)),
-            None if self.library.is_ambiguous(&name) || names::is_taken(&name) => {
-                format!("{}_{name}", self.library.stems[function.source])
-            }
-            None => name,
+    /// What `Self` and type parameters stand for in an impl for a type.
+    pub fn parameters(&self, owner: Option<&Type>) -> Parameters {
+        let Some(owner) = owner else { return Parameters::new() };
+        let mut parameters = Parameters::from([("Self".to_owned(), owner.clone())]);
+        if let (Type::Named(_, arguments), Ok(structure)) = (owner, self.structure(owner)) {
+            parameters.extend(names_of_parameters(structure).zip(arguments.iter().cloned()));
         }
+        parameters
     }
 
-    /// A type in a name.
-    fn mangled(&self, ty: &Type) -> String {
-        match ty {
-            Type::Named(name, arguments) => {
-                let arguments = arguments.iter().map(|ty| format!("_{}", self.mangled(ty)));
-                format!("{name}{}", arguments.collect::<String>())
-            }
-            Type::Array(element, length) => format!("{}{length}", self.mangled(element)),
-            Type::Tuple(elements) => {
-                format!(
-                    "Tuple{}",
-                    elements.iter().map(|ty| format!("_{}", self.mangled(ty))).collect::<String>()
-                )
-            }
-            Type::Bool => "bool".into(),
-            Type::Real => "f32".into(),
-            Type::Sint => "i32".into(),
-            Type::Uint | Type::Literal => "u32".into(),
-            Type::Unit => "unit".into(),
+    fn structure(&self, ty: &Type) -> Result<&'a ItemStruct> {
+        let index = ty.name().and_then(|name| self.library.find(None, None, name));
+        match index.map(|index| &self.library.definitions[index].item) {
+            Some(Item::Struct(item)) => Ok(item),
+            _ => Err(format!("the struct {ty}")),
         }
-    }
-
-    /// What type parameters of a struct stand for.
-    pub fn names_of(&self, owner: Option<Type>) -> TypeNames {
-        let mut names = TypeNames { owner, ..TypeNames::default() };
-        if let Some(Type::Named(name, arguments)) = &names.owner
-            && let Some(structure) = self.library.structures.get(name)
-        {
-            names.parameters = structure.parameters.iter().cloned().zip(arguments.iter().cloned()).collect();
-        }
-        names
     }
 
     /// A struct with the type arguments that the values of its fields have, where none are written.
-    pub fn inferred(&self, ty: Type, values: &[(String, String, Type)]) -> Type {
-        let Type::Named(name, arguments) = &ty else { return ty };
-        let Some(structure) = self.library.structures.get(name) else { return ty };
-        if arguments.len() == structure.parameters.len() {
-            return ty;
+    pub fn inferred(&self, ty: Type, values: &BTreeMap<String, (String, Type)>) -> Result<Type> {
+        let mut arguments = Parameters::new();
+        for (name, declared) in self.fields(&ty)? {
+            values.get(&name).inspect(|(_, known)| declared.infer(known, &mut arguments));
         }
-        let find = |parameter: &String| {
-            values.iter().find_map(|(field, _, value)| {
-                let (_, declared) = structure.fields.iter().find(|(known, _)| known == field)?;
-                types::argument(declared, value, parameter)
-            })
-        };
-        let found: Option<Vec<Type>> = structure.parameters.iter().map(find).collect();
-        found.map_or(ty.clone(), |arguments| Type::Named(name.clone(), arguments))
+        match &ty {
+            Type::Named(name, written) if written.is_empty() => {
+                let inferred = names_of_parameters(self.structure(&ty)?).map(|parameter| {
+                    arguments.remove(&parameter).ok_or_else(|| format!("the type {parameter} of {ty}"))
+                });
+                Ok(Type::Named(name.clone(), inferred.collect::<Result<_>>()?))
+            }
+            _ => Ok(ty),
+        }
     }
 
-    /// The types of a struct's fields.
-    pub fn fields(&self, ty: &Type) -> Option<Vec<(String, Type)>> {
-        if let Some(count) = ty.coordinates() {
-            return Some(["x", "y", "z"][..count].iter().map(|c| (c.to_string(), Type::Real)).collect());
+    /// The fields of a struct or tuple, and their types.
+    pub fn fields(&self, ty: &Type) -> Result<Vec<(String, Type)>> {
+        if let Type::Tuple(types) = ty {
+            return Ok(types.iter().enumerate().map(|(i, ty)| (i.to_string(), ty.clone())).collect());
         }
-        let structure = self.library.structures.get(ty.name()?)?;
-        let names = self.names_of(Some(ty.clone()));
-        let typed = structure.fields.iter().map(|(name, ty)| Some((name.clone(), names.parse(ty)?.0)));
+        let structure = self.structure(ty)?;
+        let parameters = self.parameters(Some(ty));
+        let typed = structure.fields.members().zip(&structure.fields).map(|(name, field)| {
+            Ok((name.to_token_stream().to_string(), Type::parse(&field.ty, &parameters)?))
+        });
         typed.collect()
     }
 
     /// What a struct of one unnamed field stands for.
     pub fn inside(&self, ty: &Type) -> Option<Type> {
-        let structure = self.library.structures.get(ty.name()?)?;
-        let [(_, inside)] = <[_; 1]>::try_from(self.fields(ty)?).ok()?;
-        structure.transparent.then_some(inside)
+        match &self.fields(ty).ok()?[..] {
+            [(name, inside)] if name == "0" => Some(inside.clone()),
+            _ => None,
+        }
+    }
+
+    /// The type and the number of the elements of an array, or of what is one in WGSL.
+    pub fn array(&self, ty: &Type) -> Result<(Type, usize)> {
+        match self.inside(ty).unwrap_or(ty.clone()) {
+            Type::Array(element, count) => Ok((*element, count)),
+            ty => Ok((Type::Real, ty.coordinates().ok_or_else(|| format!("the elements of {ty}"))?)),
+        }
     }
 
     /// A type in WGSL; requests its declaration.
-    pub fn spell(&mut self, ty: &Type) -> Result<String, String> {
+    pub fn spell(&mut self, ty: &Type) -> Result<String> {
         Ok(match ty {
-            Type::Unit => return Err("a value without a type".into()),
             Type::Array(element, count @ 2..=4) if **element == Type::Real => format!("vec{count}f"),
             Type::Array(element, count) => format!("array<{}, {count}>", self.spell(element)?),
-            Type::Tuple(elements) => {
-                let fields = elements.iter().enumerate().map(|(i, ty)| (format!("v{i}"), ty.clone()));
-                self.aggregate(ty, fields.collect())?
+            Type::Tuple(types) if types.is_empty() => return Err("no value".into()),
+            Type::Tuple(_) => {
+                let text = self.declaration(ty)?;
+                self.texts.insert((None, ty.to_string()), text);
+                ty.to_string()
             }
-            Type::Named(name, _) if self.library.enumerations.contains_key(name) => "u32".into(),
-            Type::Named(name, _) if super::RECORDS.contains(&name.as_str()) => "u32".into(),
             Type::Named(name, _) if ty.coordinates().is_some() => name.to_lowercase() + "f",
-            Type::Named(..) => match self.inside(ty) {
-                Some(inside) => self.spell(&inside)?,
-                None => self.structure(ty)?,
-            },
-            _ => self.mangled(ty),
+            Type::Named(name, _) => {
+                let index = self.library.find(None, None, name).ok_or_else(|| format!("the type {name}"))?;
+                match (&self.library.definitions[index].item, self.inside(ty)) {
+                    (Item::Enum(_), _) => "u32".into(),
+                    (_, Some(inside)) => self.spell(&inside)?,
+                    _ => {
+                        self.request(index, Some(ty.clone()), &ty.to_string());
+                        ty.to_string()
+                    }
+                }
+            }
+            _ => ty.to_string(),
         })
     }
 
-    fn aggregate(&mut self, ty: &Type, fields: Vec<(String, Type)>) -> Result<String, String> {
-        let name = self.mangled(ty);
-        if self.requested.insert(name.clone()) {
-            let text = self.declaration(&name, fields)?;
-            self.tuples.insert(name.clone(), text);
-        }
-        Ok(name)
-    }
-
-    fn structure(&mut self, ty: &Type) -> Result<String, String> {
-        let name = self.mangled(ty);
-        if self.requested.insert(name.clone()) {
-            let library = self.library;
-            let base = ty.name().unwrap_or_default();
-            let structure = library.structures.get(base).ok_or_else(|| format!("no struct {base}"))?;
-            let fields =
-                self.fields(ty).ok_or_else(|| format!("{name} has a field without a translation"))?;
-            let text = documented(&structure.docs, &self.declaration(&name, fields)?);
-            self.add(structure.source, structure.order, name.clone(), text);
-        }
-        Ok(name)
-    }
-
-    fn declaration(&mut self, name: &str, fields: Vec<(String, Type)>) -> Result<String, String> {
-        let mut text = format!("struct {name} {{\n");
-        for (field, ty) in fields {
+    /// The declaration of a struct.
+    pub fn declaration(&mut self, ty: &Type) -> Result<String> {
+        let mut text = format!("struct {ty} {{\n");
+        for (field, ty) in self.fields(ty)? {
             text += &format!("    {}: {},\n", names::member(&field), self.spell(&ty)?);
         }
         Ok(text + "}\n")
     }
 
-    /// Requests a constant; its name in WGSL and its type.
-    pub fn constant(&mut self, index: usize) -> Result<(String, Type), String> {
-        let library = self.library;
-        let constant = &library.constants[index];
-        let owner = constant.owner.as_deref().map(Type::named);
-        let names = self.names_of(owner.clone());
-        let name = match &owner {
-            Some(owner) => format!("{}_{}", self.mangled(owner), constant.name),
-            None => format!("{}_{}", library.stems[constant.source], constant.name),
-        };
-        let (ty, _) = names.parse(&constant.ty).ok_or_else(|| format!("the type of {name}"))?;
-        if self.requested.insert(name.clone()) {
-            self.pending.push(Request::Constant { index, owner, name: name.clone(), ty: ty.clone() });
-        }
-        Ok((name, ty))
-    }
-
     /// Requests an enum; the name of one of its variants in WGSL.
-    pub fn variant(&mut self, name: &str, variant: &str) -> Option<String> {
-        let enumeration = self.library.enumerations.get(name)?;
-        let constant = |(i, variant)| format!("const {name}_{variant} = {i}u;\n");
-        let text = enumeration.variants.iter().enumerate().map(constant).collect();
-        self.add(enumeration.source, enumeration.order, name.to_owned(), text);
-        enumeration.variants.iter().any(|known| known == variant).then(|| format!("{name}_{variant}"))
+    pub fn variant(&mut self, ty: &Type, variant: &str) -> Option<String> {
+        let index = self.library.find(None, None, ty.name()?)?;
+        let Item::Enum(item) = &self.library.definitions[index].item else { return None };
+        self.request(index, None, ty.name()?);
+        item.variants.iter().any(|known| known.ident == variant).then(|| format!("{ty}_{variant}"))
     }
 }
 
-/// A declaration after its documentation.
-pub fn documented(docs: &[String], declaration: &str) -> String {
-    docs.iter().map(|line| format!("// {line}\n")).collect::<String>() + declaration
+/// The type parameters of a struct but those of numbers with lanes.
+fn names_of_parameters(structure: &ItemStruct) -> impl Iterator<Item = String> {
+    let names = structure.generics.type_params().map(|parameter| parameter.ident.to_string());
+    names.filter(|name| name != "R" && name != "I")
 }

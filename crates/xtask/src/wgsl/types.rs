@@ -1,13 +1,16 @@
 //! Types, as far as the translation needs them: to find methods, and to declare variables.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
+use quote::ToTokens;
 use syn::{Expr, GenericArgument, PathArguments};
 
+use super::Result;
+
 /// A type of one lane.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, PartialEq)]
 pub enum Type {
-    Unit,
     Bool,
     /// `f32`.
     Real,
@@ -18,18 +21,64 @@ pub enum Type {
     /// An integer literal, of any integer type.
     Literal,
     Array(Box<Type>, usize),
+    /// Without elements, that of no value.
     Tuple(Vec<Type>),
-    /// A struct or enum, and its type arguments.
+    /// A struct or enum, and its type arguments but numbers with lanes.
     Named(String, Vec<Type>),
 }
 
+/// What type parameters, and `Self`, stand for at a place.
+pub type Parameters = BTreeMap<String, Type>;
+
 impl Type {
-    /// A type without arguments.
-    pub fn named(name: &str) -> Self {
-        Self::Named(name.to_owned(), Vec::new())
+    /// The type of an annotation; that of a reference is what it refers to.
+    pub fn parse(ty: &syn::Type, parameters: &Parameters) -> Result<Self> {
+        Ok(match ty {
+            syn::Type::Reference(reference) => Self::parse(&reference.elem, parameters)?,
+            syn::Type::Tuple(tuple) => {
+                let elements = tuple.elems.iter().map(|ty| Self::parse(ty, parameters));
+                Self::Tuple(elements.collect::<Result<_>>()?)
+            }
+            syn::Type::Array(array) => {
+                Self::Array(Box::new(Self::parse(&array.elem, parameters)?), length(&array.len)?)
+            }
+            syn::Type::Path(path) => Self::of_path(&path.path, parameters)?,
+            _ => return Err(format!("the type {}", ty.to_token_stream())),
+        })
     }
 
-    /// The name of a named type.
+    /// The type of a path.
+    pub fn of_path(path: &syn::Path, parameters: &Parameters) -> Result<Self> {
+        let name = last_name(path);
+        if let Some(ty) = parameters.get(&name) {
+            return Ok(ty.clone());
+        }
+        Ok(match name.as_str() {
+            "R" | "f32" | "Real" => Self::Real,
+            "I" | "Int" | "u32" | "usize" => Self::Uint,
+            "i32" => Self::Sint,
+            "Mask" | "bool" => Self::Bool,
+            "Point2" => Self::Named("Vec2".into(), Vec::new()),
+            "Point3" | "Vector3" | "Normal3" => Self::Named("Vec3".into(), Vec::new()),
+            "Self" | "Option" => return Err(format!("the type {name}")),
+            _ => {
+                let mut types = Vec::new();
+                if let Some(PathArguments::AngleBracketed(list)) = path.segments.last().map(|s| &s.arguments)
+                {
+                    for argument in &list.args {
+                        if let GenericArgument::Type(ty) = argument
+                            && let Ok(ty @ Self::Named(..)) = Self::parse(ty, parameters)
+                        {
+                            types.push(ty);
+                        }
+                    }
+                }
+                Self::Named(name, types)
+            }
+        })
+    }
+
+    /// The name of a struct or enum.
     pub fn name(&self) -> Option<&str> {
         match self {
             Self::Named(name, _) => Some(name),
@@ -39,104 +88,45 @@ impl Type {
 
     /// The number of coordinates of a vector of `math`.
     pub fn coordinates(&self) -> Option<usize> {
-        match self.name()? {
-            "Vec2" => Some(2),
-            "Vec3" => Some(3),
-            _ => None,
+        self.name()?.strip_prefix("Vec")?.parse().ok()
+    }
+
+    /// What names in this type stand for where a value has the type `known` instead.
+    pub fn infer(&self, known: &Self, names: &mut Parameters) {
+        let Self::Named(name, types) = self else { return };
+        names.insert(name.clone(), known.clone());
+        if let Self::Named(_, known) = known {
+            types.iter().zip(known).for_each(|(ty, known)| ty.infer(known, names));
         }
     }
 }
 
-/// What names of types mean at a place.
-#[derive(Clone, Default)]
-pub struct TypeNames {
-    /// The type whose impl this is in.
-    pub owner: Option<Type>,
-    /// What type parameters stand for.
-    pub parameters: BTreeMap<String, Type>,
-}
-
-impl TypeNames {
-    /// The type of an annotation, and whether it is a mutable reference; `None` where it has no
-    /// translation.
-    pub fn parse(&self, ty: &syn::Type) -> Option<(Type, bool)> {
-        let parsed = match ty {
-            syn::Type::Paren(ty) => return self.parse(&ty.elem),
-            syn::Type::Reference(reference) => {
-                return Some((self.parse(&reference.elem)?.0, reference.mutability.is_some()));
-            }
-            syn::Type::Tuple(tuple) if tuple.elems.is_empty() => Type::Unit,
-            syn::Type::Tuple(tuple) => {
-                Type::Tuple(tuple.elems.iter().map(|ty| Some(self.parse(ty)?.0)).collect::<Option<_>>()?)
-            }
-            syn::Type::Array(array) => {
-                let Expr::Lit(length) = &array.len else {
-                    // The number of wavelengths of a path.
-                    let is_n = matches!(&array.len, Expr::Path(path) if path.path.is_ident("N"));
-                    return is_n.then_some((Type::Array(Box::new(self.parse(&array.elem)?.0), 4), false));
-                };
-                let syn::Lit::Int(length) = &length.lit else { return None };
-                Type::Array(Box::new(self.parse(&array.elem)?.0), length.base10_parse().ok()?)
-            }
-            syn::Type::Path(path) => self.path(&path.path)?,
-            _ => return None,
+/// As a name, or as a part of one.
+impl fmt::Display for Type {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (name, types) = match self {
+            Self::Bool => ("bool", &[][..]),
+            Self::Real => ("f32", &[][..]),
+            Self::Uint | Self::Literal => ("u32", &[][..]),
+            Self::Sint => ("i32", &[][..]),
+            Self::Array(element, count) => return write!(f, "{element}{count}"),
+            Self::Tuple(types) => ("Tuple", &types[..]),
+            Self::Named(name, types) => (name.as_str(), &types[..]),
         };
-        Some((parsed, false))
-    }
-
-    /// The type of a path.
-    pub fn path(&self, path: &syn::Path) -> Option<Type> {
-        let last = path.segments.last()?;
-        let name = last.ident.to_string();
-        let arguments: Vec<Type> = match &last.arguments {
-            PathArguments::AngleBracketed(list) => {
-                let types = list.args.iter().filter_map(|argument| match argument {
-                    GenericArgument::Type(ty) => self.parse(ty).map(|(ty, _)| ty),
-                    _ => None,
-                });
-                types.collect()
-            }
-            _ => Vec::new(),
-        };
-        Some(match name.as_str() {
-            "R" | "f32" | "Real" => Type::Real,
-            "I" | "Int" | "u32" | "usize" => Type::Uint,
-            "i32" => Type::Sint,
-            "Mask" | "bool" => Type::Bool,
-            "Self" => self.owner.clone()?,
-            "Point2" => Type::named("Vec2"),
-            "Point3" | "Vector3" | "Normal3" => Type::named("Vec3"),
-            "Option" => return None,
-            name if self.parameters.contains_key(name) => self.parameters[name].clone(),
-            // Numbers with lanes are no arguments in the translation.
-            _ => {
-                let is_number = |ty: &Type| matches!(ty, Type::Real | Type::Uint | Type::Bool);
-                Type::Named(name, arguments.into_iter().filter(|ty| !is_number(ty)).collect())
-            }
-        })
+        f.write_str(name)?;
+        types.iter().try_for_each(|ty| write!(f, "_{ty}"))
     }
 }
 
-/// What a type parameter stands for, given a type that has it in its declaration and the type that
-/// this has in a value.
-pub fn argument(declared: &syn::Type, value: &Type, parameter: &str) -> Option<Type> {
-    match declared {
-        syn::Type::Reference(reference) => argument(&reference.elem, value, parameter),
-        syn::Type::Path(path) if path.path.is_ident(parameter) => Some(value.clone()),
-        syn::Type::Path(path) => {
-            let (Type::Named(_, arguments), PathArguments::AngleBracketed(list)) =
-                (value, &path.path.segments.last()?.arguments)
-            else {
-                return None;
-            };
-            // Numbers with lanes are no arguments of values.
-            let is_number = |ty: &syn::Type| matches!(ty, syn::Type::Path(p) if p.path.is_ident("R"));
-            let types = list.args.iter().filter_map(|argument| match argument {
-                GenericArgument::Type(ty) if !is_number(ty) => Some(ty),
-                _ => None,
-            });
-            types.zip(arguments).find_map(|(ty, value)| argument(ty, value, parameter))
-        }
-        _ => None,
+/// The length of an array; `N` is the number of wavelengths of a path.
+pub fn length(expression: &Expr) -> Result<usize> {
+    match expression.to_token_stream().to_string().as_str() {
+        "N" => Ok(4),
+        text => text.parse().map_err(|_| format!("the length {text}")),
     }
+}
+
+/// The last name of a path.
+pub fn last_name(path: &syn::Path) -> String {
+    path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default()
 }

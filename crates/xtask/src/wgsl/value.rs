@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use syn::{Expr, Pat, Path};
+use syn::{ExprClosure, Path};
 
-use super::types::{Type, TypeNames};
+use super::types::{Parameters, Type};
 
 /// The value of an expression. Tuples, arrays and functions exist during the translation alone, as
 /// long as they stay within one function.
@@ -19,35 +19,21 @@ pub enum Value {
     Tuple(Vec<Value>),
     Array(Vec<Value>),
     Function(Path),
-    Closure(Rc<Closure>),
-}
-
-/// A closure, which is inlined where it is called.
-pub struct Closure {
-    pub inputs: Vec<Pat>,
-    pub body: Expr,
-    pub context: Context,
+    /// A closure, which is inlined where it is called.
+    Closure(Rc<(ExprClosure, Context)>),
 }
 
 /// What names mean at a place.
 #[derive(Clone)]
 pub struct Context {
     pub source: usize,
-    pub names: TypeNames,
+    pub parameters: Parameters,
     pub scopes: Vec<BTreeMap<String, Value>>,
+    /// Whether this is the body of a function or closure in the place of a call.
+    pub is_inlined: bool,
 }
 
 impl Value {
-    /// A scalar expression.
-    pub fn real(text: impl Into<String>) -> Self {
-        Self::Plain(text.into(), Type::Real)
-    }
-
-    /// An expression that is true or false.
-    pub fn bool(text: impl Into<String>) -> Self {
-        Self::Plain(text.into(), Type::Bool)
-    }
-
     /// The type, of what has one.
     pub fn ty(&self) -> Option<Type> {
         match self {
@@ -65,17 +51,11 @@ impl Value {
 
 /// An expression without the parentheses around all of it.
 pub fn bare(text: &str) -> &str {
-    let Some(inside) = text.strip_prefix('(').and_then(|text| text.strip_suffix(')')) else { return text };
     let mut depth = 0;
-    for c in inside.chars() {
-        depth += match c {
-            '(' => 1,
-            ')' => -1,
-            _ => 0,
-        };
-        if depth < 0 {
-            return text;
-        }
-    }
-    inside
+    let mut is_inside = |c: char| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        depth >= 0
+    };
+    let inside = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
+    inside.filter(|inside| inside.chars().all(&mut is_inside)).unwrap_or(text)
 }

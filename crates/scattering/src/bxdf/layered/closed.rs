@@ -18,7 +18,7 @@ use crate::{BsdfSample, BxdfFlags, Directions, Scatter, TransportMode, fr_dielec
 use lanes::{Real, exp, powi};
 use math::{Vec2, Vector3, safe_sqrt, sqr};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
-use spectrum::SampledSpectrum;
+use spectrum::{N, SampledSpectrum};
 use std::f32::consts::PI;
 
 /// R̄: the share of uniform light from below that a smooth coat sends back, after it has crossed
@@ -61,7 +61,7 @@ impl<R: Real, B: CoatedBase<R>> Layered<B, R> {
     ) -> SampledSpectrum<R> {
         let rounds = self.max_depth.div_ceil(2).min(i32::MAX as u32) as i32;
         let mut f = albedo;
-        for i in 0..f.0.len() {
+        for i in 0..N {
             let round = albedo[i] * self.inner;
             f[i] = albedo[i] * (R::one() - powi(round, rounds)) / (R::one() - round);
         }

@@ -361,8 +361,10 @@ impl<R: Real> Scatter<R> for OpenPbr<'_, R> {
     /// The layers pass on what they did before: what is wider loses a little.
     #[inline(always)]
     fn regularize(&mut self, mask: R::Mask) {
-        self.stack.base.regularize(mask);
-        self.stack.coat.regularize(mask);
+        let (mut base, mut coat) = (self.stack.base, self.stack.coat);
+        base.regularize(mask);
+        coat.regularize(mask);
+        (self.stack.base, self.stack.coat) = (base, coat);
     }
 }
 

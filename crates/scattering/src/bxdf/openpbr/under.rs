@@ -136,7 +136,7 @@ impl<R: Real> OpenPbr<'_, R> {
     /// Whether it is one of the two lobes.
     #[inline(always)]
     pub(super) fn is_lobe(&self) -> bool {
-        matches!(self.part, Part::Entering | Part::Leaving)
+        self.part == Part::Entering || self.part == Part::Leaving
     }
 }
 
