@@ -71,6 +71,21 @@ pub struct Kernel {
 #[derive(Debug)]
 pub struct Buffer(pub(crate) wgpu::Buffer);
 
+/// A kernel with its buffers, and how many workgroups it is run in.
+pub(crate) struct Task<'a> {
+    kernel: &'a Kernel,
+    bindings: wgpu::BindGroup,
+    workgroups: Workgroups<'a>,
+}
+
+/// A number of workgroups.
+pub(crate) enum Workgroups<'a> {
+    /// This one.
+    Of([u32; 3]),
+    /// That at a byte of a buffer, which a kernel has written.
+    At(&'a Buffer, u64),
+}
+
 /// A copy that the host can read when a submission is done.
 pub(crate) struct Copied {
     pub copy: wgpu::Buffer,
@@ -170,6 +185,11 @@ impl Device {
         self.checked(Buffer(self.empty(name, bytes, USAGE)))
     }
 
+    /// A buffer of numbers of workgroups, which kernels write for others.
+    pub(crate) fn workgroups(&self, bytes: u64) -> Result<Buffer, GpuError> {
+        self.checked(Buffer(self.empty("workgroups", bytes, USAGE | BufferUsages::INDIRECT)))
+    }
+
     /// A buffer of parameters, which kernels may only read.
     pub fn parameters<T: bytemuck::NoUninit>(&self, contents: &T) -> Result<Buffer, GpuError> {
         let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
@@ -242,31 +262,35 @@ impl Device {
 
     /// Starts a kernel in this many workgroups, after all that was started before.
     pub fn run(&self, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 3]) -> Result<(), GpuError> {
-        self.start(kernel, self.bindings(kernel, buffers), workgroups)
+        let bindings = self.bindings(kernel, buffers);
+        self.run_tasks([&Task { kernel, bindings, workgroups: Workgroups::Of(workgroups) }])
     }
 
-    /// The same with buffers of these bindings: a kernel has those alone that it uses.
-    pub(crate) fn run_bound(
+    /// A kernel on buffers of these bindings: it has those alone that it uses.
+    pub(crate) fn task<'a>(
         &self,
-        kernel: &Kernel,
+        kernel: &'a Kernel,
         buffers: &[(u32, &Buffer)],
-        workgroups: [u32; 3],
-    ) -> Result<(), GpuError> {
-        self.start(kernel, self.bound(kernel, buffers.iter().copied()), workgroups)
+        workgroups: Workgroups<'a>,
+    ) -> Task<'a> {
+        Task { kernel, bindings: self.bound(kernel, buffers.iter().copied()), workgroups }
     }
 
-    fn start(
+    /// Starts kernels one after another, after all that was started before.
+    pub(crate) fn run_tasks<'a>(
         &self,
-        kernel: &Kernel,
-        bindings: wgpu::BindGroup,
-        workgroups: [u32; 3],
+        tasks: impl IntoIterator<Item = &'a Task<'a>>,
     ) -> Result<(), GpuError> {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&kernel.pipeline);
-        pass.set_bind_group(0, &bindings, &[]);
-        let [x, y, z] = workgroups;
-        pass.dispatch_workgroups(x, y, z);
+        for Task { kernel, bindings, workgroups } in tasks {
+            pass.set_pipeline(&kernel.pipeline);
+            pass.set_bind_group(0, bindings, &[]);
+            match workgroups {
+                Workgroups::Of([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+                Workgroups::At(buffer, byte) => pass.dispatch_workgroups_indirect(&buffer.0, *byte),
+            }
+        }
         drop(pass);
         self.queue.submit([encoder.finish()]);
         self.checked(())

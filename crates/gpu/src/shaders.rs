@@ -157,17 +157,19 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
     traced(parts, &[&SUBPATHS[..], &own].concat())
 }
 
-/// The kernels of the stages of path tracing by a wavefront: paths begin, are extended, shaded, and
-/// connected to lights.
-pub fn wavefront(parts: Parts) -> [String; 4] {
-    let stages = [
-        include_str!("../shaders/wavefront/begin.wgsl"),
-        include_str!("../shaders/wavefront/extend.wgsl"),
-        include_str!("../shaders/wavefront/shade.wgsl"),
-        include_str!("../shaders/wavefront/connect.wgsl"),
-    ];
+/// The kernels of the stages of path tracing by a wavefront: paths begin, are extended and shaded,
+/// the next turn is planned, and paths are connected to lights.
+pub fn wavefront(parts: Parts) -> [String; 5] {
+    let queues = include_str!("../shaders/wavefront/queues.wgsl");
     let paths = include_str!("../shaders/wavefront/paths.wgsl");
-    stages.map(|stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, paths, stage]))
+    let stage = |stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, queues, paths, stage]);
+    [
+        stage(include_str!("../shaders/wavefront/begin.wgsl")),
+        stage(include_str!("../shaders/wavefront/extend.wgsl")),
+        stage(include_str!("../shaders/wavefront/shade.wgsl")),
+        [queues, include_str!("../shaders/wavefront/plan.wgsl")].concat(),
+        stage(include_str!("../shaders/wavefront/connect.wgsl")),
+    ]
 }
 
 /// The kernel of the chains of Metropolis light transport.

@@ -1,4 +1,17 @@
-// What paths do at what their rays have hit.
+// What paths do at what their rays have hit, those at materials of a kind after each other.
+
+// The path of a thread in the queues of hits.
+fn path_in_hits(i: u32) -> u32 {
+    var rest = i;
+    for (var queue = HITS; queue < HITS + batch.sorts; queue++) {
+        let length = atomicLoad(&batch.lengths[queue]);
+        if (rest < length) {
+            return batch.queues[queue * batch.places + rest];
+        }
+        rest -= length;
+    }
+    return NO_PATH;
+}
 
 fn kept_hit(path: u32) -> Hit {
     let found = row(HIT, path);
@@ -10,13 +23,14 @@ fn kept_hit(path: u32) -> Hit {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = path_in(batch.turn, id.x);
+    let index = path_in_hits(id.x);
     var goes_on = false;
     var has_shadow = false;
     if (index != NO_PATH) {
-        var path = kept_path(index);
+        let sample = sample_of(index);
+        var path = kept_path(index, sample);
         var lambda = kept_wavelengths(index);
-        var l = numbers(L, index);
+        var l = kept_light(sample);
         var direct: DirectLight;
         goes_on = shade(&path, kept_hit(index), &lambda, &direct, &l);
         has_shadow = !is_black(direct.l);
@@ -27,8 +41,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         }
         // That which was followed here, and the shadow ray.
         rays += 1 + u32(has_shadow);
-        keep_path(index, path, lambda, l);
+        keep_path(index, sample, path, lambda, l);
     }
-    append(1 - batch.turn, index, goes_on, local);
+    append(select(ENDED, PATHS, goes_on), index, index != NO_PATH, local);
     append(SHADOWS, index, has_shadow, local);
 }

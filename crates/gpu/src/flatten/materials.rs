@@ -20,6 +20,7 @@
 
 use description::Span;
 use image::WrapMode;
+use scene::GeometryEntry;
 use scene::material::{
     Coat, ConductorIndex, ConductorMaterial, HairAbsorption, HairMaterial, Material, MaterialEntry,
     MaterialId, NormalMap, Roughness,
@@ -46,8 +47,9 @@ const SUBSURFACE: u32 = 12;
 type Record = (u32, [u32; 8], Vec<u32>);
 
 impl Flattener<'_> {
-    /// The table of the materials' offsets; its offset. Materials that nothing has are left out.
-    pub fn materials(&mut self) -> u32 {
+    /// The table of the materials' offsets; its offset, and the kinds of materials that geometries
+    /// have, a bit for each. Materials that nothing has are left out.
+    pub fn materials(&mut self) -> (u32, u32) {
         let materials = self.scene.materials();
         let mut is_used = vec![false; materials.len()];
         let mut used: Vec<u32> = self.scene.geometries().iter().map(|entry| entry.material.0).collect();
@@ -62,7 +64,12 @@ impl Flattener<'_> {
         for (entry, is_used) in materials.iter().zip(is_used) {
             offsets.push(if is_used { self.entry(entry) } else { 0 });
         }
-        self.slab.add(offsets)
+        let kind = |entry: &GeometryEntry| {
+            let offset: u32 = offsets[entry.material.0 as usize];
+            self.slab.words[offset as usize]
+        };
+        let kinds = self.scene.geometries().iter().fold(0, |kinds, entry| kinds | 1 << kind(entry));
+        (self.slab.add(offsets), kinds)
     }
 
     fn entry(&mut self, entry: &MaterialEntry) -> u32 {

@@ -75,6 +75,10 @@ pub struct Flat {
     pub(crate) parts: Parts,
     /// The radius of the scene's sphere.
     pub(crate) radius: f32,
+    /// The kinds of materials that rays hit, a bit for each.
+    pub(crate) kinds: u32,
+    /// The number of passes that are planned.
+    pub(crate) passes: u32,
 }
 
 /// The first buffer: `World` of `shaders/scene.wgsl`.
@@ -187,7 +191,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.filter = flattener.filter(film.filter());
     head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();
-    head.materials = flattener.materials();
+    let kinds;
+    (head.materials, kinds) = flattener.materials();
     let bvh = flattener.bvh(algorithm);
     head.top = bvh.top;
     (head.lights, head.infinite) = flattener.lights();
@@ -236,7 +241,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     }
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let radius = scene.sphere().radius;
-    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts, radius };
+    let passes = algorithm.passes(sampler);
+    let flat = Flat { bvh, head, tables: slab.words, texels: texels.words, parts, radius, kinds, passes };
     if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
 }
 

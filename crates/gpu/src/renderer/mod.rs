@@ -78,7 +78,7 @@ pub enum Schedule {
     /// A thread follows a whole path.
     #[default]
     Megakernel,
-    /// All paths go through each stage together.
+    /// Paths go through each stage together, and new ones take the places of those that end.
     Wavefront,
 }
 
@@ -134,13 +134,18 @@ impl Renderer {
                 photons = Some(Photons::new(&scene, (desc, *seed), pixels, flat.radius)?);
             }
         }
-        let strips = strips(film.pixel_bounds(), splats, most_pixels(scene.device()));
-        let count = strips.map(|strip| strip.area()).max().unwrap_or(0);
+        let most_pixels = most_pixels(scene.device());
+        let areas: Vec<usize> =
+            strips(film.pixel_bounds(), splats, most_pixels).map(|strip| strip.area()).collect();
+        let count = areas.iter().copied().max().unwrap_or(0);
         let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
         // Its stages do not have what few scenes have.
         let Parts { media, subsurface, lenses, .. } = flat.parts;
         let maker = if schedule == Schedule::Wavefront && is_path && !(media || subsurface || lenses) {
-            Maker::Wavefront(Wavefront::new(&kernels, flat, count)?)
+            // A small picture has several samples of each pixel together.
+            let samples = if areas.len() == 1 { (most_pixels / count.max(1)).max(1) } else { 1 };
+            let size = wavefront::Size { pixels: count, samples: samples as u32 };
+            Maker::Wavefront(Wavefront::new(&kernels, flat, size)?)
         } else {
             Maker::Megakernel(kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?)
         };

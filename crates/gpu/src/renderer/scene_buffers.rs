@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Kernels;
-use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::device::{Buffer, Device, GpuError, Kernel, Task, Workgroups};
 use crate::flatten::Flat;
 
 /// The buffers of a scene, beside which kernels have two of their own.
@@ -40,21 +40,21 @@ impl SceneBuffers {
         [batch, results]: [&Buffer; 2],
         workgroups: [u32; 2],
     ) -> Result<(), GpuError> {
-        self.run_without(&[], kernel, [batch, results], workgroups)
+        let [x, y] = workgroups;
+        self.device().run_tasks([&self.task(&[], kernel, [batch, results], Workgroups::Of([x, y, 1]))])
     }
 
-    /// The same of a kernel that does not use the buffers of some bindings.
-    pub fn run_without(
+    /// The same, not yet started, of a kernel that does not use the buffers of some bindings.
+    pub fn task<'a>(
         &self,
         unused: &[u32],
-        kernel: &Kernel,
+        kernel: &'a Kernel,
         [batch, results]: [&Buffer; 2],
-        workgroups: [u32; 2],
-    ) -> Result<(), GpuError> {
+        workgroups: Workgroups<'a>,
+    ) -> Task<'a> {
         let [head, nodes, triangles, items, tables, texels] = self.buffers.each_ref();
-        let [x, y] = workgroups;
         let all = [head, nodes, triangles, items, tables, batch, results, texels];
         let used = (0..).zip(all).filter(|(binding, _)| !unused.contains(binding));
-        self.device().run_bound(kernel, &used.collect::<Vec<_>>(), [x, y, 1])
+        self.device().task(kernel, &used.collect::<Vec<_>>(), workgroups)
     }
 }

@@ -1,70 +1,134 @@
 //! Paths by stages: `shaders/wavefront/`.
 //!
-//! The stages of the paths of a strip follow each other until no path is left: their rays are
-//! extended to the next surface, all are shaded there, and their shadow rays are traced [Laine
-//! 2013]. Paths that go on are appended to the queue of the next stage, so that those that have
-//! ended leave no gap [van Antwerpen 2011b]. The megakernel does the same to each path by one
-//! thread, by the same functions.
+//! In each turn of the stages paths begin, their rays are extended to the next surface, all are
+//! shaded there, and their shadow rays are traced [Laine 2013]. Paths that go on are appended to
+//! the queue of the next turn, and new ones take the places of those that have ended, so that
+//! stages are full as long as there are samples [van Antwerpen 2011b]. Before they are shaded,
+//! paths are sorted by the kinds of the materials that they have hit. The megakernel does the same
+//! to each path by one thread, by the same functions.
+//!
+//! What is found for a sample does not depend on its place, nor on the order in queues. The device
+//! counts the workgroups of each stage, and the host reads once in several turns whether any path
+//! is left.
 
-use std::sync::Arc;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use math::Bounds2i;
 
 use super::kernels::Kernels;
 use super::scene_buffers::SceneBuffers;
 use super::strip::PixelSample;
-use crate::device::{Buffer, Copied, GpuError, Kernel};
+use crate::device::{Buffer, Copied, GpuError, Kernel, Workgroups};
 use crate::flatten::Flat;
 use crate::shaders;
 
 /// Rows of the table of paths, of four words.
-const ROWS: usize = 20;
+const ROWS: usize = 18;
 
-/// Threads of a workgroup.
-const WORKGROUP: u32 = 64;
+/// The queues of `shaders/wavefront/queues.wgsl`: before those of kinds of materials, and the most.
+const QUEUES: usize = 4;
+const MOST_QUEUES: usize = 17;
 
-/// The bindings that camera rays need nothing of: trees, triangles, shapes and texels; and that of
-/// trees, which no ray of a shaded point is traced through.
+/// The queue of places of paths that have ended.
+const ENDED: usize = 1;
+
+/// The most paths at a time, by a GPU in software fewer.
+const MAX_PATHS: usize = 1 << 18;
+const MAX_PATHS_OF_SOFTWARE: usize = 1 << 14;
+
+/// Turns between those after which the host reads what is left.
+const TURNS: usize = 4;
+
+/// The bytes of a number of workgroups, and of those for paths that begin, for all paths, and for
+/// shadow rays.
+const WORKGROUPS: u64 = 16;
+const ALL_WORKGROUPS: u64 = 3 * WORKGROUPS;
+
+/// The bindings that paths need nothing of to begin: trees, triangles, shapes and texels; that of
+/// trees, which no ray of a shaded point is traced through; and those of a scene.
 const WITHOUT_RAYS: [u32; 4] = [1, 2, 3, 7];
 const WITHOUT_TREES: [u32; 1] = [1];
+const WITHOUT_SCENE: [u32; 6] = [0, 1, 2, 3, 4, 7];
 
-/// What the kernels are to do: `Batch` of `shaders/wavefront/paths.wgsl`, which the queues follow.
+/// What the kernels are to do: `Batch` of `shaders/wavefront/queues.wgsl`, which the queues follow.
 #[repr(C)]
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
 struct Batch {
     low: [u32; 2],
     size: [u32; 2],
     index: u32,
-    count: u32,
-    turn: u32,
-    unused: u32,
-    /// Of the two queues of paths, and of that of shadow rays.
-    lengths: [u32; 4],
+    samples: u32,
+    places: u32,
+    kinds: u32,
+    sorts: u32,
+    first: u32,
+    beginning: u32,
+    going_on: u32,
+    shadows: u32,
+    lengths: [u32; MOST_QUEUES],
+}
+
+/// The samples of a strip that are made together.
+#[derive(Clone, Copy)]
+pub(super) struct Size {
+    /// The most pixels.
+    pub pixels: usize,
+    /// The most samples of each.
+    pub samples: u32,
 }
 
 /// The kernels of the stages, and the paths of a strip.
 pub(super) struct Wavefront {
-    stages: [Arc<Kernel>; 4],
+    stages: [Arc<Kernel>; 5],
     batch: Buffer,
     table: Buffer,
+    workgroups: Buffer,
+    places: usize,
+    /// The kinds of materials, a bit for each.
+    kinds: u32,
+    /// The number of samples of a pixel that are planned, and made together.
+    planned: u32,
+    together: u32,
+    /// The indices of the samples that are in the table.
+    made: Mutex<Range<u32>>,
     bytes: usize,
 }
 
 impl Wavefront {
-    /// For strips of at most so many pixels.
-    pub fn new(kernels: &Kernels, flat: &Flat, pixels: usize) -> Result<Self, GpuError> {
-        let [begin, extend, shade, connect] = shaders::wavefront(flat.parts);
+    /// For strips of at most this size.
+    pub fn new(kernels: &Kernels, flat: &Flat, size: Size) -> Result<Self, GpuError> {
+        let [begin, extend, shade, plan, connect] = shaders::wavefront(flat.parts);
         let stages = [
             kernels.get("begin", begin)?,
             kernels.get("extend", extend)?,
             kernels.get("shade", shade)?,
+            kernels.get("plan", plan)?,
             kernels.get("connect", connect)?,
         ];
-        let (batch_bytes, table_bytes) = (size_of::<Batch>() + 12 * pixels.max(1), 16 * ROWS * pixels.max(1));
         let device = kernels.device();
+        let most = if device.is_software() { MAX_PATHS_OF_SOFTWARE } else { MAX_PATHS };
+        let together = size.samples.min(flat.passes).max(1);
+        let samples = size.pixels.max(1) * together as usize;
+        let places = samples.min(most);
+        let queues = QUEUES + flat.kinds.count_ones() as usize;
+        let batch_bytes = size_of::<Batch>() + 4 * queues * places;
+        let table_bytes = samples * size_of::<PixelSample>() + 16 * ROWS * places;
         let batch = device.zeros("queues of paths", batch_bytes as u64)?;
         let table = device.zeros("paths", table_bytes as u64)?;
-        Ok(Self { stages, batch, table, bytes: batch_bytes + table_bytes })
+        let workgroups = device.workgroups(ALL_WORKGROUPS)?;
+        Ok(Self {
+            stages,
+            batch,
+            table,
+            workgroups,
+            places,
+            kinds: flat.kinds,
+            planned: flat.passes,
+            together,
+            made: Mutex::default(),
+            bytes: batch_bytes + table_bytes + ALL_WORKGROUPS as usize,
+        })
     }
 
     /// The bytes of its buffers.
@@ -72,39 +136,65 @@ impl Wavefront {
         self.bytes
     }
 
-    /// Makes the samples of an index of a strip, row by row, and starts to copy them.
+    /// Makes the samples of an index of a strip, row by row, and starts to copy them. Those of the
+    /// next indices may be made with them, for later calls.
     pub fn run(&self, index: u32, strip: &Bounds2i, scene: &SceneBuffers) -> Result<Copied, GpuError> {
-        let [begin, extend, shade, connect] = &self.stages;
-        let (device, count) = (scene.device(), strip.area() as u32);
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        // Strips are made one index at a time where there are several.
+        if self.together == 1 || !made.contains(&index) {
+            let end = index.saturating_add(self.together).min(self.planned.max(index.saturating_add(1)));
+            *made = 0..0;
+            self.make(index..end, strip, scene)?;
+            *made = index..end;
+        }
+        let bytes = strip.area() as u64 * size_of::<PixelSample>() as u64;
+        scene.device().copy(&self.table, u64::from(index - made.start) * bytes, bytes)
+    }
+
+    /// Makes the samples of these indices.
+    fn make(&self, indices: Range<u32>, strip: &Bounds2i, scene: &SceneBuffers) -> Result<(), GpuError> {
+        let device = scene.device();
+        let samples = strip.area() as u32 * indices.len() as u32;
+        // Paths at one kind are not sorted.
+        let kinds = self.kinds.count_ones();
         let mut batch = Batch {
             low: strip.min.map(|x| x as u32),
             size: [strip.width() as u32, strip.height() as u32],
-            index,
-            count,
-            lengths: [count, 0, 0, 0],
+            index: indices.start,
+            samples,
+            places: samples.min(self.places as u32),
+            kinds: self.kinds,
+            sorts: if kinds > 1 { 1 + kinds } else { 1 },
             ..Batch::default()
         };
-        let start = |kernel, unused: &[u32], threads: u32| {
-            let buffers = [&self.batch, &self.table];
-            scene.run_without(unused, kernel, buffers, [threads.div_ceil(WORKGROUP), 1])
-        };
+        batch.lengths[ENDED] = batch.places;
         device.write(&self.batch, &[batch])?;
-        start(begin, &WITHOUT_RAYS, count)?;
-        while let length @ 1.. = batch.lengths[batch.turn as usize] {
-            start(extend, &[], length)?;
-            start(shade, &WITHOUT_TREES, length)?;
-            let found: Vec<Batch> = device.read_part(&self.batch, 0, 1)?;
-            batch.lengths = found.first().map_or([0; 4], |batch| batch.lengths);
-            if let shadows @ 1.. = batch.lengths[2] {
-                start(connect, &[], shadows)?;
+        let [begin, extend, shade, plan, connect] = &self.stages;
+        let paths = [&self.batch, &self.table];
+        let counted = |count| Workgroups::At(&self.workgroups, WORKGROUPS * count);
+        let plans = [&self.batch, &self.workgroups];
+        let plan = &scene.task(&WITHOUT_SCENE, plan, plans, Workgroups::Of([1; 3]));
+        let turn = [
+            &scene.task(&WITHOUT_RAYS, begin, paths, counted(0)),
+            &scene.task(&[], extend, paths, counted(1)),
+            &scene.task(&WITHOUT_TREES, shade, paths, counted(1)),
+            plan,
+            &scene.task(&[], connect, paths, counted(2)),
+        ];
+        device.run_tasks([plan])?;
+        let mut before = None;
+        loop {
+            device.run_tasks(std::iter::repeat_n(turn, TURNS).flatten())?;
+            let head = device.copy(&self.batch, 0, size_of::<Batch>() as u64)?;
+            // While the host reads this, the device does the next turns.
+            let Some(head) = before.replace(head) else { continue };
+            let left = device.contents(&head, |bytes| {
+                let head: &Batch = bytemuck::from_bytes(bytes);
+                head.going_on + head.beginning
+            })?;
+            if left == 0 {
+                return Ok(());
             }
-            // The queue that was read is the next one to be filled.
-            batch.lengths[batch.turn as usize] = 0;
-            batch.lengths[2] = 0;
-            batch.turn = 1 - batch.turn;
-            device.write(&self.batch, &[batch])?;
         }
-        // The first two rows.
-        device.copy(&self.table, 0, u64::from(count) * size_of::<PixelSample>() as u64)
     }
 }

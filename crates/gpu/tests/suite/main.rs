@@ -24,6 +24,7 @@ mod textures;
 mod trace;
 mod twins;
 mod validation;
+mod wavefront;
 
 use std::io::Write;
 
