@@ -23,6 +23,9 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
     {
         let Compiled { scene, desc } = compile(text, assets, size)?;
         let passes = |on_device: Option<Schedule>, passes: u32| {
+            // Samples that are not asked for are not made with the others.
+            let mut desc = desc.clone();
+            desc.sampler.value.kind.set_samples_per_pixel(passes);
             let job = Job::of_scene(scene.clone(), &desc).map_err(|errors| messages(&errors))?;
             let mut job = job.job;
             if let Some(schedule) = on_device {
@@ -30,10 +33,10 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
             }
             let mut run =
                 |passes| job.session.run(passes, &Limits::default(), &Control::default(), &mut |_| ());
-            // The first pass warms up.
-            run(0..1).map_err(|error| format!("{error:?}"))?;
+            // A pass that is not planned warms up.
+            run(passes..1 + passes).map_err(|error| format!("{error:?}"))?;
             let begin = Instant::now();
-            run(1..1 + passes).map_err(|error| format!("{error:?}"))?;
+            run(0..passes).map_err(|error| format!("{error:?}"))?;
             Ok::<_, String>(f64::from(passes) / begin.elapsed().as_secs_f64())
         };
         let [gpu, wavefront] = [Schedule::Megakernel, Schedule::Wavefront]

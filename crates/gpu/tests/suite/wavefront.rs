@@ -1,5 +1,5 @@
-//! Paths by stages: what is found for a sample is that of the megakernel, and does not depend on the
-//! paths around it.
+//! Paths by stages: what is found for a sample is that of the megakernel, and does not depend on
+//! the paths around it.
 
 use std::path::Path;
 
