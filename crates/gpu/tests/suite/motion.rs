@@ -59,7 +59,7 @@ AttributeEnd
 
 /// Lanterns of all shapes that emit, turned, stretched and mirrored, alone and in strings, at rest
 /// and in motion, also within what moves.
-const LANTERNS: &str = r#"
+pub const LANTERNS: &str = r#"
 LookAt 0 -5 2  0 0 0.5  0 0 1
 Camera "perspective" "float fov" 45 "float shutterclose" 1
 Film "rgb"

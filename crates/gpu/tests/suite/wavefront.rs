@@ -10,6 +10,7 @@ use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::View;
 
+use crate::motion::LANTERNS;
 use crate::pictures::Case;
 use crate::texts::MEDLEY;
 
@@ -41,6 +42,11 @@ const LARGE: [u32; 2] = [160, 120];
 fn a_wavefront_has_the_picture_of_the_megakernel() {
     assert_same("cornell-box", &Case::named("cornell-box"));
     assert_same("medley", &medley(LARGE));
+}
+
+#[test]
+fn a_wavefront_has_the_motion_and_the_lights_of_the_megakernel() {
+    assert_same("lanterns", &Case::of_text(LANTERNS));
 }
 
 /// The samples of a part of the picture begin, and are sorted, among others than in the whole.
