@@ -1,6 +1,6 @@
 // The buffers of a scene, and the places of random numbers.
 //
-// Kernels have bindings of their own at 5 and 6. `world` has what Rust calls a `Head`. Tables are
+// Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` has what Rust calls a `Head`. Tables are
 // words; a record refers to another by the index of its first word. The files of `src/flatten/`
 // describe the records.
 
@@ -33,7 +33,6 @@ struct World {
 }
 
 @group(0) @binding(0) var<storage, read_write> world: World;
-@group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
 @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
 @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
 @group(0) @binding(4) var<storage, read_write> tables: array<u32>;

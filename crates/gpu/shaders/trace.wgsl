@@ -1,48 +1,11 @@
-// Rays through the trees of a world; `shapes.wgsl` has those that meet what is not a triangle.
-//
-// A kernel that traces declares the buffers `world`, `nodes`, `triangles` and `items`; `bvh/` has
-// their formats. It has `accepts`, which says whether a hit on a surface that is cut out counts;
-// `HAS_CURVES`, whether there are curves; `ribbon_normal`, the normal of one; `HAS_MOTION`, whether
-// instances move; and `moved_rows`, the matrix of one at the time of rays.
+// Rays through the trees of a world, whose `nodes` a kernel declares beside what `hits.wgsl` needs.
 
 // The entries of a ray's stack. They are few, because all are set to zero before each ray.
 const STACK = 24u;
 
-const NO_HIT = 0xffffffffu;
-
-// The bits of references: leaves, leaves of items, the number of primitives.
-const LEAF = 0x80000000u;
-const ITEMS = 0x40000000u;
-const COUNT_BITS = 5u;
-
 // The bit of a node on the stack of which some children wait together: those of some bits, instead
 // of a distance.
 const TOGETHER = 0x40000000u;
-
-struct Hit {
-    t: f32,
-    // Barycentric coordinates of corners 1 and 2, or the parameters of a patch.
-    uv: vec2f,
-    geometry: u32,
-    primitive: u32,
-    // The index of the triangle or of the item.
-    place: u32,
-    is_triangle: bool,
-    // The index of the instance's item; `NO_HIT` outside of instances.
-    instance: u32,
-    found: bool,
-}
-
-// What is kept of a hit while a ray is traced; `place` is `NO_HIT` where nothing is found.
-struct Nearest {
-    t: f32,
-    uv: vec2f,
-    place: u32,
-    is_triangle: bool,
-    instance: u32,
-    // Whether it is to be accepted.
-    is_cut_out: bool,
-}
 
 // A ray prepared for boxes.
 struct Slabs {
@@ -50,13 +13,6 @@ struct Slabs {
     o: vec3f,
     // A bound of the rounding errors of planes, of the boxes' distances, and of the triangle test.
     margin: vec3f,
-}
-
-// A ray prepared for triangles: translated and sheared so that it becomes the z axis.
-struct Sheared {
-    axis: u32,
-    o: vec3f,
-    shear: vec3f,
 }
 
 fn slabs(o: vec3f, d: vec3f, size: f32) -> Slabs {
@@ -67,79 +23,6 @@ fn slabs(o: vec3f, d: vec3f, size: f32) -> Slabs {
     let inverse = 1.0 / select(d, signs * least, abs(d) < least);
     let bound = size + max(abs(o.x), max(abs(o.y), abs(o.z)));
     return Slabs(inverse, o, abs(inverse) * (bound * 2e-6));
-}
-
-fn permuted(v: vec3f, axis: u32) -> vec3f {
-    return select(select(v, v.zxy, axis == 1), v.yzx, axis == 0);
-}
-
-fn sheared(o: vec3f, d: vec3f) -> Sheared {
-    let size = abs(d);
-    let axis = select(select(2u, 1u, size.y > size.z), 0u, size.x > size.y && size.x > size.z);
-    let p = permuted(d, axis);
-    return Sheared(axis, permuted(o, axis), vec3f(-p.x, -p.y, 1) / p.z);
-}
-
-fn sheared_point(ray: Sheared, p: vec3f) -> vec3f {
-    let v = permuted(p, ray.axis) - ray.o;
-    return vec3f(ray.shear.x * v.z + v.x, ray.shear.y * v.z + v.y, v.z * ray.shear.z);
-}
-
-// Twice the area of the origin with an edge. It is computed from the end that comes first, so that
-// both triangles at the edge have opposite values, however it is rounded or contracted.
-fn edge_function(p: vec2f, q: vec2f) -> f32 {
-    let swapped = q.x < p.x || (q.x == p.x && q.y < p.y);
-    let a = select(p, q, swapped);
-    let b = select(q, p, swapped);
-    let area = a.x * b.y - a.y * b.x;
-    return select(area, -area, swapped);
-}
-
-// Takes the hit on a triangle if it is the nearest so far: at 0 < t < `best.t`, or at the same
-// distance as another hit and before it.
-fn intersect_triangle(ray: Sheared, index: u32, instance: u32, best: ptr<function, Nearest>) {
-    let corner = array(triangles[3 * index], triangles[3 * index + 1], triangles[3 * index + 2]);
-    let a = sheared_point(ray, bitcast<vec3f>(corner[0].xyz));
-    let b = sheared_point(ray, bitcast<vec3f>(corner[1].xyz));
-    let c = sheared_point(ray, bitcast<vec3f>(corner[2].xyz));
-    let e = vec3f(edge_function(b.xy, c.xy), edge_function(c.xy, a.xy), edge_function(a.xy, b.xy));
-    if (any(e < vec3f()) && any(e > vec3f())) {
-        return;
-    }
-    let determinant = e.x + e.y + e.z;
-    if (determinant == 0) {
-        return;
-    }
-    let inverse = 1 / determinant;
-    let t = (e.x * a.z + (e.y * b.z + e.z * c.z)) * inverse;
-    if (!(t > 0 && t <= (*best).t)) {
-        return;
-    }
-    // A bound of the error of t ([Pharr 2023 §6.8.7]); what is nearer may be behind.
-    let x = max(abs(a.x), max(abs(b.x), abs(c.x)));
-    let y = max(abs(a.y), max(abs(b.y), abs(c.y)));
-    let z = max(abs(a.z), max(abs(b.z), abs(c.z)));
-    let largest = max(abs(e.x), max(abs(e.y), abs(e.z)));
-    let dx = 2.9802322e-7 * (x + z);
-    let dy = 2.9802322e-7 * (y + z);
-    let de = 2 * (1.1920929e-7 * x * y + dy * x + dx * y);
-    let error = 3 * (1.7881393e-7 * largest * z + de * z + largest * (1.7881393e-7 * z)) * abs(inverse);
-    if (!(t > error)) {
-        return;
-    }
-    if (t == (*best).t) {
-        let before = (*best).place;
-        if (before == NO_HIT || !(*best).is_triangle || instance != (*best).instance) {
-            return;
-        }
-        let geometry = triangles[3 * before].w;
-        let is_first = corner[0].w < geometry
-            || (corner[0].w == geometry && corner[1].w < triangles[3 * before + 1].w);
-        if (!is_first) {
-            return;
-        }
-    }
-    *best = Nearest(t, e.yz * inverse, index, true, instance, corner[2].w == 1);
 }
 
 // The distances of four planes across each axis, whose numbers of steps are bytes. Children are
@@ -202,41 +85,6 @@ fn take_four(
 fn bits(are_set: vec4<bool>) -> u32 {
     let bits = select(vec4u(), vec4u(1, 2, 4, 8), are_set);
     return (bits.x | bits.y) | (bits.z | bits.w);
-}
-
-// The id of the innermost instance that is hit; `NO_HIT` outside of instances.
-fn instance_id(hit: Hit) -> u32 {
-    if (hit.instance == NO_HIT) {
-        return NO_HIT;
-    }
-    return items[5 * hit.instance + 3].w;
-}
-
-// All of a hit.
-fn whole(hit: Nearest) -> Hit {
-    var whole = Hit(hit.t, hit.uv, 0, 0, hit.place, hit.is_triangle, hit.instance, true);
-    if (hit.place == NO_HIT) {
-        whole.found = false;
-    } else if (hit.is_triangle) {
-        whole.geometry = triangles[3 * hit.place].w;
-        whole.primitive = triangles[3 * hit.place + 1].w;
-    } else {
-        let ids = items[5 * hit.place + 4];
-        whole.geometry = ids.y;
-        whole.primitive = ids.z;
-    }
-    return whole;
-}
-
-// The rows of the matrix that takes rays into an instance.
-fn instance_rows(item: u32) -> array<vec4f, 3> {
-    let placed = items[5 * item + 4];
-    if (HAS_MOTION && placed.z != 0) {
-        return moved_rows(placed.y, placed.z);
-    }
-    return array(
-        bitcast<vec4f>(items[5 * item]), bitcast<vec4f>(items[5 * item + 1]), bitcast<vec4f>(items[5 * item + 2]),
-    );
 }
 
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use wgpu::{BufferUsages, ComputePassTimestampWrites, PollType, QuerySet, QueryType};
 
-use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::device::{Binding, Buffer, Device, GpuError, Kernel};
 
 /// The most kernels in a sequence.
 const MOST: u32 = 64;
@@ -58,7 +58,13 @@ impl<'a> Commands<'a> {
     }
 
     /// Runs a kernel as a part of a stage, after those before.
-    pub fn run(&mut self, stage: usize, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 2]) {
+    pub fn run<B: Binding + ?Sized>(
+        &mut self,
+        stage: usize,
+        kernel: &Kernel,
+        buffers: &[&B],
+        workgroups: [u32; 2],
+    ) {
         if self.timer.clock.is_none() && self.stages.last().is_some_and(|last| *last != stage) {
             self.flush();
         }

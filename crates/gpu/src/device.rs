@@ -8,7 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 use wgpu::util::DeviceExt;
-use wgpu::{BufferUsages, DeviceType, InstanceFlags, Limits};
+use wgpu::{
+    BindingResource, BufferUsages, DeviceType, ExperimentalFeatures, Features, InstanceFlags, Limits,
+};
+
+use crate::bvh::MOST_FOR_RAY_QUERIES;
 
 /// What buffers are used for.
 const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
@@ -57,6 +61,7 @@ pub struct Device {
     pub(crate) queue: wgpu::Queue,
     name: String,
     is_software: bool,
+    has_ray_queries: bool,
     /// The first fault that the driver has reported.
     fault: Arc<Mutex<Option<GpuError>>>,
 }
@@ -86,6 +91,19 @@ pub(crate) enum Workgroups<'a> {
     At(&'a Buffer, u64),
 }
 
+/// What kernels are run on.
+pub trait Binding {
+    /// For the library.
+    #[doc(hidden)]
+    fn resource(&self) -> BindingResource<'_>;
+}
+
+impl Binding for Buffer {
+    fn resource(&self) -> BindingResource<'_> {
+        self.0.as_entire_binding()
+    }
+}
+
 /// A copy that the host can read when a submission is done.
 pub(crate) struct Copied {
     pub copy: wgpu::Buffer,
@@ -96,6 +114,16 @@ impl Device {
     /// Opens the GPU whose name contains `name`, without regard to case; the fastest kind there is
     /// if that is empty. A software renderer is the last choice.
     pub fn open(name: &str) -> Result<Self, GpuError> {
+        Self::with(name, Features::empty())
+    }
+
+    /// The same, for rays by the ray queries of its hardware, if that has any.
+    pub fn for_ray_queries(name: &str) -> Result<Self, GpuError> {
+        Self::with(name, Features::EXPERIMENTAL_RAY_QUERY)
+    }
+
+    /// The same with these features, if it has them.
+    fn with(name: &str, features: Features) -> Result<Self, GpuError> {
         // Without the names and the places of the source in what drivers get, which take longer to
         // find than all else of a shader's translation.
         let flags = InstanceFlags::default().difference(InstanceFlags::DEBUG);
@@ -113,16 +141,32 @@ impl Device {
         let is_it = |known: &String| known.to_lowercase().contains(&name.to_lowercase());
         let Some(index) = names.iter().position(is_it) else { return Err(GpuError::NoDevice(names)) };
         let (adapter, name) = (&adapters[index], names[index].clone());
+        let features = features & adapter.features();
+        let has_ray_queries = features.contains(Features::EXPERIMENTAL_RAY_QUERY);
         // The limits of WebGPU, so that what runs on one GPU runs on all, but for sizes.
         let limits = adapter.limits();
+        let own = Limits {
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            ..Limits::default()
+        };
+        let most = MOST_FOR_RAY_QUERIES as u32;
+        let required_limits = if has_ray_queries {
+            Limits {
+                max_blas_primitive_count: most,
+                max_tlas_instance_count: most,
+                max_blas_geometry_count: 1,
+                ..own.using_minimum_supported_acceleration_structure_values()
+            }
+        } else {
+            own
+        };
+        let experimental_features = if has_ray_queries { experimental() } else { Default::default() };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("alhazen"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
-            required_limits: Limits {
-                max_buffer_size: limits.max_buffer_size,
-                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-                ..Limits::default()
-            },
+            required_features: adapter.features() & Features::TIMESTAMP_QUERY | features,
+            required_limits,
+            experimental_features,
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -145,7 +189,7 @@ impl Device {
         }));
         device.set_device_lost_callback(move |_, reason| keep_loss(GpuError::Lost(reason)));
         let is_software = adapter.get_info().device_type == DeviceType::Cpu;
-        Ok(Self { device, queue, name, is_software, fault })
+        Ok(Self { device, queue, name, is_software, has_ray_queries, fault })
     }
 
     /// The GPU's name.
@@ -156,6 +200,11 @@ impl Device {
     /// Whether it is a program that runs on the CPU.
     pub fn is_software(&self) -> bool {
         self.is_software
+    }
+
+    /// Whether it was opened for rays by ray queries, and has them.
+    pub fn has_ray_queries(&self) -> bool {
+        self.has_ray_queries
     }
 
     /// The most bytes of a buffer.
@@ -173,8 +222,8 @@ impl Device {
         // Bindings are not empty.
         let bytes: &[u8] = if contents.is_empty() { &[0; 16] } else { bytemuck::cast_slice(contents) };
         self.fits(name, bytes.len() as u64)?;
-        let descriptor =
-            wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage: USAGE };
+        let usage = if self.has_ray_queries { USAGE | BufferUsages::BLAS_INPUT } else { USAGE };
+        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(name), contents: bytes, usage };
         let buffer = self.device.create_buffer_init(&descriptor);
         self.checked(Buffer(buffer))
     }
@@ -261,7 +310,12 @@ impl Device {
     }
 
     /// Starts a kernel in this many workgroups, after all that was started before.
-    pub fn run(&self, kernel: &Kernel, buffers: &[&Buffer], workgroups: [u32; 3]) -> Result<(), GpuError> {
+    pub fn run<B: Binding + ?Sized>(
+        &self,
+        kernel: &Kernel,
+        buffers: &[&B],
+        workgroups: [u32; 3],
+    ) -> Result<(), GpuError> {
         let bindings = self.bindings(kernel, buffers);
         self.run_tasks([&Task { kernel, bindings, workgroups: Workgroups::Of(workgroups) }])
     }
@@ -270,7 +324,7 @@ impl Device {
     pub(crate) fn task<'a>(
         &self,
         kernel: &'a Kernel,
-        buffers: &[(u32, &Buffer)],
+        buffers: &[(u32, &dyn Binding)],
         workgroups: Workgroups<'a>,
     ) -> Task<'a> {
         Task { kernel, bindings: self.bound(kernel, buffers.iter().copied()), workgroups }
@@ -297,19 +351,17 @@ impl Device {
     }
 
     /// What a kernel is run on.
-    pub(crate) fn bindings(&self, kernel: &Kernel, buffers: &[&Buffer]) -> wgpu::BindGroup {
+    pub(crate) fn bindings<B: Binding + ?Sized>(&self, kernel: &Kernel, buffers: &[&B]) -> wgpu::BindGroup {
         self.bound(kernel, (0..).zip(buffers.iter().copied()))
     }
 
-    fn bound<'a>(
+    fn bound<'a, B: Binding + ?Sized + 'a>(
         &self,
         kernel: &Kernel,
-        buffers: impl Iterator<Item = (u32, &'a Buffer)>,
+        buffers: impl Iterator<Item = (u32, &'a B)>,
     ) -> wgpu::BindGroup {
-        let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.0.as_entire_binding(),
-        });
+        let entries =
+            buffers.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.resource() });
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &kernel.pipeline.get_bind_group_layout(0),
@@ -376,4 +428,12 @@ impl Device {
             Some(_) => fault.take().map_or(Ok(result), Err),
         }
     }
+}
+
+/// That ray queries may be asked for.
+#[allow(unsafe_code)]
+fn experimental() -> ExperimentalFeatures {
+    // SAFETY: what is promised is to know that these calls of the library may have faults that are
+    // undefined behaviour. They are made only for who chooses ray queries.
+    unsafe { ExperimentalFeatures::enabled() }
 }

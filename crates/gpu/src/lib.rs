@@ -20,12 +20,14 @@ mod raster;
 mod realtime;
 mod renderer;
 pub mod shaders;
+mod structure;
 
 pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
-pub use device::{Buffer, Device, GpuError, Kernel};
+pub use device::{Binding, Buffer, Device, GpuError, Kernel};
 pub use dynamic::{Moving, MovingError, Sorter, Start, Update};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
 pub use renderer::{FindFirstHit, Kernels, PassError, Renderer, Schedule};
+pub use structure::Trees;

@@ -10,8 +10,25 @@ const BY_HAND: [&str; 2] =
     [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/samplers.wgsl")];
 
 /// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
-pub const TRACE: &str =
-    concat!(include_str!("../shaders/trace.wgsl"), include_str!("../shaders/shapes.wgsl"));
+pub const TRACE: &str = concat!(
+    include_str!("../shaders/hits.wgsl"),
+    include_str!("../shaders/trace.wgsl"),
+    include_str!("../shaders/shapes.wgsl")
+);
+
+/// The same by ray queries, for kernels that begin with [`ENABLE_RAY_QUERIES`].
+pub const RAY_QUERY: &str = concat!(
+    include_str!("../shaders/hits.wgsl"),
+    include_str!("../shaders/ray_query.wgsl"),
+    include_str!("../shaders/shapes.wgsl")
+);
+
+/// What is first in a shader with ray queries.
+pub const ENABLE_RAY_QUERIES: &str = "enable wgpu_ray_query;\n";
+
+/// What rays are traced through.
+const NODES: &str = "@group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;\n";
+const STRUCTURE: &str = "@group(0) @binding(1) var structure: acceleration_structure;\n";
 
 /// The laws, translated from Rust by `cargo xtask wgsl`.
 macro_rules! laws {
@@ -40,8 +57,8 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 19] = plumbing! {
-    "scene" "trace" "shapes" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
+const PLUMBING: [&str; 17] = plumbing! {
+    "scene" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
     "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "placed_lights" "light_choices" "cameras"
 };
 
@@ -131,6 +148,8 @@ pub struct Parts {
     pub media: bool,
     /// Diffuse surfaces instead of all others.
     pub force_diffuse: bool,
+    /// Rays by the ray queries of the hardware.
+    pub ray_queries: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm; of Metropolis light transport,
@@ -307,6 +326,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         rare_samplers,
         media,
         force_diffuse,
+        ray_queries,
     } = parts;
     let has = format!(
         "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
@@ -334,8 +354,10 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     } else {
         include_str!("../shaders/portals_none.wgsl")
     };
+    let (head, rays) =
+        if ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
     let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera, skies];
-    with_laws(&[&PLUMBING[..], &of_scene, texts].concat())
+    head.to_owned() + &with_laws(&[&PLUMBING[..], &rays, &of_scene, texts].concat())
 }
 
 /// The text of a file of `shaders/dynamic/`.

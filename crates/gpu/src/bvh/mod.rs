@@ -4,7 +4,7 @@
 //! their leaves, [`node`] collapses these into nodes of eight children, whose boxes are quantised
 //! to eight bits a plane. Quantised boxes contain the exact ones. A group has a tree of triangles
 //! and one of items, which are instances and single shapes ([`item`]). `shaders/trace.wgsl`
-//! traverses them.
+//! traverses them. [`structure`] has the same for ray queries, whose trees are the driver's.
 //!
 //! A reference to a child or root is a node's index, or a leaf: a range of triangles or items.
 
@@ -12,15 +12,17 @@ mod binary;
 mod item;
 mod node;
 mod paths;
+mod structure;
 
 use std::ops::Range;
 
 use binary::Binary;
-use geometry::{GeometryId, GroupId, InstanceId, InstancePath, PlainItem, World};
+use geometry::{GeometryId, GroupId, InstanceId, InstancePath, PlainItem, PlainTriangle, World};
 use item::Item;
 pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
+pub(crate) use structure::{MOST as MOST_FOR_RAY_QUERIES, Plan};
 
 /// The entries of the stack of `shaders/trace.wgsl`.
 pub(crate) const STACK: usize = 24;
@@ -52,6 +54,8 @@ pub struct Bvh {
     pub(crate) instances: Vec<(InstancePath, u32)>,
     /// The items of the top group that have bounds.
     pub(crate) bounded: Range<usize>,
+    /// What ray queries are traced through instead of nodes.
+    pub(crate) plan: Option<Plan>,
 }
 
 /// Where rays begin.
@@ -107,11 +111,7 @@ impl Bvh {
         let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
         let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         let (of_triangles, mut bounds) = (writer.stack, tree.bounds());
-        for triangle in triangles {
-            let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
-            let corners = triangle.corners.iter().zip(ids);
-            self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
-        }
+        self.add_triangles(triangles, is_cut_out);
         let (tree, all, unbounded) = world.item_tree(group);
         let instances: Vec<InstanceId> = all.iter().filter_map(instance).collect();
         let (tree, mut items) = if is_flat(world, group, &instances, groups) {
@@ -143,9 +143,31 @@ impl Bvh {
         if let (Some(PlainItem::Shape(geometry, _)), true) = (unbounded.first(), group != GroupId::TOP) {
             return Err(BvhError::Unbounded(*geometry));
         }
+        items.extend(unbounded.into_iter().map(Item::from));
+        self.add_items(world, items, groups, is_cut_out)?;
+        let size = largest_coordinate(&bounds);
+        Ok(Group { roots: [root, item_root], unbounded: open, size, bounds, instances, stack })
+    }
+
+    fn add_triangles(&mut self, triangles: Vec<PlainTriangle>, is_cut_out: &dyn Fn(GeometryId) -> bool) {
+        for triangle in triangles {
+            let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
+            let corners = triangle.corners.iter().zip(ids);
+            self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
+        }
+    }
+
+    /// Adds items, and after them the keys of those that move.
+    fn add_items(
+        &mut self,
+        world: &World,
+        items: Vec<Item>,
+        groups: &[Group],
+        is_cut_out: &dyn Fn(GeometryId) -> bool,
+    ) -> Result<(), BvhError> {
         let mut keys = Vec::new();
-        let first_key = first + items.len() + unbounded.len();
-        for item in items.into_iter().chain(unbounded.into_iter().map(Item::from)) {
+        let first_key = self.items.len() / item::QUADRUPLES + items.len();
+        for item in items {
             let words = match item {
                 Item::Shape(geometry, primitive) => {
                     item::shape(world, geometry, primitive, is_cut_out(geometry))?
@@ -162,8 +184,7 @@ impl Bvh {
         }
         self.has_motion |= !keys.is_empty();
         self.items.extend(keys.into_iter().flatten());
-        let size = largest_coordinate(&bounds);
-        Ok(Group { roots: [root, item_root], unbounded: open, size, bounds, instances, stack })
+        Ok(())
     }
 
     /// Says which light is the first of the shapes in an instance.

@@ -156,12 +156,16 @@ pub struct Subject<'a> {
     pub light_sampler: &'a Sampler,
     /// The most bytes of a buffer.
     pub largest_buffer: usize,
+    /// Whether ray queries trace rays if they can: if nothing moves, and there are not too many
+    /// instances or primitives.
+    pub ray_queries: bool,
 }
 
 /// The buffers of a scene; `lights` chooses among its lights. The error says what kernels do not
 /// draw.
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
-    let Subject { scene, view, film, algorithm, sampler, light_sampler, largest_buffer } = subject;
+    let Subject { scene, view, film, algorithm, sampler, light_sampler, largest_buffer, ray_queries } =
+        subject;
     let mut flattener = Flattener {
         scene,
         slab: Slab::new(),
@@ -193,7 +197,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.geometries = flattener.geometries();
     let kinds;
     (head.materials, kinds) = flattener.materials();
-    let bvh = flattener.bvh(algorithm);
+    let bvh = flattener.bvh(algorithm, ray_queries);
     head.top = bvh.top;
     (head.lights, head.infinite) = flattener.lights();
     head.light_count = scene.lights().len() as u32;
@@ -322,7 +326,7 @@ impl Flattener<'_> {
         }
     }
 
-    fn bvh(&mut self, algorithm: &Algorithm) -> Bvh {
+    fn bvh(&mut self, algorithm: &Algorithm, ray_queries: bool) -> Bvh {
         // Shadow rays of paths that do not know media pass interfaces as they pass holes.
         let has_open_interfaces = matches!(algorithm, Algorithm::Path(_));
         let is_open = |entry: &GeometryEntry| has_open_interfaces && is_interface(self.scene, entry);
@@ -331,7 +335,10 @@ impl Flattener<'_> {
             let entry = &self.scene.geometries()[id.0 as usize];
             entry.alpha.is_some() || is_open(entry)
         };
-        let error = match Bvh::new(self.scene.world(), &is_cut_out) {
+        let world = self.scene.world();
+        let for_queries = if ray_queries { Bvh::for_ray_queries(world, &is_cut_out) } else { None };
+        self.parts.ray_queries = for_queries.is_some();
+        let error = match for_queries.map_or_else(|| Bvh::new(world, &is_cut_out), Ok) {
             Ok(mut bvh) => {
                 self.place_lights(&mut bvh);
                 self.parts.motion = bvh.has_motion;

@@ -32,11 +32,12 @@ use scene::camera::Projection;
 use crate::Flat;
 use crate::algorithm::Algorithm;
 use crate::commands::Commands;
-use crate::device::{Buffer, Device, GpuError, Kernel};
+use crate::device::{Binding, Buffer, Device, GpuError, Kernel};
 use crate::dynamic::{Moving, MovingError, Update};
 use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
+use crate::structure::Trees;
 use canvas::Canvas;
 use frame::{Eye, Frame, Level};
 use reservoirs::Reservoirs;
@@ -75,8 +76,9 @@ pub struct Realtime {
     head: Head,
     /// Where the random numbers of frames in motion are among the tables.
     restless: u32,
-    /// What rays are traced through: heads, nodes, triangles, items, tables and texels.
-    scene: [Buffer; 6],
+    /// What rays are traced through: trees; and heads, triangles, items, tables and texels.
+    trees: Trees,
+    scene: [Buffer; 5],
     parameters: Buffer,
     canvas: Option<Canvas>,
     /// The spheres that move, and what is to be done with their tree before the next picture.
@@ -149,12 +151,12 @@ impl Realtime {
         let tables: Vec<u32> = flat.tables.iter().copied().chain([INDEPENDENT, key]).collect();
         let scene = [
             device.buffer("heads of the scene", &[flat.head])?,
-            device.buffer("nodes of the scene's trees", &flat.bvh.nodes)?,
             device.buffer("triangles of the scene", &flat.bvh.triangles)?,
             device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
             device.buffer("tables of the scene", &tables)?,
             device.buffer("texels of the scene", &flat.texels)?,
         ];
+        let trees = Trees::new(device, &flat.bvh, &scene[1])?;
         let parameters = device.parameters(&Frame::default())?;
         // Drivers take seconds to compile each of these.
         let ((light, surfaces), reservoirs) = rayon::join(
@@ -184,6 +186,7 @@ impl Realtime {
             levels,
             head: flat.head,
             restless,
+            trees,
             scene,
             parameters,
             canvas: None,
@@ -253,7 +256,7 @@ impl Realtime {
         let camera = cameras::words(view, 0);
         let device = self.kernels.device();
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;
-        device.write_at(&self.scene[4], at, &camera)?;
+        device.write_at(&self.scene[3], at, &camera)?;
         if self.canvas.as_ref().is_none_or(|canvas| canvas.pixels != pixels) {
             self.canvas = Some(Canvas::new(device, pixels, self.reservoirs.is_some())?);
             self.last = None;
@@ -291,11 +294,12 @@ impl Realtime {
             reservoirs.begin(self.kernels.device(), self.eye, frame.eye)?;
         }
         let mut commands = self.begin(canvas, head, frame)?;
-        let [world, nodes, triangles, items, tables, texels] = &self.scene;
+        let [world, triangles, items, tables, texels] = &self.scene;
         let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
         let parameters = &self.parameters;
         let [temporal, variance, wavelet, _] = &self.filters;
-        let looked = [world, nodes, triangles, items, tables, parameters, seen, texels, film];
+        let looked: [&dyn Binding; 9] =
+            [world, &self.trees, triangles, items, tables, parameters, seen, texels, film];
         commands.run(TRACE, &self.surfaces, &looked, groups);
         self.trace(&mut commands, canvas, groups, self.reservoirs.as_ref());
         commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
@@ -352,8 +356,8 @@ impl Realtime {
         device.write(&self.scene[0], &[head])?;
         device.write(&self.parameters, &[frame])?;
         let mut commands = Commands::new(device, &canvas.timer, 3);
-        if let (Some(moving), Some(update)) = (&self.moving, self.update) {
-            let [_, nodes, _, items, ..] = &self.scene;
+        if let (Some(moving), Some(update), Trees::Nodes(nodes)) = (&self.moving, self.update, &self.trees) {
+            let [_, _, items, ..] = &self.scene;
             let mut start = |kernel: &Kernel, buffers: &[&Buffer], groups: u32| {
                 commands.run(BUILD, kernel, buffers, [groups, 1]);
             };
@@ -364,14 +368,16 @@ impl Realtime {
 
     /// Finds the light of the frame, direct light by shared samples if there are any.
     fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2], shared: Option<&Reservoirs>) {
-        let [world, nodes, triangles, items, tables, texels] = &self.scene;
-        let traced = [world, nodes, triangles, items, tables, &self.parameters, &canvas.film, texels];
+        let [world, triangles, items, tables, texels] = &self.scene;
+        let traced: [&dyn Binding; 8] =
+            [world, &self.trees, triangles, items, tables, &self.parameters, &canvas.film, texels];
         commands.run(TRACE, shared.map_or(&self.light, |shared| &shared.light), &traced, groups);
         if let (Some(Reservoirs { candidates, reuse, steps, .. }), Some(buffer)) =
             (shared, &canvas.reservoirs)
         {
             for (kernel, step) in [candidates, reuse, reuse].into_iter().zip(steps) {
-                let buffers: Vec<&Buffer> = traced.into_iter().chain([buffer, step]).collect();
+                let own: [&dyn Binding; 2] = [buffer, step];
+                let buffers: Vec<&dyn Binding> = traced.into_iter().chain(own).collect();
                 commands.run(TRACE, kernel, &buffers, groups);
             }
         }

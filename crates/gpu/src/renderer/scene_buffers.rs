@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use super::Kernels;
-use crate::device::{Buffer, Device, GpuError, Kernel, Task, Workgroups};
+use crate::device::{Binding, Buffer, Device, GpuError, Kernel, Task, Workgroups};
 use crate::flatten::Flat;
+use crate::structure::Trees;
 
 /// The buffers of a scene, beside which kernels have two of their own.
 pub(super) struct SceneBuffers {
     kernels: Arc<Kernels>,
-    buffers: [Buffer; 6],
+    trees: Trees,
+    buffers: [Buffer; 5],
 }
 
 impl SceneBuffers {
@@ -18,13 +20,13 @@ impl SceneBuffers {
         let device = kernels.device();
         let buffers = [
             device.buffer("heads of the scene", &[flat.head])?,
-            device.buffer("nodes of the scene's trees", &flat.bvh.nodes)?,
             device.buffer("triangles of the scene", &flat.bvh.triangles)?,
             device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
             device.buffer("tables of the scene", &flat.tables)?,
             device.buffer("texels of the scene", &flat.texels)?,
         ];
-        Ok(Self { kernels, buffers })
+        let trees = Trees::new(device, &flat.bvh, &buffers[1])?;
+        Ok(Self { kernels, trees, buffers })
     }
 
     /// The device.
@@ -52,8 +54,8 @@ impl SceneBuffers {
         [batch, results]: [&Buffer; 2],
         workgroups: Workgroups<'a>,
     ) -> Task<'a> {
-        let [head, nodes, triangles, items, tables, texels] = self.buffers.each_ref();
-        let all = [head, nodes, triangles, items, tables, batch, results, texels];
+        let [head, triangles, items, tables, texels] = self.buffers.each_ref();
+        let all: [&dyn Binding; 8] = [head, &self.trees, triangles, items, tables, batch, results, texels];
         let used = (0..).zip(all).filter(|(binding, _)| !unused.contains(binding));
         self.device().task(kernel, &used.collect::<Vec<_>>(), workgroups)
     }

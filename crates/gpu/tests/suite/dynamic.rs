@@ -88,7 +88,8 @@ impl<'a> Animated<'a> {
     }
 
     fn trace(&self, rays: &[(Ray, f32)]) -> Vec<Traced> {
-        traced(self.tracer, &self.buffers, rays).expect("hits")
+        let [a, b, c, d] = &self.buffers;
+        traced(self.tracer, [a, b, c, d], rays).expect("hits")
     }
 
     /// Follows all nodes: boxes are around what is below, and each item is there once.
@@ -168,8 +169,8 @@ fn scattered(count: usize, size: f32, seed: u64) -> Vec<Point3> {
 /// which decides where a ray grazes. Of spheres at one place any may be hit.
 fn agree(animated: &Animated, world: &World, rays: &[(Ray, f32)], what: &str) {
     let bvh = Bvh::new(world, &|_| false).expect("spheres");
-    let of_cpu = buffers(animated.tracer.0.device(), &bvh).expect("buffers");
-    let expected = traced(animated.tracer, &of_cpu, rays).expect("hits");
+    let [a, b, c, d] = &buffers(animated.tracer.0.device(), &bvh).expect("buffers");
+    let expected = traced(animated.tracer, [a, b, c, d], rays).expect("hits");
     let (mut hits, mut grazing) = (0, 0);
     for (((ray, end), (hit, any)), (expected, _)) in rays.iter().zip(animated.trace(rays)).zip(expected) {
         assert_eq!(any, hit.is_some(), "{what}: {ray:?}");

@@ -17,6 +17,7 @@ mod photons;
 mod pictures;
 mod portals;
 mod raster;
+mod ray_queries;
 mod realtime;
 mod reservoirs;
 mod texts;
@@ -28,20 +29,37 @@ mod wavefront;
 
 use std::io::Write;
 
-use alhazen_gpu::Device;
+use alhazen_gpu::{Device, GpuError};
 
 /// The GPU of a test, by a part of its name in `ALHAZEN_GPU` or the first one; `None` where the
 /// test cannot run.
 pub fn device() -> Option<Device> {
+    opened(Device::open)
+}
+
+/// The same with ray queries, which `ALHAZEN_GPU=require` does not require.
+pub fn device_with_ray_queries() -> Option<Device> {
+    let device = opened(Device::for_ray_queries)?;
+    if !device.has_ray_queries() {
+        skip(&format!("{} has no ray queries", device.name()));
+    }
+    Some(device).filter(Device::has_ray_queries)
+}
+
+fn opened(open: impl Fn(&str) -> Result<Device, GpuError>) -> Option<Device> {
     let wish = std::env::var("ALHAZEN_GPU").unwrap_or_default();
     let required = wish == "require";
-    match Device::open(if required { "" } else { &wish }) {
+    match open(if required { "" } else { &wish }) {
         Ok(device) => Some(device),
         Err(error) if required => panic!("{error}"),
         Err(error) => {
-            // Not by a macro, whose output the harness keeps to itself.
-            let _ = writeln!(std::io::stderr(), "SKIPPED, not tested: {error}");
+            skip(&error.to_string());
             None
         }
     }
+}
+
+fn skip(reason: &str) {
+    // Not by a macro, whose output the harness keeps to itself.
+    let _ = writeln!(std::io::stderr(), "SKIPPED, not tested: {reason}");
 }

@@ -33,7 +33,8 @@ pub const SAMPLES: u32 = 2;
 fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
     static KERNELS: Mutex<BTreeMap<String, Option<Arc<Kernels>>>> = Mutex::new(BTreeMap::new());
     let mut known = KERNELS.lock().unwrap_or_else(PoisonError::into_inner);
-    let open = || crate::device().map(|device| Arc::new(Kernels::new(device)));
+    let device = if flat.parts().ray_queries { crate::device_with_ray_queries } else { crate::device };
+    let open = || device().map(|device| Arc::new(Kernels::new(device)));
     known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
 }
 
@@ -133,11 +134,24 @@ impl Case {
     }
 
     pub fn flatten(&self, algorithm: &Algorithm) -> Result<Flat, Vec<Refusal>> {
+        self.flattened(algorithm, false)
+    }
+
+    /// The same, for rays by ray queries if these trace them.
+    pub fn flattened(&self, algorithm: &Algorithm, ray_queries: bool) -> Result<Flat, Vec<Refusal>> {
         let Self { scene, view, sampler, light_sampler, .. } = self;
         let lights = scene.light_sampler(algorithm.light_sampler(), &Default::default()).expect("a choice");
         let film = &self.film();
-        let largest_buffer = 1 << 27;
-        let subject = Subject { scene, view, film, algorithm, sampler, light_sampler, largest_buffer };
+        let subject = Subject {
+            scene,
+            view,
+            film,
+            algorithm,
+            sampler,
+            light_sampler,
+            largest_buffer: 1 << 27,
+            ray_queries,
+        };
         flatten(subject, &lights)
     }
 
@@ -146,11 +160,20 @@ impl Case {
         self.scheduled(algorithm, Schedule::Megakernel)
     }
 
-    /// The same, cut into kernels so.
     pub fn scheduled(&self, algorithm: &Algorithm, schedule: Schedule) -> Option<Renderer> {
-        let flat = self.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
-        let kernels = kernels(algorithm, &flat)?;
-        Some(Renderer::new(kernels, &flat, algorithm, &self.film(), schedule).expect("a renderer"))
+        self.rendering(&self.flatten(algorithm), algorithm, schedule)
+    }
+
+    /// A renderer of what was flattened.
+    pub fn rendering(
+        &self,
+        flat: &Result<Flat, Vec<Refusal>>,
+        algorithm: &Algorithm,
+        schedule: Schedule,
+    ) -> Option<Renderer> {
+        let flat = flat.as_ref().unwrap_or_else(|refusals| panic!("{refusals:?}"));
+        let kernels = kernels(algorithm, flat)?;
+        Some(Renderer::new(kernels, flat, algorithm, &self.film(), schedule).expect("a renderer"))
     }
 
     /// The samples of each pixel by the GPU, if there is one.
@@ -212,7 +235,12 @@ impl Case {
     /// Compares the pictures of both engines; what is wrong, if anything. Paths are the same but
     /// for rounding, which seldom decides where one goes.
     pub fn compare(&self, name: &str, algorithm: &Algorithm) -> Option<String> {
-        let (gpu, cpu) = (self.on_gpu(algorithm)?, self.on_cpu(algorithm, SAMPLES));
+        self.differs(name, algorithm, &self.on_gpu(algorithm)?)
+    }
+
+    /// What is wrong with a picture of the GPU, if anything.
+    pub fn differs(&self, name: &str, algorithm: &Algorithm, gpu: &Image) -> Option<String> {
+        let cpu = self.on_cpu(algorithm, SAMPLES);
         let pairs: Vec<(f32, f32)> = gpu.values().zip(cpu.values()).collect();
         let mean = pairs.iter().map(|(_, b)| f64::from(*b)).sum::<f64>() / pairs.len() as f64;
         let mut values: Vec<f32> = cpu.values().collect();
@@ -265,7 +293,7 @@ fn sizes(picture: &Image, spread: i32) -> Vec<f32> {
 }
 
 /// Scenes of the repository that kernels draw.
-const DRAWN: [&str; 24] = [
+pub const DRAWN: [&str; 24] = [
     "bump-map",
     "caustic-ball",
     "cornell-box",

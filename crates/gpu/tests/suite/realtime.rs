@@ -30,7 +30,8 @@ pub fn sharing(
     algorithm: &Algorithm,
     shared: Option<Weights>,
 ) -> Realtime {
-    let flat = case.flatten(algorithm).unwrap_or_else(|refusals| panic!("{refusals:?}"));
+    let ray_queries = kernels.device().has_ray_queries();
+    let flat = case.flattened(algorithm, ray_queries).unwrap_or_else(|refusals| panic!("{refusals:?}"));
     let mut realtime =
         Realtime::new(kernels.clone(), &flat, algorithm, shared).expect("a scene on the device");
     realtime.aim(&case.view, case.film().pixel_bounds()).expect("a camera");

@@ -12,7 +12,7 @@ use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
 fn validate(source: &str) -> Result<(), String> {
     let module = wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY);
     validator.validate(&module).map(|_| ()).map_err(|error| error.emit_to_string(source))
 }
 
@@ -33,8 +33,9 @@ fn shaders_have_all_laws() {
 
 #[test]
 fn traversal_is_valid() {
-    let source = format!("{}{}", shaders::TRACE, crate::trace::KERNEL);
-    validate(&source).unwrap_or_else(|error| panic!("{error}"));
+    for source in crate::trace::sources() {
+        validate(&source).unwrap_or_else(|error| panic!("{error}"));
+    }
 }
 
 /// Parts, of which there are those whose bits are set.
@@ -60,6 +61,7 @@ fn parts(bits: u32) -> Parts {
         rare_samplers,
         media: false,
         force_diffuse: false,
+        ray_queries: false,
     }
 }
 
@@ -105,6 +107,7 @@ fn kernels_are_valid() {
         for algorithm in [&path, &vol_path, &simple] {
             add(&"media", shaders::pixels(algorithm, Parts { media: true, ..parts }));
         }
+        add(&"ray queries", shaders::pixels(&path, Parts { ray_queries: true, ..parts }));
         add(&"motion", shaders::pixels(&path, Parts { motion: true, ..parts }));
         add(&"portals", shaders::pixels(&path, Parts { portals: true, ..parts }));
         let lights = Parts { placed_lights: true, light_holes: true, ..parts };
