@@ -19,6 +19,7 @@ struct OnDevice {
     renderer: Renderer,
     algorithm: Algorithm,
     sampler: Sampler,
+    name: String,
 }
 
 /// The algorithm that a scene describes, on a device, for the scene, view and film of a session.
@@ -31,9 +32,10 @@ pub(crate) fn integrator(
 ) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
     let film = &session.state().film;
     let Flattened { flat, algorithm, sampler } =
-        flattened(desc, session.scene(), session.view(), film, kernels)?;
+        flattened(desc, session.scene(), session.view(), film, kernels, Rays::OfDevice)?;
+    let name = name(kernels.device(), &flat);
     match Renderer::new(kernels.clone(), &flat, &algorithm, film, schedule) {
-        Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler })),
+        Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler, name })),
         Err(error) => Err(vec![failed(&error)]),
     }
 }
@@ -45,6 +47,27 @@ pub(crate) struct Flattened {
     pub(crate) sampler: Sampler,
 }
 
+/// By what rays are traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rays {
+    /// By the ray queries of a device that was opened for them, if they trace the scene.
+    OfDevice,
+    /// By kernels.
+    OfKernels,
+}
+
+/// The name of a device, and by what it traces rays if ray queries were asked for.
+pub(crate) fn name(device: &Device, flat: &Flat) -> String {
+    let name = device.name();
+    if flat.parts().ray_queries {
+        format!("{name} with ray queries")
+    } else if device.has_ray_queries() {
+        format!("{name} without ray queries, because something moves or there is too much of it")
+    } else {
+        name.to_owned()
+    }
+}
+
 /// A scene, by the algorithm and the sampler that `desc` describes. The error says what kernels do
 /// not draw.
 pub(crate) fn flattened(
@@ -53,6 +76,7 @@ pub(crate) fn flattened(
     view: &View,
     film: &Film,
     kernels: &Kernels,
+    rays: Rays,
 ) -> Result<Flattened, Vec<Diagnostic>> {
     let refuse = |what: String| {
         let message = format!("the engine for GPUs does not have {what}");
@@ -72,6 +96,7 @@ pub(crate) fn flattened(
         sampler: &sampler,
         light_sampler: &light_sampler,
         largest_buffer,
+        ray_queries: rays == Rays::OfDevice && kernels.device().has_ray_queries(),
     };
     let flat = flatten(subject, &lights)
         .map_err(|refusals| refusals.into_iter().map(Diagnostic::from).collect::<Vec<_>>())?;
@@ -124,9 +149,6 @@ impl Integrator for OnDevice {
 
     fn summary(&self) -> Vec<(&'static str, String)> {
         let megabytes = self.renderer.bytes() as f64 / f64::from(1 << 20);
-        vec![
-            ("device", self.renderer.device().name().to_owned()),
-            ("device memory", format!("{megabytes:.1} MiB")),
-        ]
+        vec![("device", self.name.clone()), ("device memory", format!("{megabytes:.1} MiB"))]
     }
 }

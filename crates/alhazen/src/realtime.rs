@@ -11,7 +11,7 @@ use sampling::Sampler;
 use scene::{MoveError, Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::device::{Flattened, Kernels, failed, flattened};
+use crate::device::{Flattened, Kernels, Rays, failed, flattened, name};
 use crate::sketch::coarse;
 
 pub use gpu::{GpuError, Picture, Stages, Update, Weights};
@@ -20,6 +20,7 @@ pub use gpu::{GpuError, Picture, Stages, Update, Weights};
 pub struct Realtime {
     scene: Arc<Scene>,
     engine: gpu::Realtime,
+    device: String,
     pixels: Bounds2i,
     color_space: &'static RgbColorSpace,
     planned: u32,
@@ -43,7 +44,7 @@ impl Realtime {
         kernels: &Arc<Kernels>,
         shared: Option<Weights>,
     ) -> Result<Self, Vec<Diagnostic>> {
-        Self::made(scene, desc, kernels, |flat, algorithm| {
+        Self::made(scene, desc, kernels, Rays::OfDevice, |flat, algorithm| {
             gpu::Realtime::new(kernels.clone(), &flat, algorithm, shared).map_err(|error| failed(&error))
         })
     }
@@ -55,7 +56,7 @@ impl Realtime {
         desc: &SceneDesc,
         kernels: &Arc<Kernels>,
     ) -> Result<Self, Vec<Diagnostic>> {
-        Self::made(scene, desc, kernels, |flat, algorithm| {
+        Self::made(scene, desc, kernels, Rays::OfKernels, |flat, algorithm| {
             let made = gpu::Realtime::animated(kernels.clone(), flat, scene.world(), algorithm);
             made.map_err(|error| Diagnostic::warning("not-on-gpu", error.to_string(), Span::NONE))
         })
@@ -66,11 +67,12 @@ impl Realtime {
         scene: &Arc<Scene>,
         desc: &SceneDesc,
         kernels: &Arc<Kernels>,
+        rays: Rays,
         engine: impl FnOnce(Flat, &Algorithm) -> Result<gpu::Realtime, Diagnostic>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let view = View::compile(desc, scene.world_from_render())?.view;
         let film = film::compile(desc)?.film;
-        let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels)?;
+        let Flattened { flat, algorithm, sampler } = flattened(desc, scene, &view, &film, kernels, rays)?;
         let whole = if algorithm.begins_at_lights() {
             Some(format!("integrator `{}`", desc.integrator.name()))
         } else {
@@ -82,6 +84,7 @@ impl Realtime {
         }
         Ok(Self {
             scene: scene.clone(),
+            device: name(kernels.device(), &flat),
             engine: engine(flat, &algorithm).map_err(|error| vec![error])?,
             pixels: film.pixel_bounds(),
             color_space: film.color_space(),
@@ -160,8 +163,8 @@ impl Realtime {
         self.color_space
     }
 
-    /// The name of the device.
+    /// The name of the device, and by what it traces rays if ray queries were asked for.
     pub fn device(&self) -> &str {
-        self.engine.device().name()
+        &self.device
     }
 }

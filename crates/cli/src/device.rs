@@ -16,6 +16,8 @@ pub enum DeviceChoice {
     Cpu,
     /// The graphics processor.
     Gpu,
+    /// The same, whose hardware traces rays.
+    RayQuery,
     /// The graphics processor if it draws the scene, and is none in software.
     Auto,
 }
@@ -40,22 +42,33 @@ impl From<Restir> for Weights {
 
 /// Moves a job to the chosen device; the device and its memory, unless that is the CPU. Where it
 /// cannot be, the job is as before, and the warnings say why.
-pub fn choose(choice: DeviceChoice, job: &mut Job) -> Result<Option<String>, Vec<Diagnostic>> {
-    let Some(kernels) = kernels(choice)? else { return Ok(None) };
-    job.move_to(&kernels, Schedule::default())?;
+pub fn choose(choice: DeviceChoice, job: &mut Job, warnings: &mut Vec<Diagnostic>) -> Option<String> {
+    let kernels = kernels(choice, warnings)?;
+    if let Err(refusals) = job.move_to(&kernels, Schedule::default()) {
+        warnings.extend(refusals);
+        return None;
+    }
     let notes = job.session.integrator().summary();
-    Ok(Some(notes.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")))
+    Some(notes.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
 }
 
-/// The chosen device, unless that is the CPU; the warnings say why there is none.
-pub fn kernels(choice: DeviceChoice) -> Result<Option<Arc<Kernels>>, Vec<Diagnostic>> {
-    if choice == DeviceChoice::Cpu {
-        return Ok(None);
-    }
-    let cannot = |problem: String| vec![Diagnostic::warning("not-on-gpu", problem, Span::NONE)];
-    let device = Device::open("").map_err(|error| cannot(error.to_string()))?;
+/// The chosen device, unless that is the CPU; the warnings say why there is none, or not all of it.
+pub fn kernels(choice: DeviceChoice, warnings: &mut Vec<Diagnostic>) -> Option<Arc<Kernels>> {
+    let mut warn = |code, problem| warnings.push(Diagnostic::warning(code, problem, Span::NONE));
+    let opened = match choice {
+        DeviceChoice::Cpu => return None,
+        DeviceChoice::RayQuery => Device::for_ray_queries(""),
+        DeviceChoice::Gpu | DeviceChoice::Auto => Device::open(""),
+    };
+    let device = opened.map_err(|error| warn("not-on-gpu", error.to_string())).ok()?;
     if choice == DeviceChoice::Auto && device.is_software() {
-        return Err(cannot(format!("{} is a GPU in software, slower than the CPU itself", device.name())));
+        let name = device.name();
+        warn("not-on-gpu", format!("{name} is a GPU in software, slower than the CPU itself"));
+        return None;
     }
-    Ok(Some(Arc::new(Kernels::new(device))))
+    if choice == DeviceChoice::RayQuery && !device.has_ray_queries() {
+        let name = device.name();
+        warn("no-ray-queries", format!("{name} has no ray queries: its kernels trace rays themselves"));
+    }
+    Some(Arc::new(Kernels::new(device)))
 }

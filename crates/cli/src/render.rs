@@ -54,13 +54,14 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a device is noted"))]
     let mut notes = Vec::new();
     #[cfg(feature = "gpu")]
-    match crate::device::choose(arguments.device, &mut job) {
-        Ok(Some(device)) if !arguments.quiet && !arguments.json => say(device)?,
-        Ok(_) => {}
-        Err(warnings) => {
-            compiled.add(warnings);
-            notes.push(("device", "CPU".to_owned()));
+    {
+        let mut warnings = Vec::new();
+        match crate::device::choose(arguments.device, &mut job, &mut warnings) {
+            Some(device) if !arguments.quiet && !arguments.json => say(device)?,
+            None if !warnings.is_empty() => notes.push(("device", "CPU".to_owned())),
+            _ => {}
         }
+        compiled.add(warnings);
     }
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
     let all = all_passes(&job, arguments);

@@ -55,10 +55,12 @@ pub fn view(arguments: &View) -> Result<ExitCode, Failure> {
     #[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only a device has warnings"))]
     let mut compiled = compiled;
     #[cfg(feature = "gpu")]
-    let kernels = crate::device::kernels(arguments.device).unwrap_or_else(|warnings| {
+    let kernels = {
+        let mut warnings = Vec::new();
+        let kernels = crate::device::kernels(arguments.device, &mut warnings);
         compiled.add(warnings);
-        None
-    });
+        kernels
+    };
     let imported = compiled.imported();
     if !arguments.json {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
@@ -136,14 +138,14 @@ fn planet(arguments: &View, overrides: &Overrides) -> Result<ExitCode, Failure> 
 }
 
 /// Takes a planet to the chosen device. What is returned says why the CPU keeps it although another
-/// was chosen.
+/// was chosen, or what of that is not there.
 #[cfg(feature = "gpu")]
 fn take_to_device(outing: &mut Outing, arguments: &View) -> Vec<Diagnostic> {
-    let moved = crate::device::kernels(arguments.device).and_then(|kernels| match kernels {
-        Some(kernels) => outing.move_to(&kernels),
-        None => Ok(()),
-    });
-    moved.err().unwrap_or_default()
+    let mut refusals = Vec::new();
+    if let Some(kernels) = crate::device::kernels(arguments.device, &mut refusals) {
+        refusals.extend(outing.move_to(&kernels).err().unwrap_or_default());
+    }
+    refusals
 }
 
 /// Without the feature there is only the CPU.

@@ -2,10 +2,14 @@
 // `nodes` beside what `hits.wgsl` needs; `src/structure.rs` builds it.
 //
 // Instead of the references of trees, groups have the indices of their first triangle and of their
-// first shape.
+// first shape, which is `NO_HIT` of the top group where no group has any.
 
 // What the hardware says instead of an instance's item where there is none.
 const OUTSIDE = 0xffffffu;
+
+// The masks of instances.
+const TRIANGLES = 1u;
+const SHAPES = 2u;
 
 const LARGEST = 0x1.fffffep+127f;
 
@@ -29,23 +33,22 @@ fn inner_ray(o: vec3f, d: vec3f, item: u32) -> InnerRay {
 }
 
 // The hit on a triangle that the hardware has found, with numbers as those of `intersect_triangle`.
-// The numbers of the hardware stay where it decides for this one of two triangles at an edge, and
-// the other test for the other one. At t = 0 what is found may be behind; `error` is the bound.
-fn met_triangle(ray: InnerRay, index: u32, found: RayIntersection, error: ptr<function, f32>) -> Nearest {
+// Those of the hardware stay where it decides for this one of two triangles at an edge, and that
+// test for the other one. What is nearer than the bound of its error, and may be behind, has t = 0.
+fn met_triangle(ray: InnerRay, index: u32, found: RayIntersection) -> Nearest {
     let seen = sheared_triangle(sheared(ray.o, ray.d), index);
     let determinant = seen.e.x + seen.e.y + seen.e.z;
     let is_cut_out = triangles[3 * index + 2].w == 1;
     var met = Nearest(found.t, found.barycentrics, index, true, ray.instance, is_cut_out);
-    *error = 0;
-    if (determinant != 0) {
-        let inverse = 1 / determinant;
-        *error = error_of_distance(seen, inverse);
-        if (!is_beside(seen)) {
-            met.t = distance_of(seen, inverse);
-            met.uv = seen.e.yz * inverse;
-        }
+    if (determinant == 0) {
+        return met;
     }
-    if (!(met.t > *error)) {
+    let inverse = 1 / determinant;
+    if (!is_beside(seen)) {
+        met.t = distance_of(seen, inverse);
+        met.uv = seen.e.yz * inverse;
+    }
+    if (!(met.t > error_of_distance(seen, inverse))) {
         met.t = 0;
     }
     return met;
@@ -60,8 +63,11 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var open = world.unbounded & ((1u << COUNT_BITS) - 1);
     var query: ray_query;
     var is_begun = false;
-    // Triangles of the structure are hit beyond.
+    // Triangles are hit beyond.
     var t_min = 0.0;
+    // One query is for triangles, and the next for shapes: naga 30 compares the distance of a shape
+    // with a wrong one if a triangle was found before.
+    var mask = TRIANGLES;
     loop {
         var ray = InnerRay(o, d, world.roots, NO_HIT);
         var hit = best;
@@ -71,11 +77,11 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             shape = first_open + open;
         } else {
             if (!is_begun) {
-                if (is_any && best.place != NO_HIT) {
+                if (!(best.t > t_min) || (is_any && best.place != NO_HIT)) {
                     break;
                 }
                 is_begun = true;
-                rayQueryInitialize(&query, structure, RayDesc(flags, 0xff, t_min, min(best.t, LARGEST), o, d));
+                rayQueryInitialize(&query, structure, RayDesc(flags, mask, t_min, min(best.t, LARGEST), o, d));
             }
             let is_candidate = rayQueryProceed(&query);
             var found: RayIntersection;
@@ -84,34 +90,35 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             } else {
                 found = rayQueryGetCommittedIntersection(&query);
             }
-            let is_triangle = found.kind == RAY_QUERY_INTERSECTION_TRIANGLE;
-            if (!is_candidate && !is_triangle) {
-                break;
-            }
             ray = inner_ray(o, d, found.instance_custom_data);
-            if (is_triangle) {
-                let index = ray.firsts.x + found.primitive_index;
-                if (!is_candidate && best.is_triangle && best.place == index && best.instance == ray.instance) {
+            if (mask == SHAPES) {
+                if (!is_candidate) {
                     break;
                 }
-                var error = 0.0;
-                hit = met_triangle(ray, index, found, &error);
+                shape = ray.firsts.y + found.primitive_index;
+            } else {
+                if (is_candidate || found.kind == RAY_QUERY_INTERSECTION_TRIANGLE) {
+                    hit = met_triangle(ray, ray.firsts.x + found.primitive_index, found);
+                }
                 if (!is_candidate) {
                     // Triangles without holes are no candidates.
-                    if (hit.t > 0) {
+                    if (hit.t == 0) {
+                        // Once more, beyond this one.
+                        t_min = max(max(t_min, found.t) * 1.000001, 1e-30);
+                    } else {
                         best = hit;
-                        break;
+                        if (world.roots.y == NO_HIT) {
+                            break;
+                        }
+                        t_min = 0;
+                        mask = SHAPES;
                     }
-                    // Once more, beyond what may be behind.
-                    t_min = max(max(error, found.t) * 1.000001, 1e-30);
                     is_begun = false;
                     continue;
                 }
                 if (hit.t == 0) {
                     continue;
                 }
-            } else {
-                shape = ray.firsts.y + found.primitive_index;
             }
         }
         // The first hit of the shape that counts.

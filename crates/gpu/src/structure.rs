@@ -17,6 +17,10 @@ const CORNER: u64 = 16;
 /// The bytes of a box.
 const BOX: u64 = 24;
 
+/// The masks of instances, as in `shaders/ray_query.wgsl`.
+const TRIANGLES: u8 = 1;
+const SHAPES: u8 = 2;
+
 /// What rays are traced through.
 #[derive(Debug)]
 pub enum Trees {
@@ -89,8 +93,9 @@ fn structure(device: &Device, plan: &Plan, triangles: &Buffer) -> Result<Tlas, G
         .flat_map(|place| {
             let triangles = of_triangles[place.group].as_ref().map(|(blas, _)| blas);
             let boxes = of_boxes[place.group].as_ref().map(|(blas, _)| blas);
-            let all = triangles.into_iter().chain(boxes);
-            all.map(|blas| TlasInstance::new(blas, place.rows, place.item, u8::MAX))
+            let all =
+                triangles.map(|blas| (blas, TRIANGLES)).into_iter().chain(boxes.map(|blas| (blas, SHAPES)));
+            all.map(|(blas, mask)| TlasInstance::new(blas, place.rows, place.item, mask))
         })
         .collect();
     let mut tlas = driver.create_tlas(&CreateTlasDescriptor {

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use alhazen::device::Kernels;
+use alhazen::device::{Device, Kernels};
 use alhazen_bench::mesh::BenchMesh;
 use alhazen_bench::rays::{Query, ray_sets};
 use geometry::{GroupId, Hit, RayStats, World};
-use gpu::{Bvh, GpuError, shaders};
+use gpu::{Binding, Bvh, GpuError, Trees, shaders};
 use math::Ray;
 use serde_json::{Map, Value, json};
 
@@ -26,7 +26,6 @@ const KERNEL: &str = "
     fn moved_rows(first_key: u32, motions: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
     struct World { roots: vec2u, unbounded: u32, size: f32 }
     @group(0) @binding(0) var<storage, read_write> world: World;
-    @group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;
     @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
     @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
     @group(0) @binding(4) var<storage, read_write> rays: array<array<vec4f, 2>>;
@@ -39,11 +38,27 @@ const KERNEL: &str = "
         hits[id.x] = select(0, hit.t, hit.found);
     }";
 
-/// Millions of rays of each set in a second, for both meshes.
+/// What rays are traced through.
+const NODES: &str = "@group(0) @binding(1) var<storage, read_write> nodes: array<vec4u>;";
+const STRUCTURE: &str = "@group(0) @binding(1) var structure: acceleration_structure;";
+
+/// Millions of rays of each set in a second, for both meshes; by kernels, and by ray queries if
+/// there are any.
 pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
     let device = kernels.device();
-    let source = format!("{}{KERNEL}", shaders::TRACE);
-    let kernel = device.kernel("rays", &source).map_err(|error| error.to_string())?;
+    let source = [shaders::TRACE, NODES, KERNEL].concat();
+    let mut report = by(device, &source, size)?;
+    let device = Device::for_ray_queries(device.name()).map_err(|error| error.to_string())?;
+    if device.has_ray_queries() {
+        let source = [shaders::ENABLE_RAY_QUERIES, shaders::RAY_QUERY, STRUCTURE, KERNEL].concat();
+        report.insert("by ray queries".into(), by(&device, &source, size)?.into());
+    }
+    Ok(report.into())
+}
+
+/// The rates of a device by a kernel.
+fn by(device: &Device, source: &str, size: &Size) -> Result<Map<String, Value>, String> {
+    let kernel = device.kernel("rays", source).map_err(|error| error.to_string())?;
     let mut report = Map::new();
     for mesh in BenchMesh::NAMES.into_iter().filter_map(BenchMesh::named) {
         let mut builder = World::builder();
@@ -53,7 +68,11 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
             let hit = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default())?;
             Some((hit.t, hit.primitive as usize))
         };
-        let bvh = Bvh::new(&world, &|_| false).map_err(|error| format!("{error:?}"))?;
+        let bvh = if device.has_ray_queries() {
+            Bvh::for_ray_queries(&world, &|_| false).ok_or("too many triangles for ray queries")?
+        } else {
+            Bvh::new(&world, &|_| false).map_err(|error| format!("{error:?}"))?
+        };
         let mut rates = Map::new();
         for set in ray_sets(&mesh, size.rays, closest) {
             let sign = if set.query == Query::Any { -1.0 } else { 1.0 };
@@ -62,21 +81,20 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
                 [o.x, o.y, o.z, sign * end.min(f32::MAX), d.x, d.y, d.z, 0.0]
             };
             let made = (|| {
-                let buffers = [
-                    device.buffer("heads", &[bvh.top])?,
-                    device.buffer("nodes", &bvh.nodes)?,
-                    device.buffer("triangles", &bvh.triangles)?,
-                    device.buffer("items", &bvh.items)?,
-                    device.buffer("rays", &set.rays.iter().map(numbers).collect::<Vec<_>>())?,
-                    device.zeros("hits", 4 * set.rays.len() as u64)?,
-                ];
+                let world = device.buffer("heads", &[bvh.top])?;
+                let triangles = device.buffer("triangles", &bvh.triangles)?;
+                let trees = Trees::new(device, &bvh, &triangles)?;
+                let items = device.buffer("items", &bvh.items)?;
+                let rays = device.buffer("rays", &set.rays.iter().map(numbers).collect::<Vec<_>>())?;
+                let hits = device.zeros("hits", 4 * set.rays.len() as u64)?;
+                let buffers: [&dyn Binding; 6] = [&world, &trees, &triangles, &items, &rays, &hits];
                 let groups = [set.rays.len().div_ceil(64) as u32, 1, 1];
                 let run = || {
                     let begin = Instant::now();
                     for _ in 0..size.repeats {
-                        device.run(&kernel, &buffers.each_ref(), groups)?;
+                        device.run(&kernel, &buffers, groups)?;
                     }
-                    device.read_part::<f32>(&buffers[5], 0, 1)?;
+                    device.read_part::<f32>(&hits, 0, 1)?;
                     Ok(begin.elapsed())
                 };
                 // The clock of a GPU that had nothing to do rises for some tenths of a second.
@@ -86,7 +104,7 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
                 }
                 let times = (0..RUNS).map(|_| run().map(|time| time.as_secs_f64()));
                 let seconds = median(times.collect::<Result<_, _>>()?);
-                let hits = device.read::<f32>(&buffers[5])?.iter().filter(|t| **t > 0.0).count();
+                let hits = device.read::<f32>(&hits)?.iter().filter(|t| **t > 0.0).count();
                 Ok((hits, seconds))
             })();
             let (hits, seconds) = made.map_err(|error: GpuError| error.to_string())?;
@@ -102,5 +120,5 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
         }
         report.insert(mesh.name.into(), json!({ "triangles": mesh.indices.len(), "sets": rates }));
     }
-    Ok(report.into())
+    Ok(report)
 }

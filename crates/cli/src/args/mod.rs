@@ -234,8 +234,8 @@ pub struct View {
     /// Samples per pixel of the finished picture. [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
-    /// What renders: cpu; gpu, as in `alhazen render`; or auto, the GPU unless it is one in
-    /// software.
+    /// What renders: cpu; gpu or ray-query, as in `alhazen render`; or auto, the GPU unless it is
+    /// one in software.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,

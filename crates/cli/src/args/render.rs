@@ -52,8 +52,9 @@ pub struct Render {
     pub shard: Option<Shard>,
     /// What renders: cpu; gpu, which has the integrators ray-casting, whitted, ambient-occlusion,
     /// path, vol-path, light-tracing and bdpt, with the samplers zsobol, paddedsobol and
-    /// independent, and leaves scenes that it does not draw to the CPU; or auto, the GPU unless it
-    /// is one in software.
+    /// independent, and leaves scenes that it does not draw to the CPU; ray-query, the same with
+    /// rays by the GPU's hardware, if it has ray queries and nothing moves; or auto, the GPU unless
+    /// it is one in software.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,

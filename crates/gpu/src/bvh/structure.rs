@@ -2,7 +2,8 @@
 //!
 //! A group has its triangles, and boxes of its shapes, and each path of instances that leads to
 //! some is an instance of the top group, as in [`paths`](super::paths). Instead of the references
-//! of trees, groups have the indices of their first triangle and of their first shape.
+//! of trees, groups have the indices of their first triangle and of their first shape, which is the
+//! largest word of the top group where no group has any.
 
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use geometry::{GeometryId, GroupId, World};
 use math::{Bounds3, DMat4, gamma};
 
 use super::item::{self, Item};
-use super::{Bvh, Group, largest_coordinate, node, paths};
+use super::{Bvh, Group, Top, largest_coordinate, node, paths};
 
 /// The most instances, triangles of a group, or boxes, which all devices with ray queries take.
 pub const MOST: usize = (1 << 24) - 1;
@@ -73,8 +74,9 @@ impl Bvh {
         if bvh.has_motion || most > Some(MOST) || items.max(2 * plan.places.len()) > MOST {
             return None;
         }
-        let Group { roots, unbounded, size, .. } = groups[0];
-        bvh.top = super::Top { roots, unbounded, size };
+        let Group { roots: [first_triangle, first_shape], unbounded, size, .. } = groups[0];
+        let first_shape = if plan.boxes.is_empty() { u32::MAX } else { first_shape };
+        bvh.top = Top { roots: [first_triangle, first_shape], unbounded, size };
         bvh.plan = Some(plan);
         Some(bvh)
     }

@@ -8,7 +8,7 @@ use crate::texts::PAN;
 
 /// Shapes and an instance that move, turn and stretch while the shutter is open, before the motion
 /// is over, one at rest of the same object, a mesh with normals that is a mirror, and a light.
-const TURNING: &str = r#"
+pub const TURNING: &str = r#"
 TransformTimes 1 4
 LookAt 0 -6 2  0 0 0.6  0 0 1
 Camera "perspective" "float fov" 40 "float shutteropen" 0.5 "float shutterclose" 3

@@ -1,8 +1,9 @@
 //! Pictures by the ray queries of a GPU's hardware, where it has any.
 
 use alhazen_gpu::{Algorithm, Schedule};
-use description::{BdptDesc, PathDesc};
+use description::PathDesc;
 
+use crate::motion::TURNING;
 use crate::pictures::{Case, DRAWN};
 use crate::texts::{HAIR, HOLES, LAMPS, MEDLEY};
 
@@ -36,11 +37,14 @@ fn ray_queries_meet_what_is_not_a_triangle() {
 }
 
 #[test]
-fn ray_queries_are_of_all_kernels() {
-    let mut case = Case::named("cornell-box");
-    let path = Algorithm::Path(case.path());
-    assert_eq!(compare("wavefront", &case, &path, Schedule::Wavefront), None);
-    case.take_sobol();
-    let bdpt = Algorithm::Bdpt(BdptDesc { max_depth: 4, ..BdptDesc::default() });
-    assert_eq!(compare("bdpt", &case, &bdpt, Schedule::Megakernel), None);
+fn ray_queries_of_a_wavefront_have_the_picture_of_the_cpu() {
+    let case = Case::named("cornell-box");
+    assert_eq!(compare("wavefront", &case, &Algorithm::Path(case.path()), Schedule::Wavefront), None);
+}
+
+#[test]
+fn ray_queries_do_not_trace_what_moves() {
+    let case = Case::of_text(TURNING);
+    let flat = case.flattened(&Algorithm::RayCasting, true);
+    assert!(flat.is_ok_and(|flat| !flat.parts().ray_queries && flat.parts().motion));
 }
