@@ -19,6 +19,7 @@ mod portals;
 mod raster;
 mod ray_queries;
 mod realtime;
+mod refusals;
 mod reservoirs;
 mod texts;
 mod textures;

@@ -8,8 +8,8 @@ use alhazen_gpu::{
     Algorithm, FindFirstHit, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders,
 };
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
-    MltTechnique, PathDesc, ReflectionsDesc, SceneDesc, SimplePathDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
+    SimplePathDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
@@ -160,6 +160,7 @@ impl Case {
         self.scheduled(algorithm, Schedule::Megakernel)
     }
 
+    /// A renderer that is cut into kernels so.
     pub fn scheduled(&self, algorithm: &Algorithm, schedule: Schedule) -> Option<Renderer> {
         self.rendering(&self.flatten(algorithm), algorithm, schedule)
     }
@@ -426,59 +427,9 @@ fn points_of_all_samplers_have_the_picture_of_the_cpu() {
     }
 }
 
-/// Algorithms without kernels, and settings that kernels do not have.
-#[test]
-fn what_algorithms_have_no_kernel_for_is_refused() {
-    let new = |desc: IntegratorDesc| Algorithm::new(&desc, RgbColorSpace::srgb(), 1).map(|_| ());
-    let bdpt = |desc: BdptDesc| new(IntegratorDesc::Bdpt(desc));
-    assert_eq!(bdpt(BdptDesc { max_depth: 16, ..Default::default() }), Ok(()));
-    let refused = bdpt(BdptDesc { max_depth: 17, ..Default::default() });
-    assert_eq!(refused, Err("integrator `bdpt` with a `maxdepth` above 16".into()));
-    let refused = bdpt(BdptDesc { visualize_weights: true, ..Default::default() });
-    assert_eq!(refused, Err("pictures of the strategies of integrator `bdpt`".into()));
-    let hybrid = WhittedDesc { reflections: ReflectionsDesc::Hybrid, ..Default::default() };
-    let refused = new(IntegratorDesc::Whitted(hybrid));
-    assert_eq!(refused, Err("integrator `whitted` with reflections that are not traced".into()));
-    assert_eq!(new(IntegratorDesc::Vcm(Default::default())), Err("integrator `vcm`".into()));
-    let mlt = |desc: MltDesc| new(IntegratorDesc::Mlt(desc));
-    assert_eq!(mlt(MltDesc { max_depth: 16, ..Default::default() }), Ok(()));
-    let refused = mlt(MltDesc { max_depth: 17, ..Default::default() });
-    assert_eq!(refused, Err("integrator `mlt` with a `maxdepth` above 16".into()));
-    let refused = mlt(MltDesc { technique: MltTechnique::Path, ..Default::default() });
-    assert_eq!(refused, Err("integrator `mlt` by any technique but `bdpt`".into()));
-}
-
 #[test]
 fn paths_have_the_picture_of_the_cpu() {
     compare_all(&DRAWN, |case| Algorithm::Path(case.path()));
-}
-
-/// What kernels do not draw is named, and found in the text.
-#[test]
-fn what_kernels_do_not_draw_is_refused_with_its_place() {
-    let begin = "Camera \"perspective\"\nFilm \"rgb\"\nWorldBegin\n";
-    let cases = [
-        ("Shape \"cone\"", "shape `cone`", "Shape \"cone\""),
-        (
-            "Scale 1 2 3\nShape \"curve\" \"point3 P\" [ 0 0 0 0 1 0 0 1 1 1 1 1 ]",
-            "curves whose widths are stretched",
-            "Shape \"curve\"",
-        ),
-        (
-            "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float phimax\" 90",
-            "area lights of this shape",
-            "Shape \"sphere\"",
-        ),
-    ];
-    for (rest, what, place) in cases {
-        let text = format!("{begin}{rest}\n");
-        let case = Case::of_text(&text);
-        let refusals = case.flatten(&Algorithm::Path(PathDesc::default())).err().unwrap_or_default();
-        let refusal = refusals.iter().find(|refusal| refusal.what == what);
-        let refusal = refusal.unwrap_or_else(|| panic!("{what}: {refusals:?}"));
-        let at = refusal.span.start as usize;
-        assert!(text[at..].starts_with(place), "{what}: {}", &text[at..]);
-    }
 }
 
 /// Other choices of lights than that of the scenes, and surfaces and lights that they do not have.
