@@ -17,7 +17,6 @@
 
 #![allow(unsafe_code)]
 
-use super::packet::PacketSlabs;
 use lanes::Vector;
 use math::{Bounds3, Ray, Vec3, gamma};
 
@@ -75,7 +74,7 @@ impl Child {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
-    planes: [[f32; WIDTH]; 6],
+    pub(super) planes: [[f32; WIDTH]; 6],
     children: [Child; WIDTH],
     len: u32,
 }
@@ -152,7 +151,7 @@ pub(super) fn is_moderate(size: f32, largest: f32) -> bool {
 }
 
 /// Bytes of the planes of one side of all boxes.
-const PLANE: usize = size_of::<[f32; WIDTH]>();
+pub(super) const PLANE: usize = size_of::<[f32; WIDTH]>();
 
 /// The offsets in bytes of the planes that a ray crosses first and last along each axis.
 #[inline(always)]
@@ -234,65 +233,6 @@ impl WideNode {
     pub fn bounds_of(&self, lane: usize) -> Bounds3 {
         let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
         Bounds3 { min: corner(0), max: corner(3) }
-    }
-
-    /// Where each ray of a packet enters the box of a child, and a bit for each that does before
-    /// its `t_max`.
-    #[inline(always)]
-    pub fn intersect_rays<V: Vector<WIDTH>>(
-        &self,
-        lane: usize,
-        packet: &PacketSlabs<V>,
-        t_max: V,
-        zero: V,
-    ) -> (V, u32) {
-        let rays = &packet.rays;
-        let (mut near, mut far) = (zero, t_max);
-        for axis in 0..3 {
-            let first = rays.first[axis] / PLANE;
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below
-            // [`WIDTH`]; `rays` is the proof of the instruction set.
-            let [enter, leave] = unsafe {
-                let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
-                let last_plane =
-                    V::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
-                [
-                    first_plane.relaxed_mul_sub(rays.inverse[axis], rays.near[axis]),
-                    last_plane.relaxed_mul_sub(rays.inverse[axis], rays.far[axis]),
-                ]
-            };
-            near = enter.max(near);
-            far = leave.min(far);
-        }
-        (near, near.le(far))
-    }
-
-    /// A lower bound of where rays of a packet enter each box, and a bit for each box that any may
-    /// enter before `t_max`.
-    #[inline(always)]
-    pub fn intersect_packet<V: Vector<WIDTH>>(&self, packet: &PacketSlabs<V>, t_max: V, zero: V) -> (V, u32) {
-        let PacketSlabs { least, greatest, .. } = packet;
-        let (mut near, mut far) = (zero, t_max);
-        for axis in 0..3 {
-            let first = least.first[axis] / PLANE;
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; `packet` is the proof
-            // of the instruction set.
-            let [first_plane, last_plane] = unsafe {
-                [
-                    V::load(self.planes.get_unchecked(first)),
-                    V::load(self.planes.get_unchecked(2 * axis + 3 - first)),
-                ]
-            };
-            let enter = first_plane
-                .relaxed_mul_sub(least.inverse[axis], least.near[axis])
-                .min(first_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.near[axis]));
-            let leave = last_plane
-                .relaxed_mul_sub(least.inverse[axis], least.far[axis])
-                .max(last_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.far[axis]));
-            near = enter.max(near);
-            far = leave.min(far);
-        }
-        (near, near.le(far))
     }
 
     /// Where the ray crosses the planes of each box along an axis, first and last.

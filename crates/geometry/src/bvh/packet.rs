@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code)]
 
-use super::node::{MARGIN, RaySlabs, WIDTH, is_moderate, size};
+use super::node::{MARGIN, PLANE, RaySlabs, WIDTH, WideNode, is_moderate, size};
 use lanes::Vector;
 use math::{Bounds3, Vec3};
 
@@ -36,18 +36,17 @@ impl Packet {
         // SAFETY: as the caller promises.
         let (splat, load) = unsafe { (|x| V::splat(x), |from| V::load(from)) };
         let (zero, most) = (splat(0.0), splat(f32::MAX));
-        let lead: [f32; 3] = [self.d[0][0], self.d[1][0], self.d[2][0]];
         let mut of_origins = zero;
         let mut of_directions = zero;
         let mut all = load(&self.t_max).le(splat(f32::INFINITY)) & zero.le(load(&self.t_max));
         for axis in 0..3 {
             let (o, d) = (load(&self.o[axis]), load(&self.d[axis]));
             all &= o.abs().le(most) & d.abs().le(most);
-            let (between, turned) = (o.sub(splat(self.o[axis][0])), d.sub(splat(lead[axis])));
+            let (between, turned) = (o.sub(splat(self.o[axis][0])), d.sub(splat(self.d[axis][0])));
             of_origins = of_origins.add(between.mul(between));
             of_directions = of_directions.add(turned.mul(turned));
         }
-        let length2 = lead[0] * lead[0] + lead[1] * lead[1] + lead[2] * lead[2];
+        let length2 = Vec3::new(self.d[0][0], self.d[1][0], self.d[2][0]).length_squared();
         all &= of_origins.le(splat(SPREAD * SPREAD * size * size));
         all &= of_directions.lt(splat(SPREAD * SPREAD * length2));
         let [x, y, z] = [load(&self.d[0]).abs(), load(&self.d[1]).abs(), load(&self.d[2]).abs()];
@@ -130,6 +129,67 @@ impl<V: Vector<WIDTH>> PacketSlabs<V> {
             }
             Self { rays, least, greatest }
         }
+    }
+}
+
+impl WideNode {
+    /// Where each ray of a packet enters the box of a child, and a bit for each that does before
+    /// its `t_max`.
+    #[inline(always)]
+    pub fn intersect_rays<V: Vector<WIDTH>>(
+        &self,
+        lane: usize,
+        packet: &PacketSlabs<V>,
+        t_max: V,
+        zero: V,
+    ) -> (V, u32) {
+        let rays = &packet.rays;
+        let (mut near, mut far) = (zero, t_max);
+        for axis in 0..3 {
+            let first = rays.first[axis] / PLANE;
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below
+            // [`WIDTH`]; `rays` is the proof of the instruction set.
+            let [enter, leave] = unsafe {
+                let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
+                let last_plane =
+                    V::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
+                [
+                    first_plane.relaxed_mul_sub(rays.inverse[axis], rays.near[axis]),
+                    last_plane.relaxed_mul_sub(rays.inverse[axis], rays.far[axis]),
+                ]
+            };
+            near = enter.max(near);
+            far = leave.min(far);
+        }
+        (near, near.le(far))
+    }
+
+    /// A lower bound of where rays of a packet enter each box, and a bit for each box that any may
+    /// enter before `t_max`.
+    #[inline(always)]
+    pub fn intersect_packet<V: Vector<WIDTH>>(&self, packet: &PacketSlabs<V>, t_max: V, zero: V) -> (V, u32) {
+        let PacketSlabs { least, greatest, .. } = packet;
+        let (mut near, mut far) = (zero, t_max);
+        for axis in 0..3 {
+            let first = least.first[axis] / PLANE;
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; `packet` is the proof
+            // of the instruction set.
+            let [first_plane, last_plane] = unsafe {
+                [
+                    V::load(self.planes.get_unchecked(first)),
+                    V::load(self.planes.get_unchecked(2 * axis + 3 - first)),
+                ]
+            };
+            let enter = first_plane
+                .relaxed_mul_sub(least.inverse[axis], least.near[axis])
+                .min(first_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.near[axis]));
+            let leave = last_plane
+                .relaxed_mul_sub(least.inverse[axis], least.far[axis])
+                .max(last_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.far[axis]));
+            near = enter.max(near);
+            far = leave.min(far);
+        }
+        (near, near.le(far))
     }
 }
 
