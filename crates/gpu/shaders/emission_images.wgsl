@@ -51,7 +51,11 @@ fn coordinates_on_light(light: u32, p_outside: vec3f, uv: vec2f) -> vec2f {
             let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
             let local = times(inverse(m), p - vec3f(number(at + 7), number(at + 11), number(at + 15)));
             let numbers = vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
-            return revolved_point(select(CYLINDER, DISK, tables[at] == DISK_LIGHT), local, numbers).uv;
+            var kind = SPHERE;
+            if (tables[at] != SPHERE_PART_LIGHT) {
+                kind = select(CYLINDER, DISK, tables[at] == DISK_LIGHT);
+            }
+            return revolved_point(kind, local, numbers).uv;
         }
     }
 }

@@ -15,6 +15,7 @@ const PROJECTION_LIGHT = 11u;
 const PATCH_LIGHT = 12u;
 const PORTAL_LIGHT = 13u;
 const PLACED_LIGHT = 14u;
+const SPHERE_PART_LIGHT = 15u;
 
 // Incident light, before its visibility is tested.
 struct LightSample {
@@ -48,6 +49,38 @@ fn is_delta(at: u32) -> bool {
 // The spectrum of a light times its scale.
 fn emission(at: u32, lambda: SampledWavelengths) -> vec4f {
     return spectrum(tables[at + 1], lambda) * number(at + 2);
+}
+
+// Whether a light without a surface moves.
+fn light_moves(at: u32) -> bool {
+    return HAS_MOTION && tables[at + 3] != 0;
+}
+
+// From the space of such a light, at the time of the sample.
+fn out_of_light(at: u32) -> Placement {
+    return placement_at(kept_motion(tables[at + 3] >> 2), shutter_time);
+}
+
+// The position of a light at a point.
+fn light_position(at: u32) -> vec3f {
+    let p = vector(at + 4);
+    if (!light_moves(at)) {
+        return p;
+    }
+    let outward = out_of_light(at);
+    if (tables[at] == GONIOMETRIC_LIGHT || tables[at] == PROJECTION_LIGHT) {
+        return outward.translation;
+    }
+    return times(outward.linear, p) + outward.translation;
+}
+
+// The direction of a light that is kept at a place of the tables.
+fn light_direction(at: u32, place: u32) -> vec3f {
+    let w = vector(place);
+    if (!light_moves(at)) {
+        return w;
+    }
+    return unit_or(times(out_of_light(at).linear, w), w);
 }
 
 fn flat_light(at: u32) -> FlatShape {
@@ -118,7 +151,7 @@ fn sample_light(
 
 fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
     var sample = no_light();
-    sample.p = Point3Error(vector(at + 4), vec3f());
+    sample.p = Point3Error(light_position(at), vec3f());
     let to_light = sample.p.p - context.p.p;
     let distance2 = Vec3_length_squared(to_light);
     if (distance2 == 0) {
@@ -134,7 +167,10 @@ fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavel
 // What the intensity of a light at a point is multiplied by along `w`.
 fn point_share(at: u32, w: vec3f, lambda: SampledWavelengths) -> vec4f {
     switch (tables[at]) {
-        case SPOT_LIGHT: { return vec4f(smooth_step(dot(w, vector(at + 7)), number(at + 11), number(at + 10))); }
+        case SPOT_LIGHT: {
+            let cosine = dot(w, light_direction(at, at + 7));
+            return vec4f(smooth_step(cosine, number(at + 11), number(at + 10)));
+        }
         case GONIOMETRIC_LIGHT: {
             return vec4f(density_of(tables[at + 25], position_on_square(in_light(at, w))));
         }
@@ -151,6 +187,9 @@ fn point_share(at: u32, w: vec3f, lambda: SampledWavelengths) -> vec4f {
 
 // A direction in the space of a light with an image.
 fn in_light(at: u32, w: vec3f) -> vec3f {
+    if (light_moves(at)) {
+        return times(inverse(out_of_light(at).linear), w);
+    }
     return times(Rows(vector(at + 7), vector(at + 10), vector(at + 13)), w);
 }
 
@@ -182,7 +221,7 @@ fn sample_far_light(
     sample.is_distant = true;
     switch (tables[at]) {
         case DISTANT_LIGHT: {
-            sample.wi = vector(at + 4);
+            sample.wi = light_direction(at, at + 4);
             sample.pdf = 1;
             sample.valid = true;
         }
@@ -195,235 +234,6 @@ fn sample_far_light(
         }
     }
     return sample;
-}
-
-fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: SampledWavelengths) -> LightSample {
-    let record = surface_record(at);
-    var inward: Placement;
-    var reference = context;
-    if (is_placed(at)) {
-        inward = way_to_surface(at);
-        reference = context_inside(inward, context);
-    }
-    var point: ShapeSample;
-    switch (tables[record]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            point = FlatShape_sample_from(flat_light(record), reference, u).v0;
-        }
-        case SPHERE_LIGHT: { point = sample_sphere(record, reference, u); }
-        default: {
-            point = point_by_area(record, u);
-            point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
-        }
-    }
-    if (is_placed(at)) {
-        leave_instance(inward, &point);
-    }
-    var sample = no_light();
-    let to_light = point.p.p - context.p.p;
-    if (Vec3_length_squared(to_light) == 0) {
-        return sample;
-    }
-    sample.wi = Vec3_normalize(to_light);
-    if (is_placed(at)) {
-        point.pdf *= solid_angle_factor(inward, sample.wi);
-    }
-    if (!(point.pdf > 0 && point.pdf < infinity()) || is_cut_out_of_light(at, point.p.p, point.n, point.uv)) {
-        return sample;
-    }
-    sample.l = image_share_at(at, point.p.p, point.uv, lambda);
-    sample.pdf = point.pdf;
-    sample.p = point.p;
-    sample.n = point.n;
-    sample.uv = point.uv;
-    sample.valid = emits(at, point.n, -sample.wi);
-    return sample;
-}
-
-// The cone in which a sphere is seen: sine, 1 − cosine of its half angle, and its axis. Within the
-// sphere the sine is 0.
-struct Cone {
-    axis: vec3f,
-    sine: f32,
-    one_minus_cos: f32,
-}
-
-fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
-    let toward = vector(at + 4) - context.p.p;
-    let distance = length(toward);
-    let radius = number(at + 7);
-    if (distance - length(context.p.error) <= radius) {
-        return Cone(vec3f(), 0, 2);
-    }
-    let sine = radius / distance;
-    return Cone(toward / distance, sine, sine * sine / (1 + safe_sqrt(1 - sine * sine)));
-}
-
-// The direction from the centre of a sphere to a point of it, by area.
-fn outward_by_area(at: u32, u: vec2f) -> vec3f {
-    let rotation = Rows(vector(at + 9), vector(at + 12), vector(at + 15));
-    return times(rotation, sample_uniform_sphere(vec2f(1 - u.x, u.y)));
-}
-
-// A point of a sphere: by the cone from outside, by area from inside.
-fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
-    let center = vector(at + 4);
-    let radius = number(at + 7);
-    let cone = cone_of(at, context);
-    var outward: vec3f;
-    var pdf = 1 / (6.2831855 * cone.one_minus_cos);
-    if (cone.sine > 0) {
-        let below_one = cone.one_minus_cos * u.x;
-        let cosine = 1 - below_one;
-        let sin2 = below_one * (1 + cosine);
-        let cos_alpha = sin2 / cone.sine + cosine * safe_sqrt(1 - sin2 / (cone.sine * cone.sine));
-        let local = spherical_direction(safe_sqrt(1 - cos_alpha * cos_alpha), cos_alpha, u.y * 6.2831855);
-        let x = coordinate_system(cone.axis).v1;
-        outward = -(x * local.x + cross(cone.axis, x) * local.y + cone.axis * local.z);
-    } else {
-        outward = outward_by_area(at, u);
-    }
-    let p = center + outward * radius;
-    let n = outward * number(at + 8);
-    if (cone.sine == 0) {
-        pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, vec2f());
-    }
-    return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
-}
-
-// A point of the surface of a light, with its density per area.
-fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
-    switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            var uv = u;
-            if (flat_shape.is_triangle) {
-                uv = sample_uniform_triangle(u).yz;
-            }
-            return ShapeSample(FlatShape_point(flat_shape, uv), flat_shape.n, uv, surface_density(at, uv));
-        }
-        case SPHERE_LIGHT: {
-            let center = vector(at + 4);
-            let radius = number(at + 7);
-            let outward = outward_by_area(at, u);
-            let error = POINT_ERROR * (abs(center) + vec3f(radius));
-            let p = Point3Error(center + outward * radius, error);
-            return ShapeSample(p, outward * number(at + 8), vec2f(), surface_density(at, vec2f()));
-        }
-        case PATCH_LIGHT: { return patch_by_area(at, u); }
-        default: { return revolved_by_area(at, u); }
-    }
-}
-
-// The normal of a patch, as long as its area element.
-fn patch_normal(at: u32, uv: vec2f) -> vec3f {
-    let twist = vector(at + 13);
-    return cross(vector(at + 7) + twist * uv.y, vector(at + 10) + twist * uv.x);
-}
-
-// The area elements at the corners of a patch.
-fn patch_weights(at: u32) -> vec4f {
-    return vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
-}
-
-// The density with which parameters of a patch are chosen.
-fn patch_density(at: u32, uv: vec2f) -> f32 {
-    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
-        return density_of(tables[at + 21], uv);
-    }
-    return bilinear_pdf(uv, patch_weights(at));
-}
-
-fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
-    var uv: vec2f;
-    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
-        uv = draw_2d(tables[at + 21], u).xy;
-    } else {
-        uv = sample_bilinear(u, patch_weights(at));
-    }
-    let sides = vector(at + 7) * uv.x + vector(at + 10) * uv.y + vector(at + 13) * (uv.x * uv.y);
-    let p = Point3Error(vector(at + 4) + sides, POINT_ERROR * (abs(vector(at + 4)) + abs(sides)));
-    let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 20);
-    return ShapeSample(p, n, uv, surface_density(at, uv));
-}
-
-// The density per area of points of a surface, sampled by area.
-fn surface_density(at: u32, uv: vec2f) -> f32 {
-    switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
-            return select(1.0, 2.0, flat_shape.is_triangle) / area;
-        }
-        case SPHERE_LIGHT: {
-            let radius = number(at + 7);
-            return 1 / (4 * 3.1415927 * radius * radius);
-        }
-        case PATCH_LIGHT: { return patch_density(at, uv) / length(patch_normal(at, uv)); }
-        default: { return 1 / number(at + 21); }
-    }
-}
-
-// A point of a disk or a cylinder.
-fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
-    let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
-    let translation = vec3f(number(at + 7), number(at + 11), number(at + 15));
-    let first = number(at + 16);
-    var p: vec3f;
-    var n = vec3f(0, 0, 1);
-    let phi = sin_cos(u.y * number(at + 19));
-    if (tables[at] == DISK_LIGHT) {
-        let radius = number(at + 17);
-        let hole = number(at + 18);
-        let distance = sqrt(hole * hole + (radius * radius - hole * hole) * u.x);
-        let is_whole = hole == 0 && number(at + 19) > 6.28318;
-        let ring = vec2f(phi.v1, phi.v0) * distance;
-        p = vec3f(select(ring, sample_uniform_disk_concentric(u) * radius, is_whole), first);
-    } else {
-        let low = number(at + 17);
-        n = vec3f(phi.v1, phi.v0, 0);
-        p = n * first + vec3f(0, 0, low + (number(at + 18) - low) * u.x);
-    }
-    let placed = times(m, p) + translation;
-    let size = times(absolute(m), abs(p)) + abs(translation);
-    let normal = Vec3_normalize(times(m, n)) * number(at + 20);
-    return ShapeSample(Point3Error(placed, POINT_ERROR * size), normal, vec2f(), 1 / number(at + 21));
-}
-
-// The density per solid angle with which a light's surface is sampled where a ray hits it.
-fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f) -> f32 {
-    return pdf_of_point(light, context, s.p.p, s.n, uv);
-}
-
-// The same, for a point of the surface and its normal.
-fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv: vec2f) -> f32 {
-    var at = light_record(light);
-    var reference = context;
-    var point = p;
-    var normal = n;
-    var factor = 1.0;
-    if (is_placed(at)) {
-        let inward = way_to_surface(at);
-        reference = context_inside(inward, context);
-        point = times(inward.linear, p) + inward.translation;
-        normal = Vec3_normalize(transposed(inverse(inward.linear), n));
-        factor = solid_angle_factor(inward, Vec3_normalize(p - context.p.p));
-        at = surface_record(at);
-    }
-    switch (tables[at]) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
-        }
-        case SPHERE_LIGHT: {
-            let cone = cone_of(at, reference);
-            if (cone.sine > 0) {
-                return factor / (6.2831855 * cone.one_minus_cos);
-            }
-        }
-        default: {}
-    }
-    let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);
-    return by_area * surface_density(at, uv) * factor;
 }
 
 // The radiance of an infinite light along a ray that leaves the scene, and the density with which
@@ -449,7 +259,11 @@ fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
 
 // The position in an image of the sphere that is seen along a direction.
 fn sky_position(at: u32, d: vec3f) -> vec2f {
-    let w = Vec3_normalize(times(Rows(vector(at + 8), vector(at + 11), vector(at + 14)), d));
+    var inward = Rows(vector(at + 8), vector(at + 11), vector(at + 14));
+    if (light_moves(at)) {
+        inward = inverse(out_of_light(at).linear);
+    }
+    let w = Vec3_normalize(times(inward, d));
     if (tables[at + 6] == 0) {
         return equal_area_sphere_to_square(w);
     }
@@ -502,8 +316,12 @@ fn sample_sky(
         let theta = sin_cos(3.1415927 * st.y);
         local = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
     }
+    var outward = Rows(vector(at + 17), vector(at + 20), vector(at + 23));
+    if (light_moves(at)) {
+        outward = out_of_light(at).linear;
+    }
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
-    (*sample).wi = Vec3_normalize(times(Rows(vector(at + 17), vector(at + 20), vector(at + 23)), local));
+    (*sample).wi = Vec3_normalize(times(outward, local));
     (*sample).l = sky_image(at, st, lambda);
     (*sample).pdf = drawn.z / solid_angle;
     (*sample).valid = drawn.z != 0 && solid_angle != 0;

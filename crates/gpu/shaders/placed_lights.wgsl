@@ -63,12 +63,13 @@ fn point_on_light(at: u32, u: vec2f) -> ShapeSample {
 
 // The density per area of such a point, given its normal.
 fn density_on_light(at: u32, n: vec3f, uv: vec2f) -> f32 {
-    let density = surface_density(surface_record(at), uv);
     if (!is_placed(at)) {
-        return density;
+        return surface_density(at, n, uv);
     }
     let inward = way_to_surface(at).linear;
-    return density * abs(determinant(inward)) * length(transposed(inverse(inward), n));
+    let outward = inverse(inward);
+    let density = surface_density(surface_record(at), Vec3_normalize(transposed(outward, n)), uv);
+    return density * abs(determinant(inward)) * length(transposed(outward, n));
 }
 
 // The texture of the alpha of a light, or 0.

@@ -57,9 +57,9 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 17] = plumbing! {
+const PLUMBING: [&str; 18] = plumbing! {
     "scene" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
-    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "placed_lights" "light_choices" "cameras"
+    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "surface_lights" "placed_lights" "light_choices" "cameras"
 };
 
 /// The law of measured surfaces, and the look-ups in their tables, for kernels that declare

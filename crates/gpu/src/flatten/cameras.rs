@@ -82,7 +82,7 @@ pub fn words(view: &View, lenses: u32) -> Vec<u32> {
 }
 
 /// The numbers of both keys of a motion, and the angle.
-fn interpolated(keys: &MotionKeys) -> Vec<f32> {
+pub(super) fn interpolated(keys: &MotionKeys) -> Vec<f32> {
     let &MotionKeys { times, translations, rotations, stretches } = keys;
     let mut numbers = Vec::new();
     for i in 0..2 {

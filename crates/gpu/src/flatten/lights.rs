@@ -1,5 +1,7 @@
 //! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit plus 2 where no
-//! ray hits the surface plus four times the offset of what else a surface has, and numbers.
+//! ray hits the surface plus four times the offset of what else a surface has, and numbers. A light
+//! without a surface has there four times the offset of its motion, or 0 where it is at rest; one
+//! that moves has its position and direction in its own space.
 //!
 //! | kind | numbers |
 //! |---|---|
@@ -9,7 +11,7 @@
 //! | 3 triangle, 4 rectangle | corner, sides, normal, and of a triangle with an image the texture coordinates at its corners |
 //! | 5 sphere | centre, radius, 1 or −1 where the outside is inside, the rows of the rotation from object to render space |
 //! | 6 uniform infinite | none |
-//! | 8 disk, 9 cylinder | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area |
+//! | 8 disk, 9 cylinder, 15 part of a sphere | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area in object space |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
 //! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
@@ -35,6 +37,7 @@ use scene::light::{
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 
 use super::Flattener;
+use super::cameras::interpolated;
 
 const POINT: u32 = 0;
 const SPOT: u32 = 1;
@@ -51,6 +54,7 @@ const PROJECTION: u32 = 11;
 const PATCH: u32 = 12;
 const PORTAL_INFINITE: u32 = 13;
 const PLACED: u32 = 14;
+const SPHERE_PART: u32 = 15;
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -69,30 +73,27 @@ impl Flattener<'_> {
         let span = light.span();
         match light.row() {
             Light::Point(l) => {
-                self.at_rest(l.motion.is_some(), span);
-                self.emitter(POINT, &l.intensity, &l.p.to_array())
+                let motion = self.motion(l.motion.as_deref(), span);
+                self.emitter(POINT, &l.intensity, motion, &l.p.to_array())
             }
             Light::Spot(l) => {
-                self.at_rest(l.motion.is_some(), span);
+                let motion = self.motion(l.motion.as_deref(), span);
                 let numbers =
                     [&l.p.to_array()[..], &l.axis.to_array(), &[l.cos_falloff_start, l.cos_falloff_end]];
-                self.emitter(SPOT, &l.intensity, &numbers.concat())
+                self.emitter(SPOT, &l.intensity, motion, &numbers.concat())
             }
             Light::Distant(l) => {
-                self.at_rest(l.motion.is_some(), span);
-                self.emitter(DISTANT, &l.radiance, &l.w.to_array())
+                let motion = self.motion(l.motion.as_deref(), span);
+                self.emitter(DISTANT, &l.radiance, motion, &l.w.to_array())
             }
-            Light::UniformInfinite(l) => self.emitter(UNIFORM_INFINITE, &l.radiance, &[]),
+            Light::UniformInfinite(l) => self.emitter(UNIFORM_INFINITE, &l.radiance, 0, &[]),
             Light::Area(area) => {
                 if light.primitive() == 0 {
                     *shared = None;
                 }
                 self.area_light(area, light.primitive(), span, shared)
             }
-            Light::ImageInfinite(l) => {
-                self.at_rest(!l.is_at_rest(), span);
-                self.image_light(l)
-            }
+            Light::ImageInfinite(l) => self.image_light(l, span),
             Light::PortalInfinite(l) => {
                 if self.begins_at_lights {
                     self.refuse("light paths from infinite lights with portals", span);
@@ -100,18 +101,14 @@ impl Flattener<'_> {
                 self.portal(PORTAL_INFINITE, l)
             }
             Light::Goniometric(l) => {
-                let (motion, intensity, distribution) = l.parts();
-                self.at_rest(motion.is_moving(), span);
-                let distribution = self.distribution(distribution);
-                let at = self.emitter(GONIOMETRIC, intensity, &placement(motion));
+                let (transform, intensity, distribution) = l.parts();
+                let (motion, distribution) =
+                    (self.motion(Some(transform), span), self.distribution(distribution));
+                let at = self.emitter(GONIOMETRIC, intensity, motion, &placement(transform));
                 self.slab.add([distribution]);
                 at
             }
-            Light::Projection(l) => {
-                let (motion, ..) = l.parts();
-                self.at_rest(motion.is_moving(), span);
-                self.projection(l)
-            }
+            Light::Projection(l) => self.projection(l, span),
         }
     }
 
@@ -120,27 +117,32 @@ impl Flattener<'_> {
         0
     }
 
-    fn at_rest(&mut self, moves: bool, span: Span) {
-        if moves {
-            self.refuse("moving lights", span);
+    /// The offset of the motion of a light without a surface, or 0 where it is at rest.
+    fn motion(&mut self, transform: Option<&AnimatedTransform>, span: Span) -> u32 {
+        let Some(keys) = transform.and_then(AnimatedTransform::keys) else { return 0 };
+        if self.begins_at_lights {
+            self.refuse("light paths from moving lights", span);
         }
+        self.parts.motion = true;
+        self.slab.add_numbers(interpolated(&keys))
     }
 
-    /// A light without a surface.
-    pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, numbers: &[f32]) -> u32 {
+    /// A light without a surface, with the offset of its motion.
+    pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, motion: u32, numbers: &[f32]) -> u32 {
         let spectrum = self.spectrum(&emission.spectrum);
-        let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 0]);
+        let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 4 * motion]);
         self.slab.add_numbers(numbers.iter().copied());
         at
     }
 
-    fn projection(&mut self, light: &ProjectionLight) -> u32 {
-        let (motion, slide, scale, distribution) = light.parts();
+    fn projection(&mut self, light: &ProjectionLight, span: Span) -> u32 {
+        let (transform, slide, scale, distribution) = light.parts();
+        let motion = self.motion(Some(transform), span);
         let EmissionImage { image, color_space, .. } = &slide.image;
         let pixels = self.pixels(image, color_space);
         let distribution = self.distribution(distribution);
         let spectrum = color_space.illuminant();
-        let at = self.emitter(PROJECTION, &Emission { spectrum, scale }, &placement(motion));
+        let at = self.emitter(PROJECTION, &Emission { spectrum, scale }, motion, &placement(transform));
         let screen = slide.screen();
         self.slab.add([distribution, image.width(), image.height()]);
         self.slab.add_numbers([screen.min, screen.max].map(|corner| corner.to_array()).into_iter().flatten());
@@ -159,7 +161,8 @@ impl Flattener<'_> {
         }))
     }
 
-    fn image_light(&mut self, light: &ImageInfiniteLight) -> u32 {
+    fn image_light(&mut self, light: &ImageInfiniteLight, span: Span) -> u32 {
+        let motion = self.motion(Some(&light.render_from_light), span);
         let (width, height) = (light.image.width(), light.image.height());
         let pixels = self.pixels(&light.image, light.color_space);
         let [complete, incomplete] =
@@ -170,7 +173,8 @@ impl Flattener<'_> {
             Projection::LatitudeLongitude => 1,
         };
         let scale = light.scale.to_bits();
-        let at = self.slab.add([IMAGE_INFINITE, illuminant, scale, 0, width, height, kind, complete]);
+        let words = [IMAGE_INFINITE, illuminant, scale, 4 * motion, width, height, kind, complete];
+        let at = self.slab.add(words);
         self.slab.add_numbers(placement(&light.render_from_light)[3..].iter().copied());
         self.slab.add([pixels, incomplete]);
         at
@@ -211,7 +215,7 @@ impl Flattener<'_> {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
             (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
-        } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain, shape.area())) {
+        } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain)) {
             numbers
         } else {
             return self.no_light("area lights of this shape", span);
@@ -253,7 +257,8 @@ impl Flattener<'_> {
     }
 }
 
-/// The position of a light, the rows of the matrix to its space, and those of the inverse.
+/// The position of a light, the rows of the matrix to its space, and those of the inverse, before
+/// it moves.
 fn placement(motion: &AnimatedTransform) -> [f32; 21] {
     let render_from_light = motion.start().matrix().as_dmat4();
     let mut numbers = [0.0; 21];
@@ -265,9 +270,9 @@ fn placement(motion: &AnimatedTransform) -> [f32; 21] {
     numbers
 }
 
-/// The kind and the numbers of a patch, or of a whole sphere, a disk or a cylinder that is placed
-/// without distortion and has this area; `None` of other shapes.
-fn surface(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
+/// The kind and the numbers of a patch, a sphere, a disk or a cylinder, or of a part of one; `None`
+/// of other shapes.
+fn surface(shape: &PlainShape) -> Option<(u32, Vec<f32>)> {
     let (kind, render_from_object, flips, numbers) = match *shape {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let element = |u: f32, v: f32| (right + twist * v).cross(up + twist * u).length();
@@ -281,31 +286,31 @@ fn surface(shape: &PlainShape, area: f32) -> Option<(u32, Vec<f32>)> {
         }
         PlainShape::Curve { .. } => return None,
     };
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| render_from_object.transform_vector3(axis));
-    let scale = axes[0].length();
-    let is_similar = (0..3).all(|i| {
-        (axes[i].length() - scale).abs() <= 1e-6 * scale
-            && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
-    });
     let [first, second, third, phi] = numbers;
-    if !is_similar {
-        return None;
-    }
     let side = if flips { -1.0 } else { 1.0 };
-    let placed = || {
+    let placed = |area: f32| {
         let rows = [0, 1, 2].map(|row| render_from_object.row(row).as_vec4().to_array());
         [rows.as_flattened(), &numbers, &[side, area]].concat()
     };
     match kind {
-        RevolvedKind::Sphere if second == -first && third == first && phi >= TAU => {
+        RevolvedKind::Sphere => {
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| render_from_object.transform_vector3(axis));
+            let scale = axes[0].length();
+            let is_similar = (0..3).all(|i| {
+                (axes[i].length() - scale).abs() <= 1e-6 * scale
+                    && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
+            });
+            if !is_similar || second != -first || third != first || phi < TAU {
+                return Some((SPHERE_PART, placed(phi * first * (third - second))));
+            }
             let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
             let rotation =
                 [0, 1, 2].map(|row| (render_from_object.row(row).truncate() / scale).as_vec3().to_array());
             let numbers = [&center.to_array()[..], &[first * scale as f32, side], rotation.as_flattened()];
             Some((SPHERE, numbers.concat()))
         }
-        RevolvedKind::Disk => Some((DISK, placed())),
-        RevolvedKind::Cylinder => Some((CYLINDER, placed())),
-        RevolvedKind::Sphere | RevolvedKind::Plane => None,
+        RevolvedKind::Disk => Some((DISK, placed(0.5 * phi * (second * second - third * third)))),
+        RevolvedKind::Cylinder => Some((CYLINDER, placed(phi * first * (third - second)))),
+        RevolvedKind::Plane => None,
     }
 }

@@ -36,7 +36,7 @@ impl Flattener<'_> {
         let sums = self.slab.add(sums.into_iter().flat_map(|sum| [sum as u32, (sum >> 32) as u32]));
         let vectors = [corner, frame.x, frame.y, frame.z].map(|v| v.to_array());
         let numbers = [vectors.as_flattened(), &size.to_array()].concat();
-        let at = self.emitter(kind, &emission, &numbers);
+        let at = self.emitter(kind, &emission, 0, &numbers);
         self.slab.add([resolution, pixels, sums, resolution, resolution]);
         at
     }

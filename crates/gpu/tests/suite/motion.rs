@@ -107,6 +107,61 @@ ActiveTransform All
 ObjectInstance "string"
 "#;
 
+/// Lights without surfaces that move, turn and stretch, and parts of spheres, cylinders and disks
+/// that emit, stretched and mirrored.
+pub const SIGNALS: &str = r#"
+LookAt 0 -6 2.5  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 45 "float shutterclose" 1
+Film "rgb"
+WorldBegin
+AttributeBegin
+    ActiveTransform EndTime
+    Translate 0.8 0.2 -0.3
+    Rotate 50 0.2 1 0.3
+    Scale 1.2 0.8 1
+    ActiveTransform All
+    LightSource "infinite" "string filename" "slide.pfm" "float scale" 0.1
+    LightSource "distant" "rgb L" [ 0.5 0.4 0.3 ] "point3 from" [ -1 -2 2 ]
+    LightSource "point" "rgb I" [ 2 3 2 ] "point3 from" [ -1.5 -1 1.5 ]
+    LightSource "spot" "rgb I" [ 9 5 5 ] "point3 from" [ 0 -1 3 ] "point3 to" [ 0.5 0 0 ] "float coneangle" 35
+    Translate 1 -1 2
+    LightSource "goniometric" "string filename" "slide.pfm" "float scale" 3
+    Translate 0 -2 0
+    Rotate 110 1 0 0
+    LightSource "projection" "string filename" "slide.pfm" "float fov" 50 "float scale" 9
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
+Shape "bilinearmesh" "point3 P" [ -4 -4 -0.3  4 -4 -0.3  -4 4 0  4 4 0 ]
+AreaLightSource "diffuse" "rgb L" [ 4 6 8 ]
+AttributeBegin
+    Translate -1.4 0.3 0.5
+    Scale 1 0.6 -1.5
+    Shape "sphere" "float radius" 0.4 "float zmin" -0.2 "float zmax" 0.35 "float phimax" 250
+    Translate 1 0 0
+    Rotate 40 1 1 0
+    Scale 0.5 1 1.2
+    Shape "sphere" "float radius" 0.3
+AttributeEnd
+AttributeBegin
+    Translate 0.5 0.4 0.4
+    Scale 0.5 1 1.3
+    Rotate 50 1 0.2 0.3
+    Shape "cylinder" "float radius" 0.3 "float zmin" -0.3 "float zmax" 0.3 "float phimax" 200
+    Translate 0.9 0 0.6
+    Shape "disk" "float radius" 0.4 "float innerradius" 0.1 "float phimax" 300
+AttributeEnd
+"#;
+
+#[test]
+fn lights_of_all_forms_in_motion_have_the_picture_of_the_cpu() {
+    let slide = [0.9, 0.2, 0.1, 0.1, 0.8, 0.2, 0.3, 0.3, 0.9, 0.8, 0.8, 0.7];
+    let case = Case::with_image(SIGNALS, "slide.pfm", slide);
+    let path = Algorithm::Path(PathDesc { max_depth: 3, ..PathDesc::default() });
+    assert_eq!(case.compare("signals", &path), None);
+    let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
+    assert_eq!(refusals.expect("a refusal")[0].what, "light paths from moving lights");
+}
+
 #[test]
 fn shapes_in_motion_have_the_picture_of_the_cpu() {
     let case = Case::of_text(TURNING);

@@ -98,7 +98,7 @@ impl Case {
     }
 
     /// A scene that reads an image of 2 × 2 colours.
-    fn with_image(text: &str, name: &str, colors: [f32; 12]) -> Self {
+    pub fn with_image(text: &str, name: &str, colors: [f32; 12]) -> Self {
         let bytes = [b"PF\n2 2\n-1.0\n".as_slice(), &colors.map(f32::to_le_bytes).concat()].concat();
         let path = Path::new("scene.pbrt");
         Self::new(path, &MemoryAssets::default().with(path, text).with(name, bytes))

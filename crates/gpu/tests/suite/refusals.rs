@@ -39,11 +39,6 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
             "curves whose widths are stretched",
             "Shape \"curve\"",
         ),
-        (
-            "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float phimax\" 90",
-            "area lights of this shape",
-            "Shape \"sphere\"",
-        ),
     ];
     for (rest, what, place) in cases {
         let text = format!("{begin}{rest}\n");
