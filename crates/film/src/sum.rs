@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use image::ImageError;
+use rayon::prelude::*;
 
 use crate::grid::Grid;
 
@@ -103,7 +104,13 @@ pub(crate) struct Sums {
     components: usize,
     low: Vec<Low>,
     high: Vec<High>,
+    /// Whether pages of `low` may not have been written to.
+    is_fresh: bool,
 }
+
+/// Up to so many bytes of sums are written by all threads when they are made. The pages of more are
+/// allocated where samples are added.
+const WRITTEN_AT_ONCE: usize = 64 << 20;
 
 impl Sums {
     /// `components` sums for each pixel, all 0; refused where there is no memory for them.
@@ -112,7 +119,15 @@ impl Sums {
             return Ok(Self::default());
         }
         let count = grid.0.area().saturating_mul(components);
-        Ok(Self { components, low: zeros(count)?, high: maps(grid.tile_count())? })
+        let is_fresh = count.saturating_mul(SUM_BYTES) > WRITTEN_AT_ONCE;
+        let low = if is_fresh {
+            zeros(count)?
+        } else {
+            let mut low = reserved(count)?;
+            (0..count).into_par_iter().map(|_| Low::default()).collect_into_vec(&mut low);
+            low
+        };
+        Ok(Self { components, low, high: maps(grid.tile_count())?, is_fresh })
     }
 
     /// The number of sums per pixel.
@@ -122,12 +137,12 @@ impl Sums {
 
     /// The sums of each tile, of as many pixels as its range says.
     pub(crate) fn tiles(&mut self, grid: Grid) -> impl Iterator<Item = TileSums<'_>> {
-        let (components, mut rest) = (self.components, &mut self.low[..]);
+        let (components, is_fresh, mut rest) = (self.components, self.is_fresh, &mut self.low[..]);
         self.high.iter_mut().enumerate().map(move |(tile, high)| {
             let count = grid.bounds(tile).area() * components;
             let (low, others) = std::mem::take(&mut rest).split_at_mut(count);
             rest = others;
-            TileSums { components, low, high }
+            TileSums { components, low, high, is_fresh }
         })
     }
 
@@ -135,7 +150,7 @@ impl Sums {
     pub(crate) fn tile(&mut self, tile: usize, pixels: Range<usize>) -> TileSums<'_> {
         let components = self.components;
         let low = &mut self.low[pixels.start * components..pixels.end * components];
-        TileSums { components, low, high: &mut self.high[tile] }
+        TileSums { components, low, high: &mut self.high[tile], is_fresh: self.is_fresh }
     }
 
     /// A sum in units of 2⁻⁶⁴, as far as 128 bits hold it. `first` is the index of the tile's first
@@ -196,6 +211,7 @@ pub(crate) struct TileSums<'film> {
     components: usize,
     low: &'film mut [Low],
     high: &'film mut High,
+    is_fresh: bool,
 }
 
 impl TileSums<'_> {
@@ -204,10 +220,12 @@ impl TileSums<'_> {
         self.components
     }
 
-    /// Writes zeros to all sums, which are zero.
+    /// Writes zeros to all sums, which are zero, where that has not been done.
     pub(crate) fn touch(&mut self) {
         debug_assert!(self.low.iter().all(|low| *low == [0; 3]) && self.high.is_empty());
-        self.low.fill([0; 3]);
+        if self.is_fresh {
+            self.low.fill([0; 3]);
+        }
     }
 
     /// Adds a term that [`can_add`].
@@ -276,7 +294,7 @@ impl OwnTileSums {
 
     /// The sums, to be added to.
     pub(crate) fn open(&mut self) -> TileSums<'_> {
-        TileSums { components: self.components, low: &mut self.low, high: &mut self.high }
+        TileSums { components: self.components, low: &mut self.low, high: &mut self.high, is_fresh: false }
     }
 
     /// A sum in units of 2⁻⁶⁴, as far as 128 bits hold it.

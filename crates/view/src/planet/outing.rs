@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use alhazen::Overrides;
 #[cfg(feature = "gpu")]
 use alhazen::description::Diagnostic;
-use alhazen::description::{CameraDesc, FilterDesc, IntegratorDesc, TransformDesc};
+use alhazen::description::{CameraDesc, FilterDesc, IntegratorDesc, SamplerKind, TransformDesc};
 #[cfg(feature = "gpu")]
 use alhazen::device::Kernels;
 use alhazen::geometry::GeometryId;
@@ -84,6 +84,10 @@ impl Outing {
         // A frame has time for a sample of each pixel and a shadow ray towards the sun. Few samples
         // make a sharper picture with the filter that is a pixel.
         imported.desc.filter.value = FilterDesc::Box { radius: [0.5; 2] };
+        if samples == 1 {
+            // One sample has nothing to be stratified with in its pixel.
+            imported.desc.sampler.value.kind = SamplerKind::Independent { pixel_samples: 1 };
+        }
         if let IntegratorDesc::Whitted(whitted) = &mut imported.desc.integrator.value {
             whitted.ambient = true;
         }
