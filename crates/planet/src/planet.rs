@@ -323,6 +323,7 @@ impl Planet {
         (contacts, struck.concat())
     }
 
+    /// The same of bodies that follow each other.
     fn contacts_of(&self, bodies: &[u32], movers: &[Mover], dt: f32) -> (Contacts, Vec<u32>) {
         let Bodies { center, radius, velocity, state, .. } = &self.bodies;
         let query = |&body: &u32| {
@@ -362,16 +363,7 @@ impl Planet {
                     continue;
                 }
                 if let Some(contact) = contact(center, radius, Vector3::ZERO, body < other) {
-                    let speed = -v.dot(contact.normal);
-                    let is_struck = match state[other as usize] {
-                        State::Resting => speed > WAKE,
-                        State::Held => {
-                            let ratio = size / radius;
-                            speed * ratio * ratio * ratio > self.bodies.substance(other as usize).firmness()
-                        }
-                        State::Moving => false,
-                    };
-                    if is_struck {
+                    if self.is_struck(other as usize, size, -v.dot(contact.normal)) {
                         struck.push(other);
                     }
                     contacts.push(contact);
@@ -386,7 +378,7 @@ impl Planet {
                 if let Some(contact) = contact(center, radius, velocity[j], body < other) {
                     let moves = state[j] == State::Moving;
                     let share = if moves { self.share(mass, j) } else { 1.0 };
-                    if state[j] == State::Resting && -v.dot(contact.normal) > WAKE {
+                    if self.is_struck(j, size, -v.dot(contact.normal)) {
                         struck.push(other);
                     }
                     contacts.push(Contact { partner: self.place[j], share, ..contact });
@@ -395,6 +387,18 @@ impl Planet {
             counts.push((contacts.len() - first) as u32);
         }
         (Contacts::new(&contacts, counts), struck)
+    }
+
+    /// Whether a body that does not move will, when one of this radius comes at a speed.
+    fn is_struck(&self, body: usize, radius: f32, speed: f32) -> bool {
+        match self.bodies.state[body] {
+            State::Resting => speed > WAKE,
+            State::Held => {
+                let ratio = radius / self.bodies.radius[body];
+                speed * ratio * ratio * ratio > self.bodies.substance(body).firmness()
+            }
+            State::Moving => false,
+        }
     }
 
     /// The share of changes of a body of this mass, beside another one that moves.
