@@ -168,7 +168,7 @@ impl<'film> Development<'film> {
     fn pixel(&self, tile: usize, first: usize, pixel: usize, mut put: impl FnMut(f32)) {
         let color = |c| self.sum(|film| &film.color, [tile, first, pixel], c);
         let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
-        let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
+        let mean = mean([0, 1, 2].map(color), weight);
         let response = [0, 1, 2].map(|c| mean[c] + self.splats(tile, pixel, c));
         self.color(response).into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
@@ -271,6 +271,11 @@ impl<'film> Development<'film> {
     }
 }
 
+/// The mean response of weighted ones that have these sums.
+fn mean(sums: [f64; 3], weight: f64) -> [f64; 3] {
+    if weight == 0.0 { [0.0; 3] } else { sums.map(|c| c / weight) }
+}
+
 /// A colour as half floats can hold it.
 fn as_half(rgb: Rgb) -> Rgb {
     let (least, most) = (f16::MIN.to_f32(), f16::MAX.to_f32());
@@ -317,8 +322,10 @@ impl PixelSource for Development<'_> {
                 && let Some(sums) = self.film.color.values(tile, first + row..first + row + width)
             {
                 for [r, g, b, weight] in sums {
-                    let mean = if weight == 0.0 { [0.0; 3] } else { [r, g, b].map(|c| c / weight) };
-                    self.color(mean).into_iter().zip(values.by_ref()).for_each(|(c, value)| *value = c);
+                    self.color(mean([r, g, b], weight))
+                        .into_iter()
+                        .zip(values.by_ref())
+                        .for_each(|(c, value)| *value = c);
                 }
                 continue;
             }

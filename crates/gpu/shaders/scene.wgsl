@@ -1,8 +1,8 @@
 // The buffers of a scene, and the places of random numbers.
 //
-// Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` has what Rust calls a `Head`. Tables are
-// words; a record refers to another by the index of its first word. The files of `src/flatten/`
-// describe the records.
+// Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` has
+// what Rust calls a `Head`. Tables are words; a record refers to another by the index of its first
+// word. The files of `src/flatten/` describe the records.
 
 struct World {
     roots: vec2u,

@@ -31,7 +31,7 @@ pub(super) struct TracePacket<'a, Q> {
     pub stats: &'a mut RayStats,
 }
 
-/// Up to this many rays of a packet are tested against primitives individually.
+/// Up to this many rays of a packet are tested against triangles individually.
 const FEW: u32 = 4;
 
 impl<Q: Query> Task for TracePacket<'_, Q> {

@@ -1,8 +1,8 @@
 // Paths between the stages of a wavefront.
 //
-// What is found for the samples is in their order, a `Sample` of `cameras.wgsl` each, in which paths
-// keep their light and counts. What else a path keeps is a column of a table, four words in each
-// row, so that threads beside each other read words beside each other.
+// What is found for the samples is in their order, a `Sample` of `cameras.wgsl` each, in which
+// paths keep their light and counts. What else a path keeps is a column of a table, four words in
+// each row, so that threads beside each other read words beside each other.
 
 const LAMBDA = 0u;
 const LAMBDA_PDF = 1u;
