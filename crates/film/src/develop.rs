@@ -166,8 +166,10 @@ impl<'film> Development<'film> {
 
     /// Colour and layers of a pixel of a tile, channel by channel.
     fn pixel(&self, tile: usize, first: usize, pixel: usize, mut put: impl FnMut(f32)) {
-        let color = |c| self.sum(|film| &film.color, [tile, first, pixel], c);
-        let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
+        // A film of light paths alone has no such sums.
+        let has_samples = !self.film.counts.is_empty();
+        let color = |c| if has_samples { self.sum(|film| &film.color, [tile, first, pixel], c) } else { 0.0 };
+        let weight = color(3);
         let mean = mean([0, 1, 2].map(color), weight);
         let response = [0, 1, 2].map(|c| mean[c] + self.splats(tile, pixel, c));
         self.color(response).into_iter().for_each(&mut put);
@@ -176,7 +178,7 @@ impl<'film> Development<'film> {
         }
         for bucket in 0..self.buckets.map_or(0, |buckets| buckets.count()) {
             let sum = |i| self.sum(|film| &film.spectrum, [tile, first, pixel], 2 * bucket + i);
-            let weight = if self.film.counts.is_empty() { 0.0 } else { sum(1) };
+            let weight = if has_samples { sum(1) } else { 0.0 };
             let mean = if weight == 0.0 { 0.0 } else { sum(0) / weight };
             let light = (mean + self.splats(tile, pixel, SPLAT_SUMS + bucket)) as f32;
             put(if self.film.half_floats() { half(light) } else { light });

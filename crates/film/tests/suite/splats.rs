@@ -66,6 +66,22 @@ fn splats_and_samples_add_up() {
 }
 
 #[test]
+fn a_film_for_splats_alone_has_their_picture() {
+    let mut film = film(FilterDesc::Box { radius: [0.5, 0.5] });
+    let mut alone = film.for_splats().expect("memory");
+    for film in [&mut film, &mut alone] {
+        splat(film, Vec2::new(3.5, 4.5), 6.0);
+        count(film, 3);
+    }
+    assert!(green(&film, [3, 4]) > 0.0);
+    for y in 0..RESOLUTION[1] {
+        for x in 0..RESOLUTION[0] {
+            assert_eq!(green(&alone, [x, y]), green(&film, [x, y]), "{x} {y}");
+        }
+    }
+}
+
+#[test]
 fn the_largest_component_of_a_splat_is_that_of_a_sample() {
     let mut desc = SceneDesc::default();
     desc.film.resolution = RESOLUTION;
