@@ -131,6 +131,13 @@ impl Flat {
         self.parts
     }
 
+    /// Has kernels take these parts, so that scenes that need different ones can share kernels. They
+    /// must have all parts that it needs, and none that replaces others: bodies, a system of lenses,
+    /// diffuse surfaces instead of all, or ray queries.
+    pub fn set_parts(&mut self, parts: Parts) {
+        self.parts = parts;
+    }
+
     /// The bytes of its buffers.
     pub fn bytes(&self) -> usize {
         let Bvh { nodes, triangles, items, .. } = &self.bvh;

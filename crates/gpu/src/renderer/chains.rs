@@ -34,9 +34,12 @@ const MUTATIONS_PER_CANDIDATE: usize = 4;
 const MIN_MUTATIONS: usize = 256;
 
 /// The most candidates that are evaluated at a time; the most steps that chains take at a time, and
-/// the most splats of these steps, unless there are more chains.
+/// the most splats of these steps, unless there are more chains. Mesa's software GPU ends the loops
+/// of a thread, without an error, when all of them together have run 65,535 times, of which a step
+/// may take thousands.
 const MAX_CANDIDATES: usize = 1 << 14;
 const MAX_STEPS: usize = 64;
+const MAX_STEPS_OF_SOFTWARE: usize = 8;
 const MAX_SPLATS: usize = 1 << 20;
 
 /// Chains of a workgroup.
@@ -110,11 +113,12 @@ impl Chains {
         let candidates =
             (settings.bootstrap_samples as usize).min(mutations / MUTATIONS_PER_CANDIDATE).max(1);
         let count = (settings.chains as usize).min(mutations / MIN_MUTATIONS).max(1);
-        let steps = (MAX_SPLATS / count).clamp(1, MAX_STEPS);
+        let device = scene.device();
+        let most_steps = if device.is_software() { MAX_STEPS_OF_SOFTWARE } else { MAX_STEPS };
+        let steps = (MAX_SPLATS / count).clamp(1, most_steps);
         let columns = candidates.min(MAX_CANDIDATES).max(count);
         let table_bytes = 4 * columns * (POINT + dimensions(settings.max_depth as usize));
         let batch_bytes = size_of::<Batch>() + size_of::<Splat>() * columns.max(count * steps);
-        let device = scene.device();
         let batch = device.zeros("splats of chains", batch_bytes as u64)?;
         let table = device.zeros("chains", table_bytes as u64)?;
         let bytes = batch_bytes + table_bytes;

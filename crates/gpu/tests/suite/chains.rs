@@ -66,6 +66,7 @@ fn chains_have_the_mean_of_paths() {
     // Small steps are as large as they can be without being independent, and seldom are large ones.
     let other = MltDesc { large_step_probability: 0.1, sigma: 0.1, chains: 2, ..settings };
     assert_mean("medley", medley, other);
+    assert_mean("lanterns", Case::of_lanterns(SIZE), settings);
 }
 
 /// A pass has the same bits whenever it is rendered and whatever was before, so that renders go on

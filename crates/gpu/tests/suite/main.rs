@@ -7,6 +7,7 @@ mod bodies;
 mod chains;
 mod dynamic;
 mod faults;
+mod kernels;
 mod laws;
 mod layers;
 mod measured;

@@ -1,12 +1,9 @@
 //! Pictures of scenes by both engines, from the same random numbers.
 
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use alhazen_gpu::{
-    Algorithm, FindFirstHit, Flat, Kernels, Refusal, Renderer, Schedule, Subject, flatten, shaders,
-};
+use alhazen_gpu::{Algorithm, FindFirstHit, Flat, Refusal, Renderer, Schedule, Subject, flatten};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
     SimplePathDesc, WhittedDesc,
@@ -23,20 +20,15 @@ use sampling::{Randomize, Sampler};
 use scene::{Interfaces, Scene, View};
 use spectrum::RgbColorSpace;
 
+use crate::kernels::{kernels, shared};
+use crate::motion::LANTERNS;
 use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
+
+/// The pixels of pictures.
+const SIZE: [u32; 2] = [64, 48];
 
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
-
-/// The kernels of whole pictures, which tests share, so that each is compiled once. A driver in
-/// software compiles the kernels of a device one after another, so that each has a device.
-fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
-    static KERNELS: Mutex<BTreeMap<String, Option<Arc<Kernels>>>> = Mutex::new(BTreeMap::new());
-    let mut known = KERNELS.lock().unwrap_or_else(PoisonError::into_inner);
-    let device = if flat.parts().ray_queries { crate::device_with_ray_queries } else { crate::device };
-    let open = || device().map(|device| Arc::new(Kernels::new(device)));
-    known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
-}
 
 pub fn imported(path: &Path, assets: &dyn AssetSource) -> SceneDesc {
     let imported = import(path, assets);
@@ -56,7 +48,7 @@ pub struct Case {
 
 impl Case {
     fn new(path: &Path, assets: &dyn AssetSource) -> Self {
-        Self::sized(path, assets, [64, 48])
+        Self::sized(path, assets, SIZE)
     }
 
     /// A picture of this size.
@@ -77,6 +69,13 @@ impl Case {
     pub fn of_text(text: &str) -> Self {
         let path = Path::new("scene.pbrt");
         Self::new(path, &MemoryAssets::default().with(path, text))
+    }
+
+    /// Lights in instances at rest.
+    pub fn of_lanterns(resolution: [u32; 2]) -> Self {
+        let path = Path::new("scene.pbrt");
+        let assets = MemoryAssets::default().with(path, LANTERNS.replace("EndTime", "All"));
+        Self::sized(path, &assets, resolution)
     }
 
     /// A slide of four colours, thrown through a stretched space at a wall and a sphere.
@@ -172,9 +171,10 @@ impl Case {
         algorithm: &Algorithm,
         schedule: Schedule,
     ) -> Option<Renderer> {
-        let flat = flat.as_ref().unwrap_or_else(|refusals| panic!("{refusals:?}"));
-        let kernels = kernels(algorithm, flat)?;
-        Some(Renderer::new(kernels, flat, algorithm, &self.film(), schedule).expect("a renderer"))
+        let mut flat = flat.as_ref().unwrap_or_else(|refusals| panic!("{refusals:?}")).clone();
+        flat.set_parts(shared(algorithm, schedule, flat.parts()));
+        let kernels = kernels(algorithm, &flat)?;
+        Some(Renderer::new(kernels, &flat, algorithm, &self.film(), schedule).expect("a renderer"))
     }
 
     /// The samples of each pixel by the GPU, if there is one.
@@ -357,17 +357,20 @@ fn whitted_has_the_picture_of_the_cpu() {
     compare_all(&["mirror-room", "refraction", "prism"], |_| Algorithm::Whitted(WhittedDesc::default()));
 }
 
-/// Compares pictures of scenes by an algorithm with light paths, and with `sobol`.
-fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
+/// Compares pictures of scenes by an algorithm with light paths.
+fn compare_splats(scenes: &[&str], algorithm: &Algorithm, has_sobol: bool) {
     let named = scenes.iter().map(|&name| (name, Case::named(name)));
     let others = [
         ("medley", Case::of_text(MEDLEY)),
         ("stretched", Case::of_text(STRETCHED)),
         ("projector", Case::projector()),
         ("lamps", Case::of_text(LAMPS)),
+        ("lanterns", Case::of_lanterns(SIZE)),
     ];
     for (name, mut case) in named.chain(others) {
-        case.take_sobol();
+        if has_sobol {
+            case.take_sobol();
+        }
         assert_eq!(case.compare(name, algorithm), None);
     }
 }
@@ -375,7 +378,7 @@ fn compare_splats(scenes: &[&str], algorithm: &Algorithm) {
 #[test]
 fn light_paths_have_the_picture_of_the_cpu() {
     let light_tracing = Algorithm::LightTracing(LightTracingDesc { max_depth: 4 });
-    compare_splats(&["caustic-ball", "environment"], &light_tracing);
+    compare_splats(&["caustic-ball", "environment"], &light_tracing, true);
     // With room for so many splats, strips are a row of tiles.
     let long = Algorithm::LightTracing(LightTracingDesc { max_depth: 1000 });
     let mut case = Case::named("cornell-box");
@@ -387,7 +390,8 @@ fn light_paths_have_the_picture_of_the_cpu() {
 fn bidirectional_paths_have_the_picture_of_the_cpu() {
     let settings = BdptDesc { max_depth: 4, regularize: true, ..BdptDesc::default() };
     let bdpt = Algorithm::Bdpt(settings);
-    compare_splats(&["cornell-box", "depth-of-field", "environment", "luminaires", "prism"], &bdpt);
+    let scenes = ["cornell-box", "depth-of-field", "environment", "luminaires", "prism"];
+    compare_splats(&scenes, &bdpt, false);
 }
 
 #[test]
@@ -550,10 +554,11 @@ fn spherical_cameras_have_the_picture_of_the_cpu() {
 }
 
 #[test]
-fn forced_diffuse_surfaces_have_the_picture_of_the_cpu() {
+fn forced_diffuse_surfaces_and_simple_paths_have_the_picture_of_the_cpu() {
     let text = format!("Option \"forcediffuse\" true\n{MEDLEY}");
+    assert_eq!(Case::of_text(&text).compare("forced diffuse", &Algorithm::RayCasting), None);
     let simple = Algorithm::SimplePath(SimplePathDesc { max_depth: 3, ..Default::default() });
-    assert_eq!(Case::of_text(&text).compare("forced diffuse", &simple), None);
+    assert_eq!(Case::of_text(MEDLEY).compare("simple path", &simple), None);
 }
 
 #[test]

@@ -1,0 +1,44 @@
+//! The kernels of whole pictures. Compiling them is what takes the tests' time.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use alhazen_gpu::shaders::{self, Parts};
+use alhazen_gpu::{Algorithm, Flat, Kernels, Schedule};
+
+/// The kernels of whole pictures, which tests share, so that each is compiled once. A driver in
+/// software compiles the kernels of a device one after another, so that each has a device.
+pub fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
+    static KERNELS: Mutex<BTreeMap<String, Option<Arc<Kernels>>>> = Mutex::new(BTreeMap::new());
+    let mut known = KERNELS.lock().unwrap_or_else(PoisonError::into_inner);
+    let device = if flat.parts().ray_queries { crate::device_with_ray_queries } else { crate::device };
+    let open = || device().map(|device| Arc::new(Kernels::new(device)));
+    known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
+}
+
+/// The parts of the kernels of a picture: those that its scene needs, and others, so that many
+/// scenes share few kernels, and parts are tested beside others.
+pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts {
+    let with_textures =
+        |parts| Parts { holes: true, light_holes: true, images: true, noise: true, media: true, ..parts };
+    let with_motion =
+        |parts| Parts { placed_lights: true, motion: true, coats: true, curves: true, hair: true, ..parts };
+    let suits = |with: fn(Parts) -> Parts| with(needed) == with(Parts::default());
+    match algorithm {
+        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => Parts { media: true, ..needed },
+        Algorithm::AmbientOcclusion(..) => Parts { rare_samplers: true, ..needed },
+        Algorithm::Path(_) | Algorithm::RayCasting => {
+            if suits(with_textures) && schedule == Schedule::Megakernel {
+                with_textures(needed)
+            } else if suits(with_motion) {
+                with_motion(needed)
+            } else {
+                needed
+            }
+        }
+        Algorithm::Bdpt(_) | Algorithm::LightTracing(_) | Algorithm::Mlt(..) | Algorithm::Sppm(..) => {
+            Parts { placed_lights: true, ..needed }
+        }
+        Algorithm::Whitted(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => needed,
+    }
+}
