@@ -81,8 +81,10 @@ impl<'a> Files<'a> {
                 Question::Exists(name, reply) => _ = reply.send(self.exists(&name)),
                 Question::Read(name, reply) => {
                     let checked = self.read(&name).and_then(|bytes| {
-                        layer::check(&bytes)
-                            .map_err(|message| io::Error::new(io::ErrorKind::InvalidData, message))?;
+                        let invalid = |message| {
+                            io::Error::new(io::ErrorKind::InvalidData, format!("{name}: {message}"))
+                        };
+                        layer::check(&bytes).map_err(invalid)?;
                         Ok(bytes)
                     });
                     lock(&self.layers).push(name);
