@@ -171,6 +171,11 @@ impl TriangleMesh {
         Arc::ptr_eq(&self.indices, &other.indices) || self.indices == other.indices
     }
 
+    /// Whether vertices have shading normals or tangents.
+    pub fn is_smooth(&self) -> bool {
+        self.normals.is_some() || self.tangents.is_some()
+    }
+
     /// The number of vertices.
     pub(crate) fn vertices(&self) -> usize {
         self.positions.len()
@@ -178,7 +183,7 @@ impl TriangleMesh {
 
     /// The vertex indices of a triangle.
     #[inline]
-    pub(crate) fn indices(&self, triangle: usize) -> [u32; 3] {
+    pub fn indices(&self, triangle: usize) -> [u32; 3] {
         self.indices[triangle]
     }
 
@@ -196,7 +201,7 @@ impl TriangleMesh {
 
     /// The positions of all vertices.
     #[inline(always)]
-    pub(crate) fn positions(&self) -> &[Point3] {
+    pub fn positions(&self) -> &[Point3] {
         &self.positions
     }
 

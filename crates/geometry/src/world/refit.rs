@@ -3,14 +3,15 @@
 use super::World;
 use super::facets::Facets;
 use super::geometry::{Geometry, GeometryId};
-use super::instance::GroupId;
+use super::instance::{GroupId, Instance, InstanceId, PreparedInstance};
 use super::spheres::Spheres;
 use super::tables::Tables;
 use crate::bvh::BuildQuality;
+use math::Transform;
 use rayon::prelude::*;
 use std::fmt;
 
-/// Why a geometry cannot replace another one.
+/// Why a geometry cannot replace another one, or an instance cannot be placed elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefitError {
     /// The world has no such geometry.
@@ -18,6 +19,10 @@ pub enum RefitError {
     /// They differ in kind, in the number of primitives, in the vertex indices of triangles, or in
     /// whether a primitive is bounded.
     Different(GeometryId),
+    /// The top group has no such instance at rest.
+    Instance(InstanceId),
+    /// The transform for an instance has no inverse.
+    Transform(InstanceId),
 }
 
 impl fmt::Display for RefitError {
@@ -25,6 +30,8 @@ impl fmt::Display for RefitError {
         match self {
             Self::Unknown(id) => write!(f, "there is no geometry {}", id.0),
             Self::Different(id) => write!(f, "geometry {} has other primitives", id.0),
+            Self::Instance(id) => write!(f, "the top group has no instance {} at rest", id.0),
+            Self::Transform(id) => write!(f, "the transform for instance {} has no inverse", id.0),
         }
     }
 }
@@ -72,6 +79,38 @@ impl World {
             let of_top = (0..).map(GeometryId).zip(&*group_of).filter(|(_, group)| **group == GroupId::TOP);
             Facets::new(&of_top.map(|(id, _)| id).collect::<Vec<_>>(), geometries)
         });
+        Ok(())
+    }
+}
+
+impl World {
+    /// Gives instances of the top group, which are at rest, other transforms. The tree over them
+    /// keeps its topology, as by [`refit`](Self::refit).
+    ///
+    /// On an error, nothing is changed.
+    pub fn place_instances(
+        &mut self,
+        moved: impl IntoIterator<Item = (InstanceId, Transform)>,
+    ) -> Result<(), RefitError> {
+        let moved: Vec<_> = moved.into_iter().collect();
+        let placed = self.tables.top().instances();
+        let Tables { groups, geometries, instances, .. } = &mut self.tables;
+        for (id, transform) in &moved {
+            if !placed.contains(id) || instances[id.0 as usize].motion.is_moving() {
+                return Err(RefitError::Instance(*id));
+            }
+            if !(transform.matrix().is_finite() && transform.inverse().matrix().is_finite()) {
+                return Err(RefitError::Transform(*id));
+            }
+        }
+        for (id, transform) in moved {
+            let instance = &mut instances[id.0 as usize];
+            let group = GroupId(instance.group);
+            *instance = PreparedInstance::new(Instance { group, render_from_instance: transform.into() });
+        }
+        if let Some((top, inner_groups)) = groups.split_first_mut() {
+            top.refit_items(geometries, instances, inner_groups);
+        }
         Ok(())
     }
 }

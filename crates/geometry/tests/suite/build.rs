@@ -183,6 +183,47 @@ fn refit_skips_non_finite_vertices() {
 }
 
 #[test]
+fn instances_are_placed_elsewhere() {
+    let transforms = |seed| {
+        let rng = &mut Rng::new(seed, 0);
+        let turned = |_| {
+            let turn = Transform::rotate(point_in(rng, 3.0).x, direction(rng));
+            Transform::translate(point_in(rng, 3.0)).after(&turn)
+        };
+        [0; 20].map(turned)
+    };
+    let with = |transforms: [Transform; 20]| {
+        let mut builder = World::builder();
+        let [inner, outer] = [builder.add_group(), builder.add_group()];
+        builder.add_geometry(inner, cube(&Transform::scale(Vec3::splat(0.3))));
+        let mut place = |at, group, transform: Transform| {
+            builder.add_instance(at, Instance { group, render_from_instance: transform.into() })
+        };
+        let nested = place(outer, inner, Transform::translate(Vec3::X));
+        let placed = transforms.map(|transform| place(GroupId::TOP, outer, transform));
+        (builder.build(), nested, placed)
+    };
+    let (mut world, nested, ids) = with(transforms(1));
+    let flat = Transform::from_parts(Mat4::ZERO, Mat4::from_scale(Vec3::splat(f32::INFINITY).into()));
+    let refused = [
+        ((nested, Transform::IDENTITY), RefitError::Instance(nested)),
+        ((InstanceId(99), Transform::IDENTITY), RefitError::Instance(InstanceId(99))),
+        ((ids[3], flat), RefitError::Transform(ids[3])),
+    ];
+    for (place, error) in refused {
+        assert_eq!(world.place_instances([(ids[0], Transform::IDENTITY), place]), Err(error));
+    }
+    let rays = rays(&mut Rng::new(2, 0), 2000, 4.0);
+    let same = |world: &World, other: &World| {
+        let hits = rays.iter().map(|ray| (nearest(world, ray), nearest(other, ray)));
+        hits.inspect(|(a, b)| assert_eq!(a, b)).filter(|(a, _)| a.is_some()).count()
+    };
+    assert!(same(&world, &with(transforms(1)).0) > 100);
+    assert_eq!(world.place_instances(ids.into_iter().zip(transforms(3))), Ok(()));
+    assert!(same(&world, &with(transforms(3)).0) > 100);
+}
+
+#[test]
 fn refit_refuses_other_primitives() {
     let sphere = Geometry::from(Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0)));
     let plane = Geometry::from(Shape::from(Plane::new(&Transform::IDENTITY, false)));
