@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use description::schema::Settings;
 use description::{Diagnostic, SceneDesc, Span};
-use geometry::GeometryId;
+use geometry::{GeometryId, InstanceId};
 use gpu::{AimError, Algorithm, Flat, MovingError};
-use math::{Bounds2i, Point3};
+use math::{Bounds2i, Point3, Transform};
 use sampling::Sampler;
-use scene::{MoveError, Scene, View};
+use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
 use crate::device::{Flattened, Kernels, Rays, failed, flattened, name};
@@ -49,8 +49,8 @@ impl Realtime {
         })
     }
 
-    /// The same, of a scene whose sets of spheres may move. The error says what kernels do not draw
-    /// or move.
+    /// The same, of a scene in which spheres, vertices and instances may move. The error says what
+    /// kernels do not draw or move.
     pub fn animated(
         scene: &Arc<Scene>,
         desc: &SceneDesc,
@@ -92,25 +92,36 @@ impl Realtime {
         })
     }
 
-    /// Moves the spheres of some sets of an [animated](Self::animated) scene, each given by its
-    /// geometry and all its centres in render space, on the device alone: the scene stays.
+    /// Moves the spheres of some sets and the vertices of some meshes of an
+    /// [animated](Self::animated) scene, each given by its geometry and all its centres or vertices
+    /// in render space, on the device alone: the scene stays.
     ///
     /// # Errors
-    /// A geometry is no set of spheres, or is one within instances, or shines; or the centres do
-    /// not fit; or the device fails.
-    pub fn move_spheres<'a>(
+    /// A geometry has no such points, or has normals of its own, is within instances, or shines; or
+    /// the points do not fit; or the device fails.
+    pub fn move_points<'a>(
         &mut self,
         moved: impl IntoIterator<Item = (GeometryId, &'a [Point3])>,
         update: Update,
     ) -> Result<(), MovingError> {
         let moved: Vec<_> = moved.into_iter().collect();
-        for (id, _) in &moved {
-            let entry = self.scene.geometries().get(id.0 as usize);
-            if entry.is_some_and(|entry| entry.first_light.is_some()) {
-                return Err(MovingError::Move(MoveError::Lights(*id)));
-            }
-        }
-        self.engine.move_spheres(moved, update)
+        moved.iter().try_for_each(|(id, _)| self.scene.may_move_points(*id)).map_err(MovingError::Move)?;
+        self.engine.move_points(moved, update)
+    }
+
+    /// Gives instances of an animated scene other transforms to render space, on the device alone.
+    ///
+    /// # Errors
+    /// An instance is within another one, or moves by itself, or a shape in it shines; or the
+    /// transform has no inverse; or the device fails.
+    pub fn move_instances(
+        &mut self,
+        moved: &[(InstanceId, Transform)],
+        update: Update,
+    ) -> Result<(), MovingError> {
+        let may_move = self.scene.may_move_instances(moved.iter().map(|(id, _)| *id));
+        may_move.map_err(MovingError::Move)?;
+        self.engine.move_instances(moved, update)
     }
 
     /// Whether it shows this scene.

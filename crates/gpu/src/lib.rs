@@ -6,7 +6,7 @@
 //! *laws*, which are physics and are translated from Rust, and *plumbing*, which is written in
 //! WGSL.
 //!
-//! [`Moving`] spheres have a tree that the GPU builds for each picture.
+//! What is [`Moving`] has trees that the GPU builds for each picture.
 //!
 //! A [`Rasterizer`] draws scenes triangle by triangle instead, by the raster pipeline.
 

@@ -375,8 +375,18 @@ pub fn sort() -> [String; 3] {
 }
 
 /// The kernel that moves spheres.
-pub fn place() -> String {
-    dynamic! { "plan" "box" "place" }
+pub fn place_spheres() -> String {
+    dynamic! { "plan" "box" "middles" "place_spheres" }
+}
+
+/// The kernel that moves triangles.
+pub fn place_triangles() -> String {
+    dynamic! { "plan" "box" "middles" "place_triangles" }
+}
+
+/// The kernel that moves instances.
+pub fn place_instances() -> String {
+    dynamic! { "plan" "box" "place_instances" }
 }
 
 /// The kernels that build a tree, but for the sort after the first, with their names.

@@ -17,14 +17,12 @@ use crate::traits::SceneTraits;
 use crate::view::View;
 use description::{LightSamplerDesc, Span};
 use geometry::{
-    BuildQuality, Filter, Geometry, GeometryId, Hit, HitColumns, RayColumns, RayStats, RefitError, SphereSet,
-    SurfacePoint, World,
+    Filter, Geometry, GeometryId, Hit, HitColumns, RayColumns, RayStats, SphereSet, SurfacePoint, World,
 };
-use math::{DMat4, Differentials, Point2, Point3, Ray, RayDifferential, Vec2, Vector3};
+use math::{DMat4, Differentials, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, BsdfSample, Bxdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
-use std::fmt;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -64,29 +62,6 @@ pub enum Interfaces {
     /// Interfaces are ignored.
     Pass,
 }
-
-/// Why spheres cannot be moved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MoveError {
-    /// The geometry is no set of spheres.
-    NoSpheres(GeometryId),
-    /// The spheres shine: the lights of a scene do not move.
-    Lights(GeometryId),
-    /// There are not as many centres as spheres, or one is not finite.
-    Centers(GeometryId),
-}
-
-impl fmt::Display for MoveError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSpheres(id) => write!(f, "geometry {} is no set of spheres", id.0),
-            Self::Lights(id) => write!(f, "the spheres of geometry {} shine, and cannot be moved", id.0),
-            Self::Centers(id) => write!(f, "the centres for geometry {} do not fit", id.0),
-        }
-    }
-}
-
-impl std::error::Error for MoveError {}
 
 /// Everything that is rendered, from any [`View`]. Immutable once compiled.
 #[derive(Clone, Debug)]
@@ -200,40 +175,6 @@ impl Scene {
     /// The textures of materials and lights.
     pub fn textures(&self) -> &Textures {
         &self.textures
-    }
-
-    /// Moves the spheres of some sets, each given by its geometry and all its centres in render
-    /// space. Trees are refitted, and built anew where that pays, so that this takes a fraction of
-    /// the time of compiling. The [bounding sphere](Self::sphere) stays. On an error, nothing is
-    /// changed.
-    pub fn move_spheres(
-        &mut self,
-        moved: impl IntoIterator<Item = (GeometryId, Arc<[Point3]>)>,
-    ) -> Result<(), MoveError> {
-        let moved: Result<Vec<_>, MoveError> = moved
-            .into_iter()
-            .map(|(id, centers)| {
-                let entry = self.entries.get(id.0 as usize).ok_or(MoveError::NoSpheres(id))?;
-                if entry.first_light.is_some() {
-                    return Err(MoveError::Lights(id));
-                }
-                match self.world.geometry(id) {
-                    Geometry::Spheres(set) => {
-                        let set = set.moved(centers).ok_or(MoveError::Centers(id))?;
-                        Ok((id, Geometry::from(set)))
-                    }
-                    Geometry::Mesh(_) | Geometry::Shapes(_) | Geometry::Curves(_) => {
-                        Err(MoveError::NoSpheres(id))
-                    }
-                }
-            })
-            .collect();
-        let refitted = self.world.refit_or_rebuild(moved?, BuildQuality::Balanced);
-        refitted.map_err(|error| match error {
-            RefitError::Unknown(id) | RefitError::Different(id) => MoveError::Centers(id),
-        })?;
-        self.cache = SceneCache::default();
-        Ok(())
     }
 
     /// The sets of spheres, in the order of their description.

@@ -55,13 +55,13 @@ impl World {
         &self.scene
     }
 
-    /// Moves the spheres of some sets ([`Scene::move_spheres`]).
-    pub fn move_spheres(
+    /// Moves spheres and vertices ([`Scene::move_points`]).
+    pub fn move_points(
         &mut self,
         moved: impl IntoIterator<Item = (GeometryId, Arc<[Point3]>)>,
     ) -> Result<(), MoveError> {
         // Renders that have not ended keep the scene as it was.
-        Arc::make_mut(&mut self.scene).move_spheres(moved)
+        Arc::make_mut(&mut self.scene).move_points(moved)
     }
 
     /// What the scene's author shows of it.

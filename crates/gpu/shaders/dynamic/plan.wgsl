@@ -9,9 +9,12 @@ struct Plan {
     step: u32,
     // Blocks of keys.
     blocks: u32,
-    // The first of the items, and of the nodes.
+    // The first of the items or triangles, and of the nodes.
     first_item: u32,
     first_node: u32,
+    // The bits of references to leaves, and the entries of a ray's stack that a leaf needs.
+    leaf_bits: u32,
+    leaf_stack: u32,
 }
 
 @group(0) @binding(0) var<uniform> plan: Plan;

@@ -8,16 +8,20 @@
 @group(0) @binding(5) var<storage, read_write> children: array<u32>;
 @group(0) @binding(6) var<storage, read_write> levels: array<u32>;
 
-// The bits of references to leaves of items, and of leaves of nothing.
-const ITEMS = 0xc0000000u;
+// The bits of references to leaves of nothing.
 const EMPTY = 0x80000000u;
 const COUNT_BITS = 5u;
+
+// The reference of a leaf of one item or triangle.
+fn leaf(primitive: u32) -> u32 {
+    return plan.leaf_bits | ((plan.first_item + primitive) << COUNT_BITS) | 1;
+}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var count = 0u;
-    // The levels of nodes below it.
-    var below = 0u;
+    // What a ray's stack needs below it: an entry for each level of nodes, and a leaf's.
+    var below = plan.leaf_stack;
     for (var level = 0u; level < arrayLength(&levels); level++) {
         below += select(0u, 1u, count > id.x && levels[level] > 0);
         count += levels[level];
@@ -39,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             boxes[i] = bounds[child];
         } else {
             let place = child & ~IS_LEAF;
-            nodes[at + 4 + i / 4][i % 4] = ITEMS | ((plan.first_item + primitives[place]) << COUNT_BITS) | 1;
+            nodes[at + 4 + i / 4][i % 4] = leaf(primitives[place]);
             boxes[i] = pyramid[plan.leaves + place];
         }
         all = joined(all, boxes[i]);

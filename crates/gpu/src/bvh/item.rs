@@ -74,13 +74,18 @@ pub fn instance(
     motions: [u32; 2],
 ) -> [Words; QUADRUPLES] {
     let steps = path.ids().iter().map(|&id| world.render_from_instance(id).start().matrix().as_dmat4());
-    let inverse = steps.product::<DMat4>().inverse();
-    let [x, y, z] = [0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits));
+    let [x, y, z] = rows(steps.product());
     let last = path.ids().last().map_or(u32::MAX, |id| id.0);
     let group = path.ids().last().map_or(0, |&id| world.group_of_instance(id).0);
     let group = &groups[group as usize];
     let inside = [group.roots[0], group.roots[1], group.size.to_bits(), last];
     [x, y, z, inside, [INSTANCE, motions[0], motions[1], 0]]
+}
+
+/// The rows of the matrix that takes rays inside, given the one that takes points outside.
+pub fn rows(outward: DMat4) -> [Words; 3] {
+    let inverse = outward.inverse();
+    [0, 1, 2].map(|row| inverse.row(row).as_vec4().to_array().map(f32::to_bits))
 }
 
 /// The motions of a path, the outermost first; none where nothing moves. An instance at rest among

@@ -12,6 +12,7 @@ mod binary;
 mod item;
 mod node;
 mod paths;
+mod placed;
 mod structure;
 
 use std::ops::Range;
@@ -22,6 +23,8 @@ use item::Item;
 pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
+pub(crate) use node::{ITEMS, TRIANGLES};
+pub(crate) use placed::Placed;
 pub(crate) use structure::{MOST as MOST_FOR_RAY_QUERIES, Plan};
 
 /// The entries of the stack of `shaders/trace.wgsl`.
@@ -52,8 +55,10 @@ pub struct Bvh {
     pub has_motion: bool,
     /// The instances, also those within others, with the index of the item of each.
     pub(crate) instances: Vec<(InstancePath, u32)>,
-    /// The items of the top group that have bounds.
+    /// The triangles of the top group, and its items that have bounds.
+    pub(crate) triangles_of_top: Range<usize>,
     pub(crate) bounded: Range<usize>,
+    groups: Vec<Group>,
     /// What ray queries are traced through instead of nodes.
     pub(crate) plan: Option<Plan>,
 }
@@ -95,6 +100,7 @@ impl Bvh {
         }
         let Group { roots, unbounded, size, stack, .. } = groups[0];
         bvh.top = Top { roots, unbounded, size };
+        bvh.groups = groups;
         if stack > STACK { Err(BvhError::TooLarge) } else { Ok(bvh) }
     }
 
@@ -107,7 +113,9 @@ impl Bvh {
         is_cut_out: &dyn Fn(GeometryId) -> bool,
     ) -> Result<Group, BvhError> {
         let (tree, mut triangles) = world.triangle_tree(group);
-        let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, self.triangles.len() / 3, 0);
+        let first = self.triangles.len() / 3;
+        self.triangles_of_top = first..first + triangles.len();
+        let mut writer = Writer::new(&mut self.nodes, node::TRIANGLES, first, 0);
         let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
         let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         let (of_triangles, mut bounds) = (writer.stack, tree.bounds());
@@ -202,11 +210,25 @@ impl Bvh {
     pub(crate) fn make_room(&mut self, nodes: usize) -> u32 {
         // It was the last tree that was written, its root first.
         let [_, root] = self.top.roots;
-        let first = if node::is_leaf(root) { self.nodes.len() / 6 } else { root as usize };
-        self.nodes.truncate(6 * first);
+        if !node::is_leaf(root) {
+            self.nodes.truncate(6 * root as usize);
+        }
+        self.top.roots[1] = self.add_room(nodes);
+        self.top.roots[1]
+    }
+
+    /// Room for another tree, of at most so many nodes. The index of its root.
+    pub(crate) fn add_room(&mut self, nodes: usize) -> u32 {
+        let first = self.nodes.len() / 6;
         self.nodes.resize(6 * (first + nodes), [0; 4]);
-        self.top.roots[1] = first as u32;
         first as u32
+    }
+
+    /// The entries of the stack that a ray needs within any instance. It begins there with both
+    /// roots, of which that of items is the last.
+    pub(crate) fn stack_within(&self) -> u32 {
+        let placed = if self.instances.is_empty() { &[] } else { &self.groups[1..] };
+        placed.iter().map(|group| group.stack.saturating_sub(2).max(2)).max().unwrap_or(0) as u32
     }
 }
 

@@ -2,7 +2,7 @@
 //! instance of the top group.
 
 use geometry::{GroupId, InstancePath, PlainItem, World};
-use math::{Bounds3, gamma};
+use math::{AnimatedTransform, Bounds3, gamma};
 
 use super::item::Item;
 use super::{BvhError, Group};
@@ -33,6 +33,12 @@ pub fn items(
     Ok(boxed)
 }
 
+/// A box outside of an instance, at all times, around one inside.
+pub fn outside(transform: &AnimatedTransform, inside: &Bounds3) -> Bounds3 {
+    let moved = transform.motion_bounds(inside);
+    moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
+}
+
 /// Adds a path and those that go on from it.
 fn add(
     world: &World,
@@ -46,10 +52,11 @@ fn add(
         if boxed.len() >= MOST {
             return Err(BvhError::Nested(last));
         }
-        let bounds = path.ids().iter().rev().fold(group.bounds, |bounds, &id| {
-            let moved = world.render_from_instance(id).motion_bounds(&bounds);
-            moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
-        });
+        let bounds = path
+            .ids()
+            .iter()
+            .rev()
+            .fold(group.bounds, |bounds, &id| outside(world.render_from_instance(id), &bounds));
         boxed.push((bounds, Item::Instance(path)));
     }
     group.instances.iter().try_for_each(|&id| add(world, path.into(id), groups, boxed))

@@ -1,4 +1,9 @@
-//! Spheres that move: a tree over them that the GPU builds for each picture.
+//! What moves: spheres of sets, vertices of meshes, and instances, all of the top group.
+//!
+//! Kernels write the items and triangles that have moved, with their boxes: those of spheres from
+//! centres, those of triangles from vertices ([`points`]), those of instances from transforms
+//! ([`instances`]). Over the items and over the triangles ([`part`]) there are trees that the GPU
+//! builds for each picture.
 //!
 //! The order of Morton codes puts near what is near ([`sort`]). Over that order there is one binary
 //! tree whose nodes have the codes with common leading bits, and each of its nodes is found without
@@ -10,13 +15,18 @@
 //! what others write. Boxes of nodes are usually found bottom up, by threads that meet. Here a node
 //! is a range of the order, and a pyramid of boxes has that of any range.
 //!
-//! A refitted tree has the nodes of the last one built, around the spheres where they are.
+//! A refitted tree has the nodes of the last one built, around what has moved.
 
+mod error;
+mod instances;
 mod moving;
+mod part;
+mod points;
 mod sort;
 mod tree;
 
-pub use moving::{Moving, MovingError};
+pub use error::MovingError;
+pub use moving::Moving;
 pub use sort::Sorter;
 
 use crate::device::{Buffer, Kernel};
@@ -24,7 +34,7 @@ use crate::device::{Buffer, Kernel};
 /// Starts a kernel on buffers, in a number of workgroups.
 pub type Start<'a> = dyn FnMut(&Kernel, &[&Buffer], u32) + 'a;
 
-/// How a tree follows its spheres.
+/// How a tree follows what moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Update {
     /// It is built anew.
@@ -46,4 +56,6 @@ struct Plan {
     blocks: u32,
     first_item: u32,
     first_node: u32,
+    leaf_bits: u32,
+    leaf_stack: u32,
 }

@@ -1,179 +1,205 @@
-//! The spheres of a world that move, on the device.
+//! What moves in a world, on the device.
 
-use std::fmt;
-use std::sync::Arc;
-
-use geometry::{Geometry, GeometryId, World};
-use math::{Point3, Vec3};
-use rayon::prelude::*;
+use geometry::{Geometry, GeometryId, InstanceId, World};
+use math::{Bounds3, Point3, Transform, Vec3};
 use scene::MoveError;
 
-use super::tree::{MOST_ITEMS, Place, Tree, most_nodes};
-use super::{Plan, Start, THREADS, Update};
-use crate::bvh::Bvh;
-use crate::device::{Buffer, Device, GpuError, Kernel};
+use super::error::MovingError;
+use super::instances::Instances;
+use super::part::{AT_REST, Part};
+use super::points::{PlacedPoints, Points};
+use super::tree::{MOST_ITEMS, Place, fits_stack, most_nodes};
+use super::{Start, Update};
+use crate::bvh::{Bvh, ITEMS, Placed, TRIANGLES, Top};
+use crate::device::{Buffer, Device, GpuError};
 use crate::renderer::Kernels;
 use crate::shaders;
 
-/// The spheres of a geometry whose items stay where they are.
-const AT_REST: u32 = u32::MAX;
-
-/// Why spheres do not move on the device.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum MovingError {
-    /// What is beside them, as a plural or with an article.
-    Refused(&'static str),
-    /// They are not those of a world.
-    Move(MoveError),
-    /// The device failed.
-    Gpu(GpuError),
-}
-
-impl fmt::Display for MovingError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Refused(what) => write!(f, "the engine for GPUs does not move spheres beside {what}"),
-            Self::Move(error) => error.fmt(f),
-            Self::Gpu(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for MovingError {}
-
-impl From<GpuError> for MovingError {
-    fn from(error: GpuError) -> Self {
-        Self::Gpu(error)
-    }
-}
-
-/// The sets of spheres of a world's top group, whose spheres move, and the tree over all its items.
+/// The items and triangles of a world's top group, and the trees over them.
 pub struct Moving {
-    kernel: Arc<Kernel>,
-    plan: Buffer,
-    count: u32,
-    /// The tree, unless there are fewer than two items.
-    tree: Option<Tree>,
-    /// By geometries, those that are sets of spheres.
-    sets: Vec<Option<Set>>,
-    /// The centres of all spheres, and the first sphere of each geometry.
-    centers: Buffer,
-    spheres: Buffer,
-    /// The boxes of items, and the ends of their middles along the axes.
-    boxes: Buffer,
-    ends: Buffer,
+    top: Top,
+    items: Part,
+    instances: Option<Instances>,
+    /// If any mesh may move. Rays are traced through the world's own tree until one has.
+    triangles: Option<Triangles>,
+    points: PlacedPoints,
 }
 
-/// A set of spheres.
-struct Set {
-    /// Its first sphere of those of all sets.
-    first: usize,
-    len: usize,
-    largest_radius: f32,
+/// The triangles, and the reference of the tree's root.
+struct Triangles {
+    part: Part,
+    root: u32,
 }
 
 impl Moving {
-    /// For a world and its buffers, which get room for the tree: they are taken to the device after
-    /// this, and before [`run`](Self::run) builds it.
+    /// For a world and its buffers, which get room for the trees: they are taken to the device
+    /// after this, and before [`run`](Self::run) builds the tree of items.
     ///
     /// # Errors
-    /// The top group has instances, or too many items; or the device fails.
+    /// The top group has too many items, or instances of too many shapes; or the device fails.
     pub fn new(kernels: &Kernels, world: &World, bvh: &mut Bvh) -> Result<Self, MovingError> {
-        let device = kernels.device();
-        let items = bvh.bounded.clone();
-        if items.len() > MOST_ITEMS as usize {
-            return Err(MovingError::Refused("as many others"));
-        }
-        let (mut boxes, mut sets, mut centers) = (Vec::new(), Vec::new(), Vec::new());
-        for item in items.clone() {
-            let shape = bvh
-                .shape(item)
-                .and_then(|(id, primitive)| Some((id, world.geometry(id).shape(primitive)?.bounds()?)));
-            let Some((id, bounds)) = shape else { return Err(MovingError::Refused("instances")) };
-            boxes.push([bounds.min, bounds.max].map(|Vec3 { x, y, z }| [x, y, z, 0.0]));
-            let index = id.0 as usize;
-            sets.resize_with(sets.len().max(index + 1), || None);
-            if let (Geometry::Spheres(set), None) = (world.geometry(id), &sets[index]) {
-                let first = centers.len();
-                centers.extend((0..set.len()).map(|sphere| set.center(sphere).to_array()));
-                let largest_radius = (0..set.len()).map(|sphere| set.radius(sphere)).fold(0.0, f32::max);
-                sets[index] = Some(Set { first, len: set.len(), largest_radius });
-            }
-        }
-        let first = |set: &Option<Set>| set.as_ref().map_or(AT_REST, |set| set.first as u32);
-        let spheres: Vec<u32> = sets.iter().map(first).collect();
-        let (count, first_item) = (items.len() as u32, items.start as u32);
-        let tree = if count < 2 {
+        let mut points = Points::default();
+        let placed = bvh.placed(world);
+        let (mut items, boxes) = items(kernels, world, bvh, &placed, &mut points)?;
+        items.plan(Update::Rebuild);
+        let triangles = triangles(kernels, world, bvh, &mut points)?;
+        let instances = if placed.is_empty() {
             None
         } else {
-            let first_node = bvh.make_room(most_nodes(count));
-            Some(Tree::new(kernels, Place { count, first_item, first_node })?)
+            let transform = |id| *world.render_from_instance(id).start();
+            let first_item = bvh.bounded.start as u32;
+            Some(Instances::new(kernels, placed, transform, (first_item, &boxes))?)
         };
-        Ok(Self {
-            kernel: kernels.get("place", shaders::place())?,
-            plan: device.parameters(&Plan { count, first_item, ..Plan::default() })?,
-            count,
-            tree,
-            sets,
-            centers: device.buffer("centres of spheres", &centers)?,
-            spheres: device.buffer("sets of spheres", &spheres)?,
-            boxes: device.buffer("boxes of items", &boxes)?,
-            ends: device.zeros("ends of boxes", 24)?,
-        })
+        Ok(Self { top: bvh.top, items, instances, triangles, points: points.placed(kernels.device())? })
     }
 
-    /// Tells the device where the spheres of some sets are, each given by its geometry and all its
-    /// centres in render space. The largest coordinate of their boxes, up to rounding.
+    /// Where rays begin: in trees that [`run`](Self::run) updates. It has changed after what has
+    /// moved.
+    pub fn top(&self) -> Top {
+        self.top
+    }
+
+    /// Tells the device where the spheres of some sets and the vertices of some meshes are, each
+    /// given by its geometry and all its centres or vertices in render space.
     ///
     /// # Errors
-    /// A geometry is no set of spheres of the top group, or the centres do not fit; or the device
-    /// fails. Sets before it have moved.
+    /// A geometry has no points of the top group that may move, or the points do not fit; or the
+    /// device fails. Those before it have moved.
     pub fn place<'a>(
-        &self,
+        &mut self,
         device: &Device,
         moved: impl IntoIterator<Item = (GeometryId, &'a [Point3])>,
-    ) -> Result<f32, MovingError> {
-        let mut size = 0.0f32;
-        for (id, centers) in moved {
-            let Some(Some(set)) = self.sets.get(id.0 as usize) else {
-                return Err(MovingError::Move(MoveError::NoSpheres(id)));
-            };
-            let largest = |center: &Point3| center.abs().max_element();
-            let is_finite = centers.par_iter().all(|center| center.is_finite());
-            let reach = centers.par_iter().map(largest).reduce(|| 0.0, f32::max) + set.largest_radius;
-            // So that no size of a box is infinite.
-            if centers.len() != set.len || !is_finite || reach > f32::MAX / 4.0 {
-                return Err(MovingError::Move(MoveError::Centers(id)));
+        update: Update,
+    ) -> Result<(), MovingError> {
+        for (id, points) in moved {
+            let (set, reach) = self.points.place(device, id, points)?;
+            self.top.size = self.top.size.max(reach);
+            match &mut self.triangles {
+                Some(Triangles { part, root }) if set.is_mesh => {
+                    self.top.roots[0] = *root;
+                    part.plan(update);
+                }
+                _ => self.items.plan(update),
             }
-            let numbers: Vec<[f32; 3]> = centers.par_iter().map(|center| center.to_array()).collect();
-            device.write_at(&self.centers, 12 * set.first as u64, &numbers)?;
-            size = size.max(reach);
         }
-        Ok(size)
+        Ok(())
     }
 
-    /// Moves the items of spheres to where these are, and builds or refits the tree; one that was
-    /// not built cannot be refitted.
+    /// Gives instances of the top group, which are at rest, other transforms to render space.
+    ///
+    /// # Errors
+    /// There is no such instance, or its transform has no inverse, and nothing has moved; or the
+    /// device fails.
+    pub fn place_instances(
+        &mut self,
+        device: &Device,
+        moved: &[(InstanceId, Transform)],
+        update: Update,
+    ) -> Result<(), MovingError> {
+        let Some((id, _)) = moved.first() else { return Ok(()) };
+        let instances = self.instances.as_mut().ok_or(MoveError::Instance(*id))?;
+        self.top.size = self.top.size.max(instances.place(moved)?);
+        instances.load(device)?;
+        self.items.plan(update);
+        Ok(())
+    }
+
+    /// Moves items and triangles to where they are, and builds or refits their trees; one that was
+    /// not built is built.
     ///
     /// # Errors
     /// Those of the device.
     pub fn run(
         &self,
         device: &Device,
-        update: Update,
-        [items, nodes]: [&Buffer; 2],
+        [items, triangles, nodes]: [&Buffer; 3],
         start: &mut Start,
     ) -> Result<(), GpuError> {
-        if self.count == 0 {
-            return Ok(());
+        let points = &self.points.buffer;
+        if let (Some(_), Some(instances)) = (self.items.update(), &self.instances) {
+            instances.run([items, self.items.boxes()], start);
         }
-        let Self { plan, centers, spheres, boxes, ends, .. } = self;
-        device.write(ends, &[0u32; 6])?;
-        let groups = self.count.div_ceil(THREADS);
-        start(&self.kernel, &[plan, items, centers, spheres, boxes, ends], groups);
-        match &self.tree {
-            Some(tree) => tree.run(device, update, [boxes, ends, nodes], start),
+        self.items.run(device, [items, points, nodes], start)?;
+        match &self.triangles {
+            Some(Triangles { part, .. }) => part.run(device, [triangles, points, nodes], start),
             None => Ok(()),
         }
     }
+
+    /// After a picture for which all of it was run: what has moved since counts for the next one.
+    pub fn settle(&mut self) {
+        self.items.settle();
+        if let Some(Triangles { part, .. }) = &mut self.triangles {
+            part.settle();
+        }
+    }
+}
+
+/// The items, with their boxes.
+fn items(
+    kernels: &Kernels,
+    world: &World,
+    bvh: &mut Bvh,
+    placed: &[Placed],
+    points: &mut Points,
+) -> Result<(Part, Vec<Bounds3>), MovingError> {
+    let (count, first) = (bvh.bounded.len(), bvh.bounded.start);
+    if count > MOST_ITEMS as usize {
+        return Err(MovingError::Refused("as many others"));
+    }
+    let leaf_stack = bvh.stack_within();
+    if leaf_stack > 0 && !fits_stack(count as u32, leaf_stack) {
+        return Err(MovingError::Refused("instances of as many shapes"));
+    }
+    let mut boxes = vec![Bounds3::EMPTY; count];
+    for placed in placed {
+        boxes[placed.item as usize - first] = placed.bounds(world.render_from_instance(placed.instance));
+    }
+    let mut spheres = Vec::new();
+    for (item, bounds) in bvh.bounded.clone().zip(&mut boxes) {
+        let Some((id, primitive)) = bvh.shape(item) else { continue };
+        *bounds = world.geometry(id).shape(primitive).and_then(|shape| shape.bounds()).unwrap_or(*bounds);
+        spheres.resize(spheres.len().max(id.0 as usize + 1), AT_REST);
+        spheres[id.0 as usize] = points.first(world, id);
+    }
+    let (count, first_item) = (count as u32, first as u32);
+    let first_node = if count < 2 { 0 } else { bvh.make_room(most_nodes(count)) };
+    let place = Place { count, first_item, first_node, leaf_bits: ITEMS, leaf_stack };
+    let kernel = ("place_spheres", shaders::place_spheres());
+    Ok((Part::new(kernels, kernel, place, &spheres, &boxes)?, boxes))
+}
+
+/// The triangles, if any of them may move.
+fn triangles(
+    kernels: &Kernels,
+    world: &World,
+    bvh: &mut Bvh,
+    points: &mut Points,
+) -> Result<Option<Triangles>, MovingError> {
+    let range = bvh.triangles_of_top.clone();
+    let ids = |triangle: usize| {
+        let words = &bvh.triangles[3 * triangle..];
+        (GeometryId(words[0][3]), words[1][3])
+    };
+    let firsts: Vec<u32> = range.clone().map(|triangle| points.first(world, ids(triangle).0)).collect();
+    if firsts.iter().all(|&first| first == AT_REST) || firsts.len() > MOST_ITEMS as usize {
+        return Ok(None);
+    }
+    let (mut corners, mut boxes) = (Vec::new(), Vec::new());
+    for (triangle, first) in range.clone().zip(firsts) {
+        let (id, primitive) = ids(triangle);
+        corners.extend(match world.geometry(id) {
+            Geometry::Mesh(mesh) if first != AT_REST => mesh.indices(primitive as usize).map(|i| first + i),
+            _ => [AT_REST; 3],
+        });
+        let corner = |&[x, y, z, _]: &[u32; 4]| Vec3::from([x, y, z].map(f32::from_bits));
+        boxes.push(Bounds3::around(bvh.triangles[3 * triangle..][..3].iter().map(corner)));
+    }
+    let (count, first_item) = (boxes.len() as u32, range.start as u32);
+    let is_tree = count > 1;
+    let first_node = if is_tree { bvh.add_room(most_nodes(count)) } else { 0 };
+    let place = Place { count, first_item, first_node, leaf_bits: TRIANGLES, leaf_stack: 0 };
+    let kernel = ("place_triangles", shaders::place_triangles());
+    let part = Part::new(kernels, kernel, place, &corners, &boxes)?;
+    Ok(Some(Triangles { part, root: if is_tree { first_node } else { bvh.top.roots[0] } }))
 }

@@ -26,15 +26,19 @@ const MOST_GROUPS: u32 = 1024;
 /// whatever the tree is.
 pub const MOST_ITEMS: u32 = 1 << 22;
 
-/// Where items and nodes are in their buffers.
+/// Where items or triangles, and nodes, are in their buffers.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// The number of items, two or more.
+    /// The number of items or triangles, two or more.
     pub count: u32,
     /// The first of them.
     pub first_item: u32,
     /// The first node, which is the root.
     pub first_node: u32,
+    /// The bits of references to leaves.
+    pub leaf_bits: u32,
+    /// The entries of a ray's stack that a leaf needs.
+    pub leaf_stack: u32,
 }
 
 /// The most nodes over so many items. Each has eight children, or leaves alone; of those there are
@@ -49,7 +53,13 @@ const fn most_levels(count: u32) -> u32 {
     (CODE_BITS + u32::BITS - (count - 1).leading_zeros()).div_ceil(LEVELS)
 }
 
-// A ray's stack has an entry for each node of a path, beside those of three roots.
+/// Whether the stack of a ray suffices for such a tree whose leaves need so many entries: it has
+/// one for each node of a path. The roots that wait with that of items are traversed before it.
+pub fn fits_stack(count: u32, leaf_stack: u32) -> bool {
+    most_levels(count) + leaf_stack <= STACK as u32
+}
+
+// Beside those of a path, a ray's stack may have the entries of three roots.
 const _: () = assert!(3 + most_levels(MOST_ITEMS) <= STACK as u32);
 
 /// The tree, and what builds it.
@@ -73,9 +83,10 @@ pub struct Tree {
 impl Tree {
     pub fn new(kernels: &Kernels, place: Place) -> Result<Self, GpuError> {
         let device = kernels.device();
-        let Place { count, first_item, first_node } = place;
+        let Place { count, first_item, first_node, leaf_bits, leaf_stack } = place;
         let leaves = count.next_power_of_two().max(THREADS);
-        let plan = |step| Plan { count, leaves, step, blocks: 0, first_item, first_node };
+        let common = Plan { count, leaves, first_item, first_node, leaf_bits, leaf_stack, ..Plan::default() };
+        let plan = |step| Plan { step, ..common };
         // The pyramid has fewer parts than the tree levels.
         let levels = most_levels(count);
         let plans = (0..levels).map(|step| device.parameters(&plan(step)));

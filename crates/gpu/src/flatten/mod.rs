@@ -369,9 +369,9 @@ impl Flattener<'_> {
     /// Tells instances the first light of their shapes, and lights their instances.
     fn place_lights(&mut self, bvh: &mut Bvh) {
         let is_placed = |light: &Light| matches!(light, Light::Area(area) if !area.instance.is_top());
-        let instances = std::mem::take(&mut bvh.instances);
         if self.scene.lights().rows().any(|(_, light)| is_placed(light)) {
             self.parts.placed_lights = true;
+            let instances = bvh.instances.clone();
             for (path, item) in &instances {
                 let firsts = path.ids().iter().map(|id| self.scene.instances()[id.0 as usize].first_light);
                 bvh.set_first_light(*item, firsts.sum());

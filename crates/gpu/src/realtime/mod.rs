@@ -9,8 +9,8 @@
 //! Direct light of first surfaces is that of the algorithm, or of samples that pixels and frames
 //! share ([`Weights`]).
 //!
-//! Spheres may move from picture to picture ([`Realtime::animated`]): the first kernels of a
-//! picture then build their tree.
+//! Spheres, vertices and instances may move from picture to picture ([`Realtime::animated`]): the
+//! first kernels of a picture then build their trees.
 //!
 //! When the camera rests, samples of the algorithm are added up, and the picture goes over from the
 //! filtered one to their mean: frames that share samples have errors in common, which a mean keeps.
@@ -22,8 +22,8 @@ mod reservoirs;
 use std::sync::Arc;
 use std::time::Duration;
 
-use geometry::{GeometryId, World};
-use math::{Bounds2i, Point3};
+use geometry::{GeometryId, InstanceId, World};
+use math::{Bounds2i, Point3, Transform};
 use rayon::prelude::*;
 use sampling::sampler::Independent;
 use scene::View;
@@ -81,9 +81,8 @@ pub struct Realtime {
     scene: [Buffer; 5],
     parameters: Buffer,
     canvas: Option<Canvas>,
-    /// The spheres that move, and what is to be done with their tree before the next picture.
+    /// What moves.
     moving: Option<Moving>,
-    update: Option<Update>,
     /// The camera now, and that of the last frame in motion, if it is of this canvas.
     eye: Eye,
     last: Option<Eye>,
@@ -112,7 +111,7 @@ pub struct Stages {
     pub trace: Duration,
     /// From the light of samples to colours.
     pub filter: Duration,
-    /// The tree of spheres that move.
+    /// The trees of what moves.
     pub build: Duration,
 }
 
@@ -191,7 +190,6 @@ impl Realtime {
             parameters,
             canvas: None,
             moving: None,
-            update: None,
             eye: Eye::default(),
             last: None,
             half: 0,
@@ -201,8 +199,8 @@ impl Realtime {
         })
     }
 
-    /// Takes a scene to the device, whose sets of spheres may move: those outside of instances.
-    /// `world` is that of the scene.
+    /// Takes a scene to the device, in which spheres of sets, vertices of meshes and instances may
+    /// move: those outside of instances. `world` is that of the scene.
     pub fn animated(
         kernels: Arc<Kernels>,
         mut flat: Flat,
@@ -211,30 +209,47 @@ impl Realtime {
     ) -> Result<Self, MovingError> {
         let moving = Moving::new(&kernels, world, &mut flat.bvh)?;
         flat.head.top = flat.bvh.top;
-        let (moving, update) = (Some(moving), Some(Update::Rebuild));
-        Ok(Self { moving, update, ..Self::new(kernels, &flat, algorithm, None)? })
+        Ok(Self { moving: Some(moving), ..Self::new(kernels, &flat, algorithm, None)? })
     }
 
-    /// Moves the spheres of some sets, each given by its geometry and all its centres in render
-    /// space, before the next picture; a picture at rest begins again.
+    /// Moves the spheres of some sets and the vertices of some meshes, each given by its geometry
+    /// and all its centres or vertices in render space, before the next picture; a picture at rest
+    /// begins again.
     ///
     /// # Errors
-    /// The scene was not made for that, a geometry is no set of spheres that may move, or the
-    /// centres do not fit; or the device fails.
-    pub fn move_spheres<'a>(
+    /// The scene was not made for that, a geometry has no points that may move, or the points do
+    /// not fit; or the device fails.
+    pub fn move_points<'a>(
         &mut self,
         moved: impl IntoIterator<Item = (GeometryId, &'a [Point3])>,
         update: Update,
     ) -> Result<(), MovingError> {
-        let Some(moving) = &self.moving else { return Err(MovingError::Refused("a scene at rest")) };
-        // A tree that is to be built has to be, before it can be refitted.
-        let update = if self.update == Some(Update::Rebuild) { Update::Rebuild } else { update };
-        let size = moving.place(self.kernels.device(), moved)?;
-        // Errors of rays are bounded by the largest coordinate.
-        self.head.top.size = self.head.top.size.max(size);
-        self.update = Some(update);
+        self.move_by(|moving, device| moving.place(device, moved, update))
+    }
+
+    /// Gives instances other transforms to render space before the next picture; a picture at rest
+    /// begins again.
+    ///
+    /// # Errors
+    /// The scene was not made for that, an instance is within another one or moves by itself, or
+    /// its transform has no inverse; or the device fails.
+    pub fn move_instances(
+        &mut self,
+        moved: &[(InstanceId, Transform)],
+        update: Update,
+    ) -> Result<(), MovingError> {
+        self.move_by(|moving, device| moving.place_instances(device, moved, update))
+    }
+
+    fn move_by(
+        &mut self,
+        place: impl FnOnce(&mut Moving, &Device) -> Result<(), MovingError>,
+    ) -> Result<(), MovingError> {
+        let moving = self.moving.as_mut().ok_or(MovingError::Refused("a scene at rest"))?;
+        let placed = place(moving, self.kernels.device());
+        self.head.top = moving.top();
         self.rested = 0;
-        Ok(())
+        placed
     }
 
     /// The device.
@@ -311,7 +326,7 @@ impl Realtime {
         }
         let picture = self.develop(commands, canvas, from, groups)?;
         self.moved = self.moved.wrapping_add(samples);
-        self.update = None;
+        self.settle();
         self.rested = 0;
         self.last = Some(self.eye);
         Ok(Some(picture))
@@ -337,8 +352,15 @@ impl Realtime {
             commands.finish()?;
             None
         };
-        self.update = None;
+        self.settle();
         Ok(picture)
+    }
+
+    /// After a picture of what has moved.
+    fn settle(&mut self) {
+        if let Some(moving) = &mut self.moving {
+            moving.settle();
+        }
     }
 
     /// The light of the last frame in motion as its samples have found it, before it is filtered:
@@ -356,12 +378,12 @@ impl Realtime {
         device.write(&self.scene[0], &[head])?;
         device.write(&self.parameters, &[frame])?;
         let mut commands = Commands::new(device, &canvas.timer, 3);
-        if let (Some(moving), Some(update), Trees::Nodes(nodes)) = (&self.moving, self.update, &self.trees) {
-            let [_, _, items, ..] = &self.scene;
+        if let (Some(moving), Trees::Nodes(nodes)) = (&self.moving, &self.trees) {
+            let [_, triangles, items, ..] = &self.scene;
             let mut start = |kernel: &Kernel, buffers: &[&Buffer], groups: u32| {
                 commands.run(BUILD, kernel, buffers, [groups, 1]);
             };
-            moving.run(device, update, [items, nodes], &mut start)?;
+            moving.run(device, [items, triangles, nodes], &mut start)?;
         }
         Ok(commands)
     }

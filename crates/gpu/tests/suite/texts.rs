@@ -219,7 +219,8 @@ Translate 0.6 0 0.8
 Shape "sphere" "float radius" 0.6
 "#;
 
-/// Sets of spheres, of which some are mirrors and some are glass, with sun and sky.
+/// Sets of spheres, of which some are mirrors and some are glass, a mesh, and instances of a mesh
+/// and a sphere, with sun and sky.
 pub const MOVING: &str = r#"
 LookAt 0 -6 2.5   0 0 0.4   0 0 1
 Camera "perspective" "float fov" 40
@@ -235,6 +236,42 @@ Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "fl
 Shape "spheres" "float radius" 0.5 "point3 P" [ -0.7 -0.6 0.5  0.9 1.6 0.5 ]
 Material "dielectric"
 Shape "spheres" "float radius" 0.4 "point3 P" [ 0.7 -0.8 0.6 ]
+Material "diffuse" "rgb reflectance" [ 0.3 0.3 0.8 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2  1 3 2  2 3 4  0 2 4 ]
+    "point3 P" [ -2 1 0.2  -1.2 0.6 0.3  -1.7 1.2 1.1  -0.9 1.3 0.9  -1.9 2 0.6 ]
+ObjectBegin "toy"
+    Shape "trianglemesh" "integer indices" [ 0 1 2  0 2 3  0 3 1  1 3 2 ]
+        "point3 P" [ 0 0 0.7  0.4 0 0  -0.2 0.35 0  -0.2 -0.35 0 ]
+    Shape "spheres" "float radius" 0.15 "point3 P" [ 0 0 0.8 ]
+ObjectEnd
+Translate 1.6 -1 0
+ObjectInstance "toy"
+Translate -3 0 0
+ObjectInstance "toy"
+"#;
+
+/// A mesh with normals and one that shines; and instances: at rest, of what shines, and moving.
+pub const FOLLOWING: &str = r#"
+WorldBegin
+Shape "trianglemesh" "integer indices" [ 0 1 2 ]
+    "point3 P" [ 0 0 0  1 0 0  0 1 0 ] "normal N" [ 0 0 1  0 0 1  0 0 1 ]
+AttributeBegin
+    AreaLightSource "diffuse"
+    Shape "trianglemesh" "integer indices" [ 0 1 2 ] "point3 P" [ 0 0 0  1 0 0  0 1 0 ]
+AttributeEnd
+ObjectBegin "dark"
+    Shape "sphere"
+ObjectEnd
+ObjectBegin "lamp"
+    AreaLightSource "diffuse"
+    Shape "sphere"
+ObjectEnd
+ObjectInstance "dark"
+ObjectInstance "lamp"
+ActiveTransform EndTime
+Translate 1 0 0
+ActiveTransform All
+ObjectInstance "dark"
 "#;
 
 /// Strands of three kinds of hair.

@@ -154,7 +154,7 @@ fn compare(tracer: &Tracer, world: &World, rays: &[(Ray, f32)]) -> Comparison {
     comparison
 }
 
-fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> TriangleMesh {
+pub fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> TriangleMesh {
     let attributes = MeshAttributes::default();
     TriangleMesh::new(positions.into(), indices.into(), attributes, &Transform::IDENTITY, false)
         .expect("a mesh")

@@ -144,7 +144,8 @@ fn kernels_of_frames_are_valid() {
 #[test]
 fn kernels_of_moving_spheres_are_valid() {
     let tree = shaders::tree().map(|(_, source)| source);
-    for source in shaders::sort().into_iter().chain(tree).chain([shaders::place()]) {
+    let place = [shaders::place_spheres(), shaders::place_triangles(), shaders::place_instances()];
+    for source in shaders::sort().into_iter().chain(tree).chain(place) {
         validate(&source).unwrap_or_else(|error| panic!("{error}"));
     }
 }

@@ -151,7 +151,7 @@ fn pixels_of_pictures_are_computed_once_until_something_changes() {
 
     let before = scene.clone();
     let id = scene.sphere_sets().next().expect("a set").0;
-    scene.move_spheres([(id, [v(0.0, 100.0, 0.0)].into())]).expect("the set has one sphere");
+    scene.move_points([(id, [v(0.0, 100.0, 0.0)].into())]).expect("the set has one sphere");
     let (light, new) = along_with_rays(Environment, 1.0, &scene, RIGHT);
     assert!((light - 1.0).abs() < 0.005 && new >= few + PIXELS, "{light}, {new} rays");
     assert_eq!(along_with_rays(Environment, 1.0, &before, RIGHT).1, few);

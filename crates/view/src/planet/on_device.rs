@@ -41,7 +41,7 @@ impl OnDevice {
     ) -> Result<(Frame, Duration), StepError> {
         let begin = Instant::now();
         let moved = moved.iter().map(|(id, centers)| (*id, &**centers));
-        let done = self.realtime.move_spheres(moved, Update::Rebuild);
+        let done = self.realtime.move_points(moved, Update::Rebuild);
         done.map_err(|error| StepError::Problem(error.to_string()))?;
         let moving = begin.elapsed();
         let desc = world.settings(shot)?;

@@ -200,7 +200,7 @@ impl Outing {
             frame.time = spent.sum();
             return Ok((frame, spent));
         }
-        let moved = self.world.move_spheres(moment.spheres.clone());
+        let moved = self.world.move_points(moment.spheres.clone());
         moved.map_err(|error| StepError::Problem(error.to_string()))?;
         let moving = begin.elapsed();
         let mut session = self.world.draft(&self.shot, 1)?;
