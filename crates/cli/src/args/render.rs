@@ -51,8 +51,8 @@ pub struct Render {
     #[arg(long, value_name = "K/N", value_parser = shard, requires = "checkpoint", conflicts_with = "noise")]
     pub shard: Option<Shard>,
     /// What renders: cpu; gpu, which leaves scenes that it does not draw to the CPU and says why;
-    /// ray-query, the same with rays by the GPU's hardware, if it has ray queries and nothing moves;
-    /// or auto, the GPU unless it is one in software.
+    /// ray-query, the same with rays by the GPU's hardware, if it has ray queries and nothing
+    /// moves; or auto, the GPU unless it is one in software.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,

@@ -131,9 +131,9 @@ impl Flat {
         self.parts
     }
 
-    /// Has kernels take these parts, so that scenes that need different ones can share kernels. They
-    /// must have all parts that it needs, and none that replaces others: bodies, a system of lenses,
-    /// diffuse surfaces instead of all, or ray queries.
+    /// Has kernels take these parts, so that scenes that need different ones can share kernels.
+    /// They must have all parts that it needs, and no others of those that replace something:
+    /// bodies, a system of lenses, diffuse surfaces instead of all, or ray queries.
     pub fn set_parts(&mut self, parts: Parts) {
         self.parts = parts;
     }
