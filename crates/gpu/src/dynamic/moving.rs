@@ -79,6 +79,7 @@ impl Moving {
                     self.top.roots[0] = *root;
                     part.plan(update);
                 }
+                None if set.is_mesh => return Err(MovingError::Refused("as many triangles")),
                 _ => self.items.plan(update),
             }
         }
