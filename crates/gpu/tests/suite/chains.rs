@@ -9,9 +9,9 @@ use import::{Files, MemoryAssets};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 
+use crate::direct_light::{apart, means, moments};
+use crate::frames::colors;
 use crate::pictures::Case;
-use crate::realtime::colors;
-use crate::reservoirs::{apart, means, moments};
 use crate::texts::MEDLEY;
 
 /// As many pixels as mutations of eight chains, which a driver in software runs at once.
@@ -66,7 +66,6 @@ fn chains_have_the_mean_of_paths() {
     // Small steps are as large as they can be without being independent, and seldom are large ones.
     let other = MltDesc { large_step_probability: 0.1, sigma: 0.1, chains: 2, ..settings };
     assert_mean("medley", medley, other);
-    assert_mean("lanterns", Case::of_lanterns(SIZE), settings);
 }
 
 /// A pass has the same bits whenever it is rendered and whatever was before, so that renders go on

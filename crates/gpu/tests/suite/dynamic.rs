@@ -10,8 +10,8 @@ use math::*;
 use scene::MoveError;
 use testkit::Random;
 
+use crate::frames::kernels;
 use crate::pictures::Case;
-use crate::realtime::kernels;
 use crate::texts::{FOLLOWING, MOVING};
 use crate::trace::{Traced, Tracer, buffers, mesh, random_rays, soup, traced, tracer};
 

@@ -36,9 +36,11 @@ pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts
                 needed
             }
         }
-        Algorithm::Bdpt(_) | Algorithm::LightTracing(_) | Algorithm::Mlt(..) | Algorithm::Sppm(..) => {
+        Algorithm::Bdpt(_) | Algorithm::LightTracing(_) | Algorithm::Sppm(..) => {
             Parts { placed_lights: true, ..needed }
         }
-        Algorithm::Whitted(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => needed,
+        Algorithm::Whitted(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) | Algorithm::Mlt(..) => {
+            needed
+        }
     }
 }

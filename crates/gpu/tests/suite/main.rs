@@ -5,8 +5,10 @@
 
 mod bodies;
 mod chains;
+mod direct_light;
 mod dynamic;
 mod faults;
+mod frames;
 mod kernels;
 mod laws;
 mod layers;
@@ -19,9 +21,7 @@ mod pictures;
 mod portals;
 mod raster;
 mod ray_queries;
-mod realtime;
 mod refusals;
-mod reservoirs;
 mod texts;
 mod textures;
 mod trace;

@@ -10,9 +10,9 @@ use image::Image;
 use sampling::Sampler;
 use sampling::sampler::Independent;
 
+use crate::direct_light::{apart, means, moments};
+use crate::frames::colors;
 use crate::pictures::{Case, SAMPLES};
-use crate::realtime::colors;
-use crate::reservoirs::{apart, means, moments};
 
 /// A camera in fog that glows, a lamp that an interface surrounds, and glass with a liquid in a
 /// liquid: media that need no random numbers but the sampler's.

@@ -16,5 +16,5 @@ fn photons_have_the_picture_of_the_cpu() {
     assert_eq!(Case::named("cornell-box").compare("cornell-box", &sppm(0.05)), None);
     assert_eq!(Case::named("caustic-ball").compare("caustic-ball", &sppm(0.05)), None);
     assert_eq!(Case::of_text(MEDLEY).compare("medley", &sppm(0.05)), None);
-    assert_eq!(Case::of_lanterns([64, 48]).compare("lanterns", &sppm(0.05)), None);
+    assert_eq!(Case::of_lanterns().compare("lanterns", &sppm(0.05)), None);
 }

@@ -24,9 +24,6 @@ use crate::kernels::{kernels, shared};
 use crate::motion::LANTERNS;
 use crate::texts::{AROUND, HAIR, HOLES, LAMPS, MEDLEY, PANELS, PRINCIPLED, PROJECTOR, STRETCHED};
 
-/// The pixels of pictures.
-const SIZE: [u32; 2] = [64, 48];
-
 /// The samples of each pixel.
 pub const SAMPLES: u32 = 2;
 
@@ -48,7 +45,7 @@ pub struct Case {
 
 impl Case {
     fn new(path: &Path, assets: &dyn AssetSource) -> Self {
-        Self::sized(path, assets, SIZE)
+        Self::sized(path, assets, [64, 48])
     }
 
     /// A picture of this size.
@@ -72,10 +69,8 @@ impl Case {
     }
 
     /// Lights in instances at rest.
-    pub fn of_lanterns(resolution: [u32; 2]) -> Self {
-        let path = Path::new("scene.pbrt");
-        let assets = MemoryAssets::default().with(path, LANTERNS.replace("EndTime", "All"));
-        Self::sized(path, &assets, resolution)
+    pub fn of_lanterns() -> Self {
+        Self::of_text(&LANTERNS.replace("EndTime", "All"))
     }
 
     /// A slide of four colours, thrown through a stretched space at a wall and a sphere.
@@ -365,7 +360,7 @@ fn compare_splats(scenes: &[&str], algorithm: &Algorithm, has_sobol: bool) {
         ("stretched", Case::of_text(STRETCHED)),
         ("projector", Case::projector()),
         ("lamps", Case::of_text(LAMPS)),
-        ("lanterns", Case::of_lanterns(SIZE)),
+        ("lanterns", Case::of_lanterns()),
     ];
     for (name, mut case) in named.chain(others) {
         if has_sobol {

@@ -12,8 +12,8 @@ use sampling::sampler::Independent;
 use scene::View;
 use testkit::{Moments, welch_test};
 
+use crate::frames::{colors, kernels, moved, rel_mse, sharing};
 use crate::pictures::Case;
-use crate::realtime::{colors, kernels, moved, rel_mse, sharing};
 
 /// A floor with walls between lights of many strengths, in a row of rows.
 fn lights(rows: u32) -> String {
