@@ -81,9 +81,7 @@ impl World {
         });
         Ok(())
     }
-}
 
-impl World {
     /// Gives instances of the top group, which are at rest, other transforms. The tree over them
     /// keeps its topology, as by [`refit`](Self::refit).
     ///
