@@ -12,18 +12,19 @@ const REALISTIC = 4u;
 // where the filter is tabulated, which leaves a pixel as it is.
 fn filter_sample(u: vec2f) -> vec3f {
     let at = world.pixel_filter;
-    let radius = vec2f(number(at + 1), number(at + 2));
-    switch (tables[at]) {
+    let head = words_at(at);
+    let radius = bitcast<vec2f>(head.yz);
+    switch (head.x) {
         case FILTER_BOX: { return vec3f(-radius + (radius - -radius) * u, 1); }
         case FILTER_TRIANGLE: { return vec3f(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y), 1); }
         default: {}
     }
-    let table = tables[at + 3];
+    let table = head.w;
     let offset = draw_2d(table, u).xy;
-    let count = vec2u(tables[table], tables[table + 1]);
+    let count = words_at(table).xy;
     let cell = min(vec2u((offset / radius + 1) * 0.5 * vec2f(count)), count - 1);
     let index = cell.y * count.x + cell.x;
-    let is_negative = ((tables[tables[at + 4] + index / 32] >> (index & 31)) & 1) == 1;
+    let is_negative = ((word(word(at + 4) + index / 32) >> (index & 31)) & 1) == 1;
     return vec3f(offset, select(1.0, -1.0, is_negative));
 }
 
@@ -37,25 +38,22 @@ struct PlacedCamera {
 
 fn placed_camera() -> PlacedCamera {
     let at = world.camera;
-    let row = at + 1;
-    let screen = Screen(vec2f(number(at + 13), number(at + 14)), vec2f(number(at + 15), number(at + 16)));
-    let lens = ThinLens(number(at + 17), number(at + 18));
-    if (tables[at + 33] == 1) {
-        let placement = placement_at(kept_motion(at + 39), shutter_time);
+    let sides = numbers_at(at + 16);
+    let screen = Screen(sides.xy, sides.zw);
+    let opening = numbers_at(at + 20);
+    let lens = ThinLens(opening.x, opening.y);
+    if (word(at + 1) == 1) {
+        let placement = placement_at(kept_motion(at + 44), shutter_time);
         return PlacedCamera(placement.linear, placement.translation, screen, lens);
     }
-    return PlacedCamera(
-        Rows(vector(row), vector(row + 4), vector(row + 8)),
-        vec3f(number(row + 3), number(row + 7), number(row + 11)),
-        screen,
-        lens,
-    );
+    let placement = kept_placement(at + 4);
+    return PlacedCamera(placement.linear, placement.translation, screen, lens);
 }
 
 // The direction of a position on the square of a spherical camera.
 fn spherical_ray(st: vec2f) -> vec3f {
     var z_up: vec3f;
-    if (tables[world.camera] == EQUIRECTANGULAR) {
+    if (word(world.camera) == EQUIRECTANGULAR) {
         let theta = sin_cos(3.1415927 * st.y);
         z_up = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
     } else {
@@ -67,7 +65,7 @@ fn spherical_ray(st: vec2f) -> vec3f {
 // The ray of a film position and a position on the lens, of any length.
 fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
     var ray: Tuple_Vec3_Vec3;
-    switch (tables[world.camera]) {
+    switch (word(world.camera)) {
         case PERSPECTIVE: { ray = Perspective_ray(Perspective(camera.screen, camera.lens), film, lens); }
         case ORTHOGRAPHIC: { ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens); }
         default: { ray = Tuple_Vec3_Vec3(vec3f(), spherical_ray(film / camera.screen.top_left)); }
@@ -80,8 +78,9 @@ fn placed_ray(camera: PlacedCamera, o: vec3f, d: vec3f) -> Ray {
 }
 
 fn set_shutter_time(u: f32) {
-    if (HAS_MOTION || tables[world.camera + 33] == 1) {
-        shutter_time = lerp(u, number(world.camera + 34), number(world.camera + 35));
+    if (HAS_MOTION || word(world.camera + 1) == 1) {
+        let shutter = numbers_at(world.camera + 24).xy;
+        shutter_time = lerp(u, shutter.x, shutter.y);
     }
 }
 
@@ -98,7 +97,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let camera = placed_camera();
     let has_neighbours = world.has_footprints == 1;
     // Of a sphere, on which lines of pixels bend, by rays nearer than a pixel.
-    let kind = tables[world.camera];
+    let kind = word(world.camera);
     let step = select(1.0, 0.05, kind == EQUIRECTANGULAR || kind == EQUAL_AREA);
     var rays_of_film: array<Ray, 3>;
     var share = 1.0;
@@ -122,7 +121,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let ry = rays_of_film[2];
     let factor = 1 / length(ray.d);
     let d = ray.d * factor;
-    let scale = number(world.camera + 19) / step;
+    let scale = number(world.camera + 22) / step;
     let near = Differentials(
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
@@ -155,7 +154,7 @@ struct Sample {
 
 // The wavelengths of a random number: uniform over the range that a spectral film wants.
 fn sampled_wavelengths(u: f32) -> SampledWavelengths {
-    let range = vec2f(number(world.camera + 37), number(world.camera + 38));
+    let range = numbers_at(world.camera + 24).zw;
     if (range.y > range.x) {
         return SampledWavelengths_sample_uniform_in(u, range.x, range.y);
     }

@@ -29,23 +29,24 @@ fn draw(densities: u32, edges: u32, cells: u32, random: f32) -> Drawn {
 
 // A point of the rectangle of a distribution, and its density per area.
 fn draw_2d(at: u32, u: vec2f) -> vec3f {
-    let columns = tables[at];
-    let rows = tables[at + 1];
-    let marginal = at + 6;
+    let size = words_at(at);
+    let columns = size.x;
+    let rows = size.y;
+    let marginal = at + 8;
     let densities = marginal + 2 * rows + 1;
     let edges = densities + columns * rows;
     let y = draw(marginal, marginal + rows, rows, u.y);
     let x = draw(densities + columns * y.cell, edges + (columns + 1) * y.cell, columns, u.x);
-    let low = vec2f(number(at + 2), number(at + 4));
-    let high = vec2f(number(at + 3), number(at + 5));
-    return vec3f(lerp(x.t, low.x, high.x), lerp(y.t, low.y, high.y), x.density * y.density);
+    let range = numbers_at(at + 4);
+    return vec3f(lerp(x.t, range.x, range.y), lerp(y.t, range.z, range.w), x.density * y.density);
 }
 
 // The density of `draw_2d` at a point of a distribution over [0, 1]².
 fn density_of(at: u32, p: vec2f) -> f32 {
-    let columns = tables[at];
-    let rows = tables[at + 1];
-    let marginal = at + 6;
+    let size = words_at(at);
+    let columns = size.x;
+    let rows = size.y;
+    let marginal = at + 8;
     let row = min(u32(clamp(p.y, 0, 1) * f32(rows)), rows - 1);
     let column = min(u32(clamp(p.x, 0, 1) * f32(columns)), columns - 1);
     return number(marginal + row) * number(marginal + 2 * rows + 1 + columns * row + column);

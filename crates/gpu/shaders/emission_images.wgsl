@@ -2,8 +2,8 @@
 
 // The offset of the image of a light, or 0.
 fn emission_image(at: u32) -> u32 {
-    let more = tables[at + 3] >> 2;
-    if (!HAS_EMISSION_IMAGES || more == 0 || tables[more] == 0) {
+    let more = word(at + 3) >> 2;
+    if (!HAS_EMISSION_IMAGES || more == 0 || word(more) == 0) {
         return 0;
     }
     return more;
@@ -11,10 +11,11 @@ fn emission_image(at: u32) -> u32 {
 
 // What the image of a light multiplies its emission by at texture coordinates of its surface.
 fn image_share(image: u32, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
-    let pyramid = tables[image];
+    let parts = words_at(image);
+    let pyramid = parts.x;
     // Rows of images go down.
     let rgb = few_texels(pyramid, level_of(pyramid, 0), vec2f(uv.x, 1 - uv.y), false, false);
-    return rgb_spectrum(tables[image + 1], UNBOUNDED, max(rgb, vec3f()), lambda);
+    return rgb_spectrum(parts.y, UNBOUNDED, max(rgb, vec3f()), lambda);
 }
 
 // The same at a point of its surface, which has the parameters `uv`.
@@ -31,31 +32,29 @@ fn coordinates_on_light(light: u32, p_outside: vec3f, uv: vec2f) -> vec2f {
     var p = p_outside;
     if (is_placed(light)) {
         let inward = way_to_surface(light);
-        p = times(inward.linear, p) + inward.translation;
+        p = times_point(inward, p);
     }
-    switch (tables[at]) {
+    switch (word(at)) {
         case TRIANGLE_LIGHT: {
-            let first = vec2f(number(at + 16), number(at + 17));
-            let second = vec2f(number(at + 18), number(at + 19));
-            let third = vec2f(number(at + 20), number(at + 21));
-            return first * (1 - uv.x - uv.y) + second * uv.x + third * uv.y;
+            let corners = numbers_at(at + 20);
+            let third = numbers_at(at + 24).xy;
+            return corners.xy * (1 - uv.x - uv.y) + corners.zw * uv.x + third * uv.y;
         }
         case RECTANGLE_LIGHT, PATCH_LIGHT: { return uv; }
         case SPHERE_LIGHT: {
-            let radius = number(at + 7);
-            let rotation = Rows(vector(at + 9), vector(at + 12), vector(at + 15));
-            let local = transposed(rotation, p - vector(at + 4));
-            return revolved_point(SPHERE, local, whole_sphere(radius)).uv;
+            let ball = numbers_at(at + 4);
+            let rotation = Rows(vector(at + 8), vector(at + 12), vector(at + 16));
+            let local = transposed(rotation, p - ball.xyz);
+            return revolved_point(SPHERE, local, whole_sphere(ball.w)).uv;
         }
         default: {
-            let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
-            let local = times(inverse(m), p - vec3f(number(at + 7), number(at + 11), number(at + 15)));
-            let numbers = vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
+            let out = kept_placement(at + 4);
+            let local = times(inverse(out.linear), p - out.translation);
             var kind = SPHERE;
-            if (tables[at] != SPHERE_PART_LIGHT) {
-                kind = select(CYLINDER, DISK, tables[at] == DISK_LIGHT);
+            if (word(at) != SPHERE_PART_LIGHT) {
+                kind = select(CYLINDER, DISK, word(at) == DISK_LIGHT);
             }
-            return revolved_point(kind, local, numbers).uv;
+            return revolved_point(kind, local, numbers_at(at + 16)).uv;
         }
     }
 }

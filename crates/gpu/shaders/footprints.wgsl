@@ -38,18 +38,17 @@ fn pixel_on_plane(s: Surface, d: Differentials) -> array<vec3f, 2> {
     let in_camera = times(inverse(camera.rotation), p - camera.translation);
     var way = Vec3_normalize_masked(in_camera);
     var distance = length(in_camera);
-    let is_parallel = tables[world.camera] == ORTHOGRAPHIC && camera.lens.radius <= 0;
+    let is_parallel = word(world.camera) == ORTHOGRAPHIC && camera.lens.radius <= 0;
     if (is_parallel || !way.v1) {
         way.v0 = vec3f(0, 0, 1);
         distance = select(distance, in_camera.z, is_parallel);
     }
-    let at = world.camera + 19;
-    let least = MinimumDifferentials(
-        array(vector(at + 2), vector(at + 5)), array(vector(at + 8), vector(at + 11)),
-    );
+    let at = world.camera + 28;
+    let least =
+        MinimumDifferentials(array(vector(at), vector(at + 4)), array(vector(at + 8), vector(at + 12)));
     let n = transposed(camera.rotation, s.n);
     let across = MinimumDifferentials_dp_dxy(least, way.v0, distance, n);
-    let scale = number(at + 1);
+    let scale = number(world.camera + 23);
     return array(times(camera.rotation, across[0] * scale), times(camera.rotation, across[1] * scale));
 }
 

@@ -20,16 +20,16 @@ struct Level {
 }
 
 fn level_of(pyramid: u32, index: u32) -> Level {
-    let at = pyramid + 8 + 3 * index;
-    return Level(tables[at], vec2u(tables[at + 1], tables[at + 2]));
+    let found = words_at(pyramid + 8 + 4 * index);
+    return Level(found.x, found.yz);
 }
 
-// The value at an index of a level.
-fn stored_value(pyramid: u32, first: u32, index: u32) -> f32 {
-    switch (tables[pyramid + 1]) {
+// The value at an index of a level, given how values are stored, and what bytes stand for.
+fn stored_value(format: u32, decoded: u32, first: u32, index: u32) -> f32 {
+    switch (format) {
         case STORED_BYTES: {
             let code = (texels[first + index / 4] >> (8 * (index & 3))) & 255;
-            return number(tables[pyramid + 7] + code);
+            return number(decoded + code);
         }
         case STORED_HALVES: {
             return from_half((texels[first + index / 2] >> (16 * (index & 1))) & 0xffff);
@@ -78,7 +78,9 @@ fn wrapped(p: vec2i, size: vec2i, wrap: u32) -> vec2i {
 fn texel(pyramid: u32, level: Level, p: vec2i) -> vec3f {
     let size = vec2i(level.size);
     let is_inside = all(p >= vec2i()) && all(p < size);
-    let wrap = tables[pyramid + 6];
+    let head = words_at(pyramid);
+    let more = words_at(pyramid + 4);
+    let wrap = more.z;
     if (!is_inside && wrap == WRAP_BLACK) {
         return vec3f();
     }
@@ -86,12 +88,13 @@ fn texel(pyramid: u32, level: Level, p: vec2i) -> vec3f {
     if (!is_inside) {
         q = wrapped(p, size, wrap);
     }
-    let pixel = (u32(q.y) * level.size.x + u32(q.x)) * tables[pyramid + 2];
+    let pixel = (u32(q.y) * level.size.x + u32(q.x)) * head.z;
     // Of grey images all channels are the same one.
-    let count = select(3u, 1u, tables[pyramid + 3] == tables[pyramid + 4]);
+    var channels = vec3u(head.w, more.xy);
+    let count = select(3u, 1u, channels.x == channels.y);
     var color: vec3f;
     for (var i = 0u; i < count; i++) {
-        color[i] = stored_value(pyramid, level.first, pixel + tables[pyramid + 3 + i]);
+        color[i] = stored_value(head.y, more.w, level.first, pixel + channels[i]);
     }
     return select(color, color.xxx, count == 1);
 }
@@ -149,12 +152,12 @@ fn ellipse(pyramid: u32, level: Level, st: vec2f, longer: vec2f, shorter: vec2f)
     return sum;
 }
 
-// The filtered colour of a lookup of a texture. `dst0` and `dst1` are what its position changes by
-// from pixel to pixel.
-fn filtered_color(lookup: u32, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
-    let pyramid = tables[lookup];
-    let method = tables[lookup + 2];
-    let last = tables[pyramid] - 1;
+// The filtered colour of a lookup, given its pyramid, its mapping, its filter and its largest
+// anisotropy. `dst0` and `dst1` are what its position changes by from pixel to pixel.
+fn filtered_color(lookup: vec4u, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
+    let pyramid = lookup.x;
+    let method = lookup.z;
+    let last = word(pyramid) - 1;
     var longer = dst0;
     var shorter = dst1;
     if (dot(dst0, dst0) < dot(dst1, dst1)) {
@@ -166,7 +169,7 @@ fn filtered_color(lookup: u32, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
     var is_blended = false;
     var is_elliptic = false;
     if (method == LOOKUP_EWA) {
-        let slimmest = length(shorter) * number(lookup + 3);
+        let slimmest = length(shorter) * bitcast<f32>(lookup.w);
         if (slimmest > 0 && slimmest < length(longer)) {
             shorter *= length(longer) / slimmest;
         }

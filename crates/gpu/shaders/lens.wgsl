@@ -14,13 +14,14 @@ struct LensRay {
 // The point of a film position.
 fn film_point(film: vec2f) -> vec3f {
     let at = world.camera;
-    let p = film * vec2f(number(at + 13), number(at + 14)) - vec2f(number(at + 15), number(at + 16));
+    let sides = numbers_at(at + 16);
+    let p = film * sides.xy - sides.zw;
     return vec3f(-p.x, p.y, 0);
 }
 
 // The value of a stop's picture; black beyond it.
 fn stop_texel(mask: u32, p: vec2i) -> f32 {
-    let size = vec2i(vec2u(tables[mask], tables[mask + 1]));
+    let size = vec2i(vec2u(word(mask), word(mask + 1)));
     if (any(p < vec2i()) || any(p >= size)) {
         return 0;
     }
@@ -32,7 +33,7 @@ fn stop_share(mask: u32, p: vec2f) -> f32 {
     if (mask == 0) {
         return select(0.0, 1.0, dot(p, p) <= 1);
     }
-    let size = vec2f(f32(tables[mask]), f32(tables[mask + 1]));
+    let size = vec2f(f32(word(mask)), f32(word(mask + 1)));
     let place = vec2f(0.5 + 0.5 * p.x, 0.5 - 0.5 * p.y) * size - 0.5;
     let low = floor(clamp(place, vec2f(-2), size + 2));
     let part = place - low;
@@ -46,17 +47,17 @@ fn stop_share(mask: u32, p: vec2f) -> f32 {
 
 // The ray that leaves the front for a ray from the film; all pass if apertures are open.
 fn through_lens(from_: vec3f, towards: vec3f, is_open: bool) -> LensRay {
-    let lens = tables[world.camera + 36];
+    let lens = word(world.camera + 2);
     let blocked = LensRay(vec3f(), vec3f(0, 0, 1), 0);
     var o = from_;
     var d = towards;
     var share = 1.0;
-    for (var i = 0u; i < tables[lens]; i++) {
-        let at = lens + 3 + 4 * i;
-        let vertex = vec3f(0, 0, number(at));
-        let radius = number(at + 1);
-        let eta = number(at + 2);
-        let aperture = number(at + 3);
+    for (var i = 0u; i < word(lens); i++) {
+        let interface_ = numbers_at(lens + 4 + 4 * i);
+        let vertex = vec3f(0, 0, interface_.x);
+        let radius = interface_.y;
+        let eta = interface_.z;
+        let aperture = interface_.w;
         let q = o - vertex;
         if (radius == 0) {
             if (q.z * d.z > 0 || abs(d.z) < 1e-12) {
@@ -64,7 +65,7 @@ fn through_lens(from_: vec3f, towards: vec3f, is_open: bool) -> LensRay {
             }
             o -= d * (q.z / d.z);
             if (!is_open) {
-                share *= stop_share(tables[lens + 2], o.xy / aperture);
+                share *= stop_share(word(lens + 2), o.xy / aperture);
                 if (!(share > 0)) {
                     return blocked;
                 }
@@ -103,18 +104,18 @@ fn through_lens(from_: vec3f, towards: vec3f, is_open: bool) -> LensRay {
 // The ray of a film position and a position on the exit pupil, and those of the pixels to the right
 // and below, if these are wanted: by differences of a step, in a lens without apertures.
 fn lens_rays(film: vec2f, u: vec2f, has_neighbours: bool) -> array<LensRay, 3> {
-    let lens = tables[world.camera + 36];
+    let lens = word(world.camera + 2);
     let from_ = film_point(film);
     let distance = length(from_);
-    let intervals = tables[lens + 1];
-    let interval = min(u32(distance / number(world.camera + 17) * f32(intervals)), intervals - 1);
-    let at = lens + 3 + 4 * tables[lens] + 4 * interval;
-    let low = vec2f(number(at), number(at + 1));
-    let high = vec2f(number(at + 2), number(at + 3));
+    let intervals = word(lens + 1);
+    let interval = min(u32(distance / number(world.camera + 20) * f32(intervals)), intervals - 1);
+    let pupil = numbers_at(lens + 4 + 4 * word(lens) + 4 * interval);
+    let low = pupil.xy;
+    let high = pupil.zw;
     let is_empty = any(low > high);
     let p = mix(low, high, u);
     let turn = select(vec2f(1, 0), from_.xy / distance, distance > 0);
-    let rear_z = number(lens + 3);
+    let rear_z = number(lens + 4);
     let rear = vec3f(turn.x * p.x - turn.y * p.y, turn.y * p.x + turn.x * p.y, rear_z);
     // Of the position, first through apertures, and to the right, below, left and above.
     var found: array<LensRay, 6>;

@@ -15,44 +15,48 @@ struct Choice {
 // A light for a point.
 fn choose_light(context: ShapeSampleContext, u: f32) -> Choice {
     let at = world.choice;
+    let head = words_at(at);
     if (world.light_count == 0) {
         return Choice(0, 0, false);
     }
-    if (tables[at] == CHOICE_UNIFORM) {
+    if (head.x == CHOICE_UNIFORM) {
         let light = min(u32(u * f32(world.light_count)), world.light_count - 1);
         return Choice(light, 1 / f32(world.light_count), true);
     }
-    if (tables[at] == CHOICE_POWER) {
-        return choose_by_power(at + 1, u);
+    if (head.x == CHOICE_POWER) {
+        return choose_by_power(at + 4, u);
     }
-    let probability = number(at + 6);
-    let infinite_count = tables[at + 4];
+    let counts = words_at(at + 4);
+    let probability = bitcast<f32>(counts.z);
+    let infinite_count = counts.x;
     if (u < probability) {
         let index = min(u32(u / probability * f32(infinite_count)), infinite_count - 1);
-        return Choice(tables[tables[at + 3] + index], probability / f32(infinite_count), true);
+        return Choice(word(head.w + index), probability / f32(infinite_count), true);
     }
-    if (tables[at + 5] == 0) {
+    if (counts.y == 0) {
         return Choice(0, 0, false);
     }
     let rest = real_min((u - probability) / (1 - probability), float_ONE_MINUS_EPSILON);
-    return descend(tables[at + 1], context, rest, 1 - probability);
+    return descend(head.y, context, rest, 1 - probability);
 }
 
 // The probability with which a light is chosen.
 fn light_pmf(context: ShapeSampleContext, light: u32) -> f32 {
     let at = world.choice;
-    if (tables[at] == CHOICE_UNIFORM) {
+    let head = words_at(at);
+    if (head.x == CHOICE_UNIFORM) {
         return 1 / f32(world.light_count);
     }
-    if (tables[at] == CHOICE_POWER) {
-        return number(at + 1 + 3 * light + 1);
+    if (head.x == CHOICE_POWER) {
+        return number(at + 4 + 4 * light + 1);
     }
-    let trail = vec2u(tables[tables[at + 2] + 2 * light], tables[tables[at + 2] + 2 * light + 1]);
-    let probability = number(at + 6);
+    let trail = vec2u(word(head.z + 2 * light), word(head.z + 2 * light + 1));
+    let counts = words_at(at + 4);
+    let probability = bitcast<f32>(counts.z);
     if (trail.y == 0xffffffffu) {
-        return select(0, probability / f32(tables[at + 4]), trail.x == 1);
+        return select(0, probability / f32(counts.x), trail.x == 1);
     }
-    return follow(tables[at + 1], context, trail, 1 - probability);
+    return follow(head.y, context, trail, 1 - probability);
 }
 
 // By an alias table. The product of u with the number of bins is computed with its rounding error,
@@ -64,9 +68,9 @@ fn choose_by_power(bins: u32, u: f32) -> Choice {
     let below = floor(product) - select(0.0, 1.0, product == floor(product) && error < 0);
     let bin = min(u32(max(below, 0)), world.light_count - 1);
     let within = (product - f32(bin)) + error;
-    let at = bins + 3 * bin;
-    let light = select(tables[at + 2], bin, within < number(at));
-    let pmf = number(bins + 3 * light + 1);
+    let own = words_at(bins + 4 * bin);
+    let light = select(own.z, bin, within < bitcast<f32>(own.x));
+    let pmf = number(bins + 4 * light + 1);
     return Choice(light, pmf, pmf > 0);
 }
 
@@ -74,10 +78,9 @@ fn choose_by_power(bins: u32, u: f32) -> Choice {
 fn importances(nodes: u32, node: u32, second: u32, context: ShapeSampleContext) -> vec2f {
     var both: vec2f;
     for (var i = 0u; i < 2; i++) {
-        let at = nodes + 13 * select(node + 1, second, i == 1);
+        let row = rows_at(nodes + 16 * select(node + 1, second, i == 1));
         let cluster = Cluster(
-            vector(at), number(at + 3), vector(at + 4), number(at + 7), number(at + 8), number(at + 9),
-            number(at + 10), number(at + 11) > 0,
+            row[0].xyz, row[0].w, row[1].xyz, row[1].w, row[2].x, row[2].y, row[2].z, row[2].w > 0,
         );
         both[i] = Cluster_importance(cluster, context.p.p, context.ns);
     }
@@ -89,7 +92,7 @@ fn descend(nodes: u32, context: ShapeSampleContext, start: f32, probability: f32
     var u = start;
     var pmf = probability;
     var node = 0u;
-    var kind = tables[nodes + 12];
+    var kind = word(nodes + 12);
     while (kind < TREE_LEAF) {
         let both = importances(nodes, node, kind, context);
         if (all(both == vec2f())) {
@@ -101,7 +104,7 @@ fn descend(nodes: u32, context: ShapeSampleContext, start: f32, probability: f32
         u = clamp(select(u - p, u, goes_left) / chosen, 0, float_ONE_MINUS_EPSILON);
         pmf *= chosen;
         node = select(kind, node + 1, goes_left);
-        kind = tables[nodes + 13 * node + 12];
+        kind = word(nodes + 16 * node + 12);
     }
     return Choice(kind & ~TREE_LEAF, pmf, pmf > 0);
 }
@@ -111,7 +114,7 @@ fn follow(nodes: u32, context: ShapeSampleContext, trail: vec2u, probability: f3
     var pmf = probability;
     var node = 0u;
     for (var depth = 0u; depth < 64; depth++) {
-        let kind = tables[nodes + 13 * node + 12];
+        let kind = word(nodes + 16 * node + 12);
         if (kind >= TREE_LEAF || pmf == 0) {
             break;
         }

@@ -34,21 +34,20 @@ fn count_of_light_paths() -> f32 {
 }
 
 fn sphere_of_scene() -> vec4f {
-    return vec4f(vector(world.light_paths + 4), number(world.light_paths + 7));
+    return numbers_at(world.light_paths + 4);
 }
 
 // Whether light paths to a film position add to a pixel.
 fn is_reached(film: vec2f) -> bool {
-    let at = world.light_paths + 8;
-    let low = vec2f(number(at), number(at + 1));
-    let high = vec2f(number(at + 2), number(at + 3));
-    return all(film >= low) && all(film <= high);
+    let reach = numbers_at(world.light_paths + 8);
+    return all(film >= reach.xy) && all(film <= reach.zw);
 }
 
 // The density of a direction from the point of a spot light, at a cosine to its axis.
 fn spot_density(at: u32, cosine: f32) -> f32 {
-    let start = number(at + 10);
-    let end = number(at + 11);
+    let falloff = numbers_at(at + 12);
+    let start = falloff.x;
+    let end = falloff.y;
     let solid_angle = 6.2831855 * ((1 - start) + (start - end) / 2);
     return select(0, smooth_step(cosine, end, start) / solid_angle, solid_angle > 0);
 }
@@ -56,8 +55,9 @@ fn spot_density(at: u32, cosine: f32) -> f32 {
 // A direction around the axis of a spot light: in the cone of full intensity or in the ring around
 // it, which has half as much on average.
 fn spot_direction(at: u32, u: vec2f) -> vec3f {
-    let start = number(at + 10);
-    let end = number(at + 11);
+    let falloff = numbers_at(at + 12);
+    let start = falloff.x;
+    let end = falloff.y;
     let cone = 1 - start;
     let ring = 0.5 * (start - end);
     let chosen = u.x * (cone + ring);
@@ -78,32 +78,32 @@ fn spot_direction(at: u32, u: vec2f) -> vec3f {
 
 // The direction in which a light with an image at a point sends a ray.
 fn image_direction(at: u32, u: vec2f) -> vec3f {
-    let st = draw_2d(tables[at + 25], u).xy;
+    let st = draw_2d(word(at + 32), u).xy;
     var local: vec3f;
-    if (tables[at] == GONIOMETRIC_LIGHT) {
+    if (word(at) == GONIOMETRIC_LIGHT) {
         local = equal_area_square_to_sphere(st).xzy;
     } else {
-        let low = vec2f(number(at + 28), number(at + 29));
-        let high = vec2f(number(at + 30), number(at + 31));
-        local = vec3f(lerp(st.x, low.x, high.x), lerp(1 - st.y, low.y, high.y), 1);
+        let screen = numbers_at(at + 36);
+        local = vec3f(lerp(st.x, screen.x, screen.z), lerp(1 - st.y, screen.y, screen.w), 1);
     }
-    return Vec3_normalize(times(Rows(vector(at + 16), vector(at + 19), vector(at + 22)), local));
+    return Vec3_normalize(times(Rows(vector(at + 20), vector(at + 24), vector(at + 28)), local));
 }
 
 // The density of these directions.
 fn image_direction_density(at: u32, w: vec3f) -> f32 {
     let local = in_light(at, w);
     let length2 = Vec3_length_squared(local);
-    let x = vector(at + 7);
+    let x = vector(at + 8);
     // Solid angle in the space of the light over that of render space.
-    let factor = abs(dot(x, cross(vector(at + 10), vector(at + 13)))) / (length2 * sqrt(length2));
-    if (tables[at] == GONIOMETRIC_LIGHT) {
-        return UNIFORM_DIRECTION * density_of(tables[at + 25], position_on_square(local)) * factor;
+    let factor = abs(dot(x, cross(vector(at + 12), vector(at + 16)))) / (length2 * sqrt(length2));
+    if (word(at) == GONIOMETRIC_LIGHT) {
+        return UNIFORM_DIRECTION * density_of(word(at + 32), position_on_square(local)) * factor;
     }
     let on_slide = position_on_slide(at, local);
-    let area = (number(at + 30) - number(at + 28)) * (number(at + 31) - number(at + 29));
+    let screen = numbers_at(at + 36);
+    let area = (screen.z - screen.x) * (screen.w - screen.y);
     let cosine = local.z / sqrt(length2);
-    let density = density_of(tables[at + 25], on_slide.xy) / (area * cosine * cosine * cosine);
+    let density = density_of(word(at + 32), on_slide.xy) / (area * cosine * cosine * cosine);
     return select(0, density * factor, on_slide.z == 1);
 }
 
@@ -122,7 +122,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     if (world.light_count == 0) {
         return e;
     }
-    let choice = choose_by_power(tables[world.light_paths + 1], u);
+    let choice = choose_by_power(word(world.light_paths + 1), u);
     let at = light_record(choice.light);
     e.origin.light = choice.light;
     e.valid = choice.valid;
@@ -130,16 +130,16 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     var share = vec4f(1);
     var pdf = 1.0;
     var w: vec3f;
-    switch (tables[at]) {
+    switch (word(at)) {
         case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
             e.origin.p = vector(at + 4);
-            switch (tables[at]) {
+            switch (word(at)) {
                 case POINT_LIGHT: {
                     w = sample_uniform_sphere(u_direction);
                     pdf = UNIFORM_DIRECTION;
                 }
                 case SPOT_LIGHT: {
-                    let axis = vector(at + 7);
+                    let axis = vector(at + 8);
                     w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
                     pdf = spot_density(at, dot(w, axis));
                 }
@@ -194,7 +194,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
 fn direct_pdf(point: LightPoint, context: ShapeSampleContext, wi: vec3f) -> f32 {
     let at = light_record(point.light);
     var pdf = 1.0;
-    switch (tables[at]) {
+    switch (word(at)) {
         case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
             pdf = Vec3_length_squared(point.p - context.p.p);
         }
@@ -211,9 +211,9 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
     let at = light_record(point.light);
     var pdf = 1.0;
     var cosine = 1.0;
-    switch (tables[at]) {
+    switch (word(at)) {
         case POINT_LIGHT: { pdf = UNIFORM_DIRECTION; }
-        case SPOT_LIGHT: { pdf = spot_density(at, dot(-wi, vector(at + 7))); }
+        case SPOT_LIGHT: { pdf = spot_density(at, dot(-wi, vector(at + 8))); }
         case GONIOMETRIC_LIGHT, PROJECTION_LIGHT: { pdf = image_direction_density(at, -wi); }
         case DISTANT_LIGHT: { pdf = disk_density(from_, wi); }
         case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
@@ -223,7 +223,7 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
             cosine = abs(dot(point.n, wi));
         }
     }
-    let pmf = number(tables[world.light_paths + 1] + 3 * point.light + 1);
+    let pmf = number(word(world.light_paths + 1) + 4 * point.light + 1);
     return LightEnd(direct, pmf * pdf, cosine, is_delta(at));
 }
 

@@ -36,29 +36,31 @@ fn no_light() -> LightSample {
 }
 
 fn light_record(light: u32) -> u32 {
-    return tables[world.lights + light];
+    return word(world.lights + light);
 }
 
 fn is_delta(at: u32) -> bool {
-    let kind = tables[at];
-    let has_no_surface = kind <= DISTANT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
+    let head = words_at(at);
+    let has_no_surface =
+        head.x <= DISTANT_LIGHT || head.x == GONIOMETRIC_LIGHT || head.x == PROJECTION_LIGHT;
     // No ray hits a surface that is invisible.
-    return has_no_surface || (tables[at + 3] & 2) != 0;
+    return has_no_surface || (head.w & 2) != 0;
 }
 
 // The spectrum of a light times its scale.
 fn emission(at: u32, lambda: SampledWavelengths) -> vec4f {
-    return spectrum(tables[at + 1], lambda) * number(at + 2);
+    let head = words_at(at);
+    return spectrum(head.y, lambda) * bitcast<f32>(head.z);
 }
 
 // Whether a light without a surface moves.
 fn light_moves(at: u32) -> bool {
-    return HAS_MOTION && tables[at + 3] != 0;
+    return HAS_MOTION && word(at + 3) != 0;
 }
 
 // From the space of such a light, at the time of the sample.
 fn out_of_light(at: u32) -> Placement {
-    return placement_at(kept_motion(tables[at + 3] >> 2), shutter_time);
+    return placement_at(kept_motion(word(at + 3) >> 2), shutter_time);
 }
 
 // The position of a light at a point.
@@ -68,7 +70,7 @@ fn light_position(at: u32) -> vec3f {
         return p;
     }
     let outward = out_of_light(at);
-    if (tables[at] == GONIOMETRIC_LIGHT || tables[at] == PROJECTION_LIGHT) {
+    if (word(at) == GONIOMETRIC_LIGHT || word(at) == PROJECTION_LIGHT) {
         return outward.translation;
     }
     return times(outward.linear, p) + outward.translation;
@@ -84,13 +86,13 @@ fn light_direction(at: u32, place: u32) -> vec3f {
 }
 
 fn flat_light(at: u32) -> FlatShape {
-    let sides = array(vector(at + 7), vector(at + 10));
-    return FlatShape(vector(at + 4), sides, vector(at + 13), tables[at] == TRIANGLE_LIGHT);
+    let sides = array(vector(at + 8), vector(at + 12));
+    return FlatShape(vector(at + 4), sides, vector(at + 16), word(at) == TRIANGLE_LIGHT);
 }
 
 // Whether both sides of a surface emit.
 fn is_two_sided(at: u32) -> bool {
-    return (tables[at + 3] & 1) == 1;
+    return (word(at + 3) & 1) == 1;
 }
 
 // Whether a surface with the normal `n` emits along `w`.
@@ -133,7 +135,7 @@ fn sample_light(
 ) -> LightSample {
     let at = light_record(light);
     var sample: LightSample;
-    switch (tables[at]) {
+    switch (word(at)) {
         case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
             sample = sample_point_light(at, context, lambda);
         }
@@ -166,20 +168,22 @@ fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavel
 
 // What the intensity of a light at a point is multiplied by along `w`.
 fn point_share(at: u32, w: vec3f, lambda: SampledWavelengths) -> vec4f {
-    switch (tables[at]) {
+    switch (word(at)) {
         case SPOT_LIGHT: {
-            let cosine = dot(w, light_direction(at, at + 7));
-            return vec4f(smooth_step(cosine, number(at + 11), number(at + 10)));
+            let cosine = dot(w, light_direction(at, at + 8));
+            let falloff = numbers_at(at + 12);
+            return vec4f(smooth_step(cosine, falloff.y, falloff.x));
         }
         case GONIOMETRIC_LIGHT: {
-            return vec4f(density_of(tables[at + 25], position_on_square(in_light(at, w))));
+            return vec4f(density_of(word(at + 32), position_on_square(in_light(at, w))));
         }
         case PROJECTION_LIGHT: {
             let on_slide = position_on_slide(at, in_light(at, w));
             if (on_slide.z == 0) {
                 return vec4f();
             }
-            return image_pixel(at + 26, tables[at + 32], on_slide.xy, lambda);
+            let slide = words_at(at + 32);
+            return image_pixel(slide.yz, slide.w, on_slide.xy, lambda);
         }
         default: { return vec4f(1); }
     }
@@ -190,7 +194,7 @@ fn in_light(at: u32, w: vec3f) -> vec3f {
     if (light_moves(at)) {
         return times(inverse(out_of_light(at).linear), w);
     }
-    return times(Rows(vector(at + 7), vector(at + 10), vector(at + 13)), w);
+    return times(Rows(vector(at + 8), vector(at + 12), vector(at + 16)), w);
 }
 
 // The position on the square of the sphere of a direction in the space of a goniometric light,
@@ -201,11 +205,10 @@ fn position_on_square(local: vec3f) -> vec2f {
 
 // The position in the image of a projector of a direction in its space, and 1 if there is one.
 fn position_on_slide(at: u32, local: vec3f) -> vec3f {
-    let low = vec2f(number(at + 28), number(at + 29));
-    let high = vec2f(number(at + 30), number(at + 31));
+    let screen = numbers_at(at + 36);
     let p = local.xy / local.z;
-    let st = (p - low) / (high - low);
-    let is_on_slide = local.z > 0 && all(p >= low) && all(p <= high);
+    let st = (p - screen.xy) / (screen.zw - screen.xy);
+    let is_on_slide = local.z > 0 && all(p >= screen.xy) && all(p <= screen.zw);
     return vec3f(st.x, 1 - st.y, select(0.0, 1.0, is_on_slide));
 }
 
@@ -219,7 +222,7 @@ fn sample_far_light(
     var sample = no_light();
     sample.l = vec4f(1);
     sample.is_distant = true;
-    switch (tables[at]) {
+    switch (word(at)) {
         case DISTANT_LIGHT: {
             sample.wi = light_direction(at, at + 4);
             sample.pdf = 1;
@@ -246,11 +249,11 @@ struct Sky {
 fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     let at = light_record(light);
     var seen = Sky(emission(at, lambda), 0);
-    if (tables[at] == IMAGE_LIGHT) {
+    if (word(at) == IMAGE_LIGHT) {
         let st = sky_position(at, d);
         seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, true));
     }
-    if (HAS_PORTALS && tables[at] == PORTAL_LIGHT) {
+    if (HAS_PORTALS && word(at) == PORTAL_LIGHT) {
         let through = portal_seen(at, o, d, lambda);
         seen = Sky(seen.l * through.l, through.pdf);
     }
@@ -259,12 +262,12 @@ fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
 
 // The position in an image of the sphere that is seen along a direction.
 fn sky_position(at: u32, d: vec3f) -> vec2f {
-    var inward = Rows(vector(at + 8), vector(at + 11), vector(at + 14));
+    var inward = Rows(vector(at + 8), vector(at + 12), vector(at + 16));
     if (light_moves(at)) {
         inward = inverse(out_of_light(at).linear);
     }
     let w = Vec3_normalize(times(inward, d));
-    if (tables[at + 6] == 0) {
+    if (word(at + 6) == 0) {
         return equal_area_sphere_to_square(w);
     }
     return vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
@@ -273,29 +276,28 @@ fn sky_position(at: u32, d: vec3f) -> vec2f {
 // The density per solid angle with which the direction to a position is sampled, completely or not.
 fn sky_density(at: u32, st: vec2f, allow_incomplete: bool) -> f32 {
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
-    let density = density_of(tables[at + select(7u, 27u, allow_incomplete)], st);
+    let density = density_of(word(at + select(7u, 33u, allow_incomplete)), st);
     return select(density / solid_angle, 0, solid_angle == 0);
 }
 
 // Solid angle per area of an image of the sphere, as a part of 4π.
 fn solid_angle_density(at: u32, st: vec2f) -> f32 {
-    return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, tables[at + 6] == 0);
+    return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, word(at + 6) == 0);
 }
 
 // What the pixel at a position multiplies the emission by.
 fn sky_image(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
-    return image_pixel(at + 4, tables[at + 26], st, lambda);
+    return image_pixel(words_at(at + 4).xy, word(at + 32), st, lambda);
 }
 
 // The spectrum of the pixel at a position of an image, over the illuminant.
-fn image_pixel(size_at: u32, pixels: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
-    let size = vec2u(tables[size_at], tables[size_at + 1]);
+fn image_pixel(size: vec2u, pixels: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
     let pixel = min(vec2u(clamp(st * vec2f(size), vec2f(), vec2f(size))), size - 1);
-    let rgb = pixels + 4 * (pixel.y * size.x + pixel.x);
-    let polynomial = RgbSigmoidPolynomial(vector(rgb + 1));
+    let rgb = numbers_at(pixels + 4 * (pixel.y * size.x + pixel.x));
+    let polynomial = RgbSigmoidPolynomial(rgb.yzw);
     var l: vec4f;
     for (var i = 0; i < 4; i++) {
-        l[i] = number(rgb) * RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]);
+        l[i] = rgb.x * RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]);
     }
     return l;
 }
@@ -307,16 +309,16 @@ fn sample_sky(
     allow_incomplete: bool,
     sample: ptr<function, LightSample>,
 ) {
-    let drawn = draw_2d(tables[at + select(7u, 27u, allow_incomplete)], u);
+    let drawn = draw_2d(word(at + select(7u, 33u, allow_incomplete)), u);
     let st = drawn.xy;
     var local: vec3f;
-    if (tables[at + 6] == 0) {
+    if (word(at + 6) == 0) {
         local = equal_area_square_to_sphere(st);
     } else {
         let theta = sin_cos(3.1415927 * st.y);
         local = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
     }
-    var outward = Rows(vector(at + 17), vector(at + 20), vector(at + 23));
+    var outward = Rows(vector(at + 20), vector(at + 24), vector(at + 28));
     if (light_moves(at)) {
         outward = out_of_light(at).linear;
     }

@@ -52,7 +52,7 @@ struct Coat {
 
 // The record of a material.
 fn material_record(material: u32) -> u32 {
-    return tables[world.materials + material];
+    return word(world.materials + material);
 }
 
 // The BSDF of a point, whose shading geometry gets the material's normals. Dispersive materials
@@ -89,17 +89,20 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     var height = 0u;
     var values: array<vec4f, MOST_TEXTURES>;
     var value = 0u;
+    // Kind, image of normals, texture of the height, number of textures; and numbers.
+    var head: vec4u;
     loop {
-        let is_mix = tables[at] == MIX;
-        let is_raised = tables[at + 2] != 0 && height < 3;
-        if (!is_mix && !is_raised && value == tables[at + 3]) {
+        head = words_at(at);
+        let is_mix = head.x == MIX;
+        let is_raised = head.z != 0 && height < 3;
+        if (!is_mix && !is_raised && value == head.w) {
             break;
         }
         var place = context;
-        var next = tables[at + MATERIAL_TEXTURES + value];
+        var next = word(at + MATERIAL_TEXTURES + value);
         if (!is_mix && is_raised) {
             place = raised_context(*s, context, height);
-            next = tables[at + 2];
+            next = head.z;
         }
         let found = texture(next, place, *lambda);
         if (is_mix) {
@@ -112,21 +115,23 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
             value++;
         }
     }
-    if (tables[at + 1] != 0) {
-        map_normal(s, tables[at + 1]);
+    let given = words_at(at + 4);
+    let more = words_at(at + 8);
+    if (head.y != 0) {
+        map_normal(s, head.y);
     } else if (height == 3) {
         raise(s, context, heights);
     }
     var bsdf: Bsdf;
-    bsdf.kind = tables[at];
+    bsdf.kind = head.x;
     bsdf.frame = Frame_from_z_and_x((*s).ns, (*s).ss);
     bsdf.eta = 1;
     let is_coated = bsdf.kind == COATED_DIFFUSE || bsdf.kind == COATED_CONDUCTOR;
     if (is_coated || bsdf.kind == DIELECTRIC || bsdf.kind == THIN_DIELECTRIC) {
-        let eta = spectrum_at(tables[at + 5], (*lambda).lambda.x);
+        let eta = spectrum_at(given.y, (*lambda).lambda.x);
         // A spectrum is zero outside of its table, where the index is unknown.
         bsdf.eta = select(eta, 1, eta == 0);
-        if (tables[at + 6] == 1) {
+        if (given.z == 1) {
             SampledWavelengths_terminate_secondary(lambda);
         }
     }
@@ -135,15 +140,15 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     switch (bsdf.kind) {
         case DIFFUSE, COATED_DIFFUSE: { bsdf.a = clamp(values[first], vec4f(), vec4f(1)); }
         case DIFFUSE_TRANSMISSION: {
-            let scale = number(at + 4);
+            let scale = bitcast<f32>(given.x);
             bsdf.a = clamp(values[0] * scale, vec4f(), vec4f(1));
             bsdf.b = clamp(values[1] * scale, vec4f(), vec4f(1));
         }
         case CONDUCTOR, COATED_CONDUCTOR: {
-            bsdf.facets = facets_of(values[first].x, values[first + 1].x, tables[at + 4]);
+            bsdf.facets = facets_of(values[first].x, values[first + 1].x, given.x);
             bsdf.b = values[first + 2];
             bsdf.a = values[first + 3];
-            if (tables[at + 7] == 1) {
+            if (given.w == 1) {
                 let r = clamp(bsdf.b, vec4f(), vec4f(0.9999));
                 bsdf.a = vec4f(1);
                 bsdf.b = 2 * sqrt(r) / sqrt(1 - r);
@@ -152,30 +157,30 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
             bsdf.a /= bsdf.eta;
             bsdf.b /= bsdf.eta;
         }
-        case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]); }
-        case PRINCIPLED: { bsdf.surface = openpbr_at(tables[at + 4], values, context.uv, lambda); }
+        case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, given.x); }
+        case PRINCIPLED: { bsdf.surface = openpbr_at(given.x, values, context.uv, lambda); }
         default: {}
     }
     if (HAS_HAIR && bsdf.kind == HAIR) {
-        bsdf.fibre = hair_at(at, values, context.uv.y, *lambda);
+        bsdf.fibre = hair_at(given.xy, values, context.uv.y, *lambda);
     }
     if (HAS_MEASURED && bsdf.kind == MEASURED) {
-        bsdf.measured = Measured_new(tables[at + 4], *lambda);
+        bsdf.measured = Measured_new(given.x, *lambda);
     }
     if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
         bsdf.record = at;
-        bsdf.eta = number(at + 9);
-        bsdf.facets = facets_of(values[0].x, values[1].x, tables[at + 4]);
+        bsdf.eta = bitcast<f32>(more.y);
+        bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
         let medium = medium_under(at, bsdf.facets, values[2], values[3]);
         bsdf.a = medium[0];
         bsdf.b = medium[1];
     }
     if (is_coated) {
-        let facets = facets_of(values[0].x, values[1].x, tables[at + 8]);
+        let facets = facets_of(values[0].x, values[1].x, more.x);
         bsdf.coat = Coat(
             Dielectric(bsdf.eta, facets), max(values[2].x, 0), clamp(values[4], vec4f(), vec4f(1)),
             HenyeyGreenstein(clamp(values[3].x, -0.999, 0.999)),
-            number(at + 9), tables[at + 10], tables[at + 11], walk_seed((*lambda).lambda.x),
+            bitcast<f32>(more.y), more.z, more.w, walk_seed((*lambda).lambda.x),
         );
     }
     return bsdf;
@@ -205,8 +210,9 @@ fn coated_conductor(bsdf: Bsdf) -> Layered_Conductor {
 
 // The material that a mix has at a point, given the probability of the second one.
 fn chosen_material(at: u32, s: Surface, amount: f32) -> u32 {
-    let u = hashed(s.p.p, s.wo, tables[at + 4] ^ mix_word(tables[at + 5]));
-    return tables[at + 4 + u32(amount >= 1 || (amount > 0 && u < amount))];
+    let pair = words_at(at + 4).xy;
+    let u = hashed(s.p.p, s.wo, pair.x ^ mix_word(pair.y));
+    return select(pair.x, pair.y, amount >= 1 || (amount > 0 && u < amount));
 }
 
 fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {

@@ -36,13 +36,13 @@ fn place_between(numbers: u32, count: u32, x: f32) -> Between {
 }
 
 fn MeasuredTable_is_isotropic(table: u32) -> bool {
-    return tables[table] <= 2;
+    return word(table) <= 2;
 }
 
 fn MeasuredTable_between(table: u32, phi: f32, theta: f32) -> LayerWeights {
-    let columns = tables[table + 2];
-    let around = place_between(tables[table + 1], tables[table], phi);
-    let across = place_between(tables[table + 3], columns, theta);
+    let columns = word(table + 2);
+    let around = place_between(word(table + 1), word(table), phi);
+    let across = place_between(word(table + 3), columns, theta);
     let low = around.index * columns + across.index;
     let high = low + select(0u, columns, around.t > 0);
     let next = u32(across.t > 0);
@@ -60,9 +60,9 @@ struct Cell {
     at: vec2f,
 }
 
-// The cell of a point of the unit square in a grid of `tables[grid]` × `tables[grid + 1]` points.
+// The cell of a point of the unit square in a grid of `word(grid)` × `word(grid + 1)` points.
 fn measured_cell(grid: u32, p: vec2f) -> Cell {
-    let cells = vec2f(f32(tables[grid] - 1), f32(tables[grid + 1] - 1));
+    let cells = vec2f(f32(word(grid) - 1), f32(word(grid + 1) - 1));
     let at = p * cells;
     let cell = clamp(floor(at), vec2f(), cells - 1);
     return Cell(u32(cell.x), u32(cell.y), at - cell);
@@ -70,8 +70,8 @@ fn measured_cell(grid: u32, p: vec2f) -> Cell {
 
 // The interpolated value of a layer in a cell.
 fn measured_value(grid: u32, layer: u32, cell: Cell) -> f32 {
-    let width = tables[grid];
-    let first = tables[grid + 2] + (layer * tables[grid + 1] + cell.row) * width + cell.column;
+    let width = word(grid);
+    let first = word(grid + 2) + (layer * word(grid + 1) + cell.row) * width + cell.column;
     let low = lerp(cell.at.x, number(first), number(first + 1));
     let high = lerp(cell.at.x, number(first + width), number(first + width + 1));
     return lerp(cell.at.y, low, high);
@@ -100,17 +100,17 @@ fn measured_channel(table: u32, channel: u32, channels: u32, cell: Cell, between
 
 fn MeasuredTable_values(table: u32, u: vec2f, between: LayerWeights, lambda: SampledWavelengths) -> vec4f {
     let cell = measured_cell(table + MEASURED_VALUES, u);
-    let count = tables[table + 4];
+    let count = word(table + 4);
     if (count == 0) {
         var rgb: vec3f;
         for (var i = 0u; i < 3; i++) {
             rgb[i] = measured_channel(table, i, 3, cell, between);
         }
-        return rgb_spectrum(tables[table + 6], UNBOUNDED, rgb, lambda);
+        return rgb_spectrum(word(table + 6), UNBOUNDED, rgb, lambda);
     }
     var values: vec4f;
     for (var i = 0u; i < 4; i++) {
-        let place = place_between(tables[table + 5], count, lambda.lambda[i]);
+        let place = place_between(word(table + 5), count, lambda.lambda[i]);
         let below = measured_channel(table, place.index, count, cell, between);
         let above = measured_channel(table, place.index + u32(place.t > 0), count, cell, between);
         values[i] = real_max(lerp(place.t, below, above), 0);
@@ -132,18 +132,18 @@ fn densities_below(grid: u32, row: u32, between: LayerWeights) -> f32 {
     var layers = between.layers;
     var sum = 0.0;
     for (var i = 0u; i < between.count; i++) {
-        sum += between.weights[i] * number(tables[grid + 4] + layers[i] * tables[grid + 1] + row);
+        sum += between.weights[i] * number(word(grid + 4) + layers[i] * word(grid + 1) + row);
     }
     return sum;
 }
 
 // Numbers of a column in a row and in the next one.
 fn densities_pair(grid: u32, numbers: u32, column: u32, row: u32, between: LayerWeights) -> vec2f {
-    let width = tables[grid];
+    let width = word(grid);
     var layers = between.layers;
     var pair = vec2f();
     for (var i = 0u; i < between.count; i++) {
-        let at = numbers + (layers[i] * tables[grid + 1] + row) * width + column;
+        let at = numbers + (layers[i] * word(grid + 1) + row) * width + column;
         pair += between.weights[i] * vec2f(number(at), number(at + width));
     }
     return pair;
@@ -151,19 +151,19 @@ fn densities_pair(grid: u32, numbers: u32, column: u32, row: u32, between: Layer
 
 // The integral left of a column over the line at `y` between two rows.
 fn densities_left_of(grid: u32, column: u32, row: u32, y: f32, between: LayerWeights) -> f32 {
-    let pair = densities_pair(grid, tables[grid + 3], column, row, between);
+    let pair = densities_pair(grid, word(grid + 3), column, row, between);
     return lerp(y, pair.x, pair.y);
 }
 
 // The densities at both sides of a cell, between its rows.
 fn densities_across(grid: u32, column: u32, row: u32, y: f32, between: LayerWeights) -> vec2f {
-    let left = densities_pair(grid, tables[grid + 2], column, row, between);
-    let right = densities_pair(grid, tables[grid + 2], column + 1, row, between);
+    let left = densities_pair(grid, word(grid + 2), column, row, between);
+    let right = densities_pair(grid, word(grid + 2), column + 1, row, between);
     return vec2f(lerp(y, left.x, left.y), lerp(y, right.x, right.y));
 }
 
 fn densities_sample(grid: u32, u: vec2f, between: LayerWeights) -> vec2f {
-    let cells = vec2u(tables[grid], tables[grid + 1]) - 1;
+    let cells = vec2u(word(grid), word(grid + 1)) - 1;
     var row = 0u;
     var end = cells.y;
     while (end - row > 1) {
@@ -174,7 +174,7 @@ fn densities_sample(grid: u32, u: vec2f, between: LayerWeights) -> vec2f {
             end = middle;
         }
     }
-    let ends = densities_pair(grid, tables[grid + 3], cells.x, row, between);
+    let ends = densities_pair(grid, word(grid + 3), cells.x, row, between);
     let above = u.y - densities_below(grid, row, between);
     let y = sample_linear(fraction(above, 0.5 * (ends.x + ends.y)), ends.x, ends.y);
     let wanted = u.x * lerp(y, ends.x, ends.y);
@@ -197,7 +197,7 @@ fn densities_sample(grid: u32, u: vec2f, between: LayerWeights) -> vec2f {
 fn densities_pdf(grid: u32, p: vec2f, between: LayerWeights) -> f32 {
     let cell = measured_cell(grid, p);
     let sides = densities_across(grid, cell.column, cell.row, cell.at.y, between);
-    return lerp(cell.at.x, sides.x, sides.y) * f32((tables[grid] - 1) * (tables[grid + 1] - 1));
+    return lerp(cell.at.x, sides.x, sides.y) * f32((word(grid) - 1) * (word(grid + 1) - 1));
 }
 
 // The inverse of `sample_linear`.
@@ -224,12 +224,12 @@ fn MeasuredTable_invert_normal(table: u32, p: vec2f, between: LayerWeights) -> T
     let grid = table + MEASURED_NORMALS;
     let cell = measured_cell(grid, p);
     let sides = densities_across(grid, cell.column, cell.row, cell.at.y, between);
-    let ends = densities_pair(grid, tables[grid + 3], tables[grid] - 1, cell.row, between);
+    let ends = densities_pair(grid, word(grid + 3), word(grid) - 1, cell.row, between);
     let left = densities_left_of(grid, cell.column, cell.row, cell.at.y, between)
         + 0.5 * (sides.x + sides.y) * invert_linear(cell.at.x, sides.x, sides.y);
     let below = densities_below(grid, cell.row, between)
         + 0.5 * (ends.x + ends.y) * invert_linear(cell.at.y, ends.x, ends.y);
     let u = vec2f(fraction(left, lerp(cell.at.y, ends.x, ends.y)), clamp(below, 0, 1));
-    let density = lerp(cell.at.x, sides.x, sides.y) * f32((tables[grid] - 1) * (tables[grid + 1] - 1));
+    let density = lerp(cell.at.x, sides.x, sides.y) * f32((word(grid) - 1) * (word(grid + 1) - 1));
     return Tuple_Vec2_f32(u, density);
 }

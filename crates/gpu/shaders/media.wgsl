@@ -38,23 +38,23 @@ struct Throughput {
 
 // The medium towards which `w` leaves a geometry with the normal `n`.
 fn medium_towards(geometry: u32, n: vec3f, w: vec3f, medium: u32) -> u32 {
-    let at = world.media + 1 + 3 * geometry;
-    if (tables[at] == 0) {
+    let sides = words_at(world.media + 4 + 4 * geometry);
+    if (sides.x == 0) {
         return medium;
     }
-    return tables[at + select(1u, 2u, dot(w, n) > 0)];
+    return select(sides.y, sides.z, dot(w, n) > 0);
 }
 
 // The index of a grid's value, and 1 if it has that one.
 fn grid_index(grid: u32, cell: vec3i) -> vec2u {
-    let size = vec3u(tables[grid], tables[grid + 1], tables[grid + 2]);
+    let size = words_at(grid).xyz;
     let c = bitcast<vec3u>(cell);
     return vec2u((c.z * size.y + c.y) * size.x + c.x, select(0u, 1u, all(c < size)));
 }
 
 // The position of a point of the unit cube among the values of a grid.
 fn place_in_grid(grid: u32, p: vec3f) -> vec3f {
-    return p * vec3f(vec3u(tables[grid], tables[grid + 1], tables[grid + 2])) - 0.5;
+    return p * vec3f(words_at(grid).xyz) - 0.5;
 }
 
 // The weight of one of the eight values around a place.
@@ -74,7 +74,7 @@ fn grid_value(grid: u32, p: vec3f) -> f32 {
     for (var i = 0u; i < 8; i++) {
         let index = grid_index(grid, vec3i(low) + vec3i(corner_of(i)));
         if (index.y == 1) {
-            sum += corner_weight(place - low, corner_of(i)) * bitcast<f32>(texels[tables[grid + 3] + index.x]);
+            sum += corner_weight(place - low, corner_of(i)) * bitcast<f32>(texels[word(grid + 3) + index.x]);
         }
     }
     return sum;
@@ -90,7 +90,7 @@ fn colour_value(grid: u32, p: vec3f, lambda: SampledWavelengths) -> vec4f {
     var sum = vec4f();
     for (var i = 0u; i < 8; i++) {
         let index = grid_index(grid, vec3i(low) + vec3i(corner_of(i)));
-        let at = tables[grid + 3] + 4 * index.x;
+        let at = word(grid + 3) + 4 * index.x;
         if (index.y == 1) {
             let scale = corner_weight(place - low, corner_of(i)) * bitcast<f32>(texels[at]);
             let words = vec3u(texels[at + 1], texels[at + 2], texels[at + 3]);
@@ -103,30 +103,24 @@ fn colour_value(grid: u32, p: vec3f, lambda: SampledWavelengths) -> vec4f {
     return sum;
 }
 
-fn rows_at(at: u32) -> Rows {
-    return Rows(vector(at), vector(at + 4), vector(at + 8));
-}
-
-fn translation_at(at: u32) -> vec3f {
-    return vec3f(number(at + 3), number(at + 7), number(at + 11));
-}
-
 // The value of sparse voxels at a point in render space.
 fn voxel_value(voxels: u32, p: vec3f) -> f32 {
-    let place = times(rows_at(voxels), p) + translation_at(voxels);
+    let place = times_point(kept_placement(voxels), p);
     let low = floor(place);
-    let origin = bitcast<vec3i>(vec3u(tables[voxels + 12], tables[voxels + 13], tables[voxels + 14]));
-    let bricks = vec3u(tables[voxels + 15], tables[voxels + 16], tables[voxels + 17]);
+    let first = words_at(voxels + 12);
+    let second = words_at(voxels + 16);
+    let origin = bitcast<vec3i>(first.xyz);
+    let bricks = vec3u(first.w, second.xy);
     var sum = 0.0;
     for (var i = 0u; i < 8; i++) {
         // Beside all bricks there is the background, which the first one has.
         let offset = bitcast<vec3u>(vec3i(low) + vec3i(corner_of(i)) - origin);
         let brick = offset / 8;
-        var at = tables[voxels + 19];
+        var at = second.w;
         if (all(brick < bricks)) {
             let index = (brick.z * bricks.y + brick.y) * bricks.x + brick.x;
             let within = offset % 8;
-            at += 512 * texels[tables[voxels + 18] + index] + (within.z * 8 + within.y) * 8 + within.x;
+            at += 512 * texels[second.z + index] + (within.z * 8 + within.y) * 8 + within.x;
         }
         sum += corner_weight(place - low, corner_of(i)) * bitcast<f32>(texels[at]);
     }
@@ -136,8 +130,10 @@ fn voxel_value(voxels: u32, p: vec3f) -> f32 {
 // The density of a cloud at a point of the unit cube: two steps of noise's gradient move the point
 // at which five octaves are summed. Noise is at one place of the program, because it is long.
 fn cloud_density(cloud: u32, unit: vec3f) -> f32 {
-    let p = vector(cloud) + unit * vector(cloud + 3);
-    let wispiness = number(cloud + 7);
+    let low = numbers_at(cloud);
+    let size = numbers_at(cloud + 4);
+    let p = low.xyz + unit * size.xyz;
+    let wispiness = size.w;
     var place = p * number(cloud + 8);
     var amount = 0.05 * wispiness;
     var frequency = 10.0;
@@ -170,7 +166,7 @@ fn cloud_density(cloud: u32, unit: vec3f) -> f32 {
             }
         }
     }
-    let shape = clamp((1 - p.y) * 4.5 * number(cloud + 6) * sum, 0, 1);
+    let shape = clamp((1 - p.y) * 4.5 * low.w * sum, 0, 1);
     return clamp(shape + 2 * max(0.5 - p.y, 0), 0, 1);
 }
 
@@ -205,12 +201,12 @@ struct Matter {
 
 fn matter(at: u32, lambda: SampledWavelengths) -> Matter {
     let scale = number(at + 4);
-    if (tables[at] == COLOURS) {
+    if (word(at) == COLOURS) {
         return Matter(at, vec4f(scale), vec4f());
     }
     var coefficients = array(vec4f(), vec4f());
     for (var i = 0u; i < 2; i++) {
-        coefficients[i] = spectrum(tables[at + 2 + i], lambda) * scale;
+        coefficients[i] = spectrum(word(at + 2 + i), lambda) * scale;
     }
     return Matter(at, coefficients[0], coefficients[1]);
 }
@@ -221,9 +217,10 @@ fn emission_of_medium(kind: u32, emission: u32, p: vec3f, unit: vec3f, lambda: S
         return vec4f();
     }
     var le: vec4f;
-    let temperatures = tables[emission + 3];
+    let head = words_at(emission);
+    let temperatures = head.w;
     if (temperatures == 0) {
-        le = spectrum(tables[emission + 2], lambda);
+        le = spectrum(head.z, lambda);
     } else {
         var value: f32;
         if (kind == VOXELS) {
@@ -234,22 +231,22 @@ fn emission_of_medium(kind: u32, emission: u32, p: vec3f, unit: vec3f, lambda: S
         le = blackbody((value - number(emission + 4)) * number(emission + 5), lambda);
     }
     if (kind == DENSITIES) {
-        le *= grid_value(tables[emission], unit);
+        le *= grid_value(head.x, unit);
     } else if (kind == COLOURS) {
-        le *= colour_value(tables[emission], unit, lambda);
+        le *= colour_value(head.x, unit, lambda);
     }
-    return le * number(emission + 1);
+    return le * bitcast<f32>(head.y);
 }
 
 // Of a medium that is not homogeneous.
 fn properties(m: Matter, p: vec3f, lambda: SampledWavelengths) -> Properties {
-    let kind = tables[m.at];
+    let kind = word(m.at);
     var found: Properties;
-    let unit = times(rows_at(m.at + 8), p) + translation_at(m.at + 8);
+    let unit = times_point(kept_placement(m.at + 8), p);
     if (any(unit < vec3f()) || any(unit > vec3f(1))) {
         return found;
     }
-    let values = tables[m.at + 6];
+    let values = word(m.at + 6);
     var density = 1.0;
     switch (kind) {
         case DENSITIES: { density = grid_value(values, unit); }
@@ -260,10 +257,10 @@ fn properties(m: Matter, p: vec3f, lambda: SampledWavelengths) -> Properties {
     found.sigma_a = m.sigma_a * density;
     found.sigma_s = m.sigma_s * density;
     if (kind == COLOURS) {
-        found.sigma_s = colour_value(tables[m.at + 3], unit, lambda) * m.sigma_a;
-        found.sigma_a = colour_value(tables[m.at + 2], unit, lambda) * m.sigma_a;
+        found.sigma_s = colour_value(word(m.at + 3), unit, lambda) * m.sigma_a;
+        found.sigma_a = colour_value(word(m.at + 2), unit, lambda) * m.sigma_a;
     }
-    found.le = emission_of_medium(kind, tables[m.at + 5], p, unit, lambda);
+    found.le = emission_of_medium(kind, word(m.at + 5), p, unit, lambda);
     return found;
 }
 
@@ -286,14 +283,14 @@ fn cells_along(m: Matter, ray: Ray, t_max: f32) -> Cells {
     cells.t_end = min(t_max, GREATEST);
     cells.next = vec3f(infinity());
     cells.goes_on = true;
-    if (tables[m.at] == HOMOGENEOUS) {
+    if (word(m.at) == HOMOGENEOUS) {
         return cells;
     }
-    let rows = rows_at(m.at + 8);
-    let o = times(rows, ray.o) + translation_at(m.at + 8);
-    let d = times(rows, ray.d);
-    cells.grid = tables[m.at + 7];
-    let size = vec3i(vec3u(tables[cells.grid], tables[cells.grid + 1], tables[cells.grid + 2]));
+    let inward = kept_placement(m.at + 8);
+    let o = times_point(inward, ray.o);
+    let d = times(inward.linear, ray.d);
+    cells.grid = word(m.at + 7);
+    let size = vec3i(words_at(cells.grid).xyz);
     for (var axis = 0; axis < 3; axis++) {
         if (d[axis] == 0) {
             cells.goes_on = cells.goes_on && o[axis] >= 0 && o[axis] <= 1;
@@ -333,9 +330,9 @@ fn next_segment(cells: ptr<function, Cells>) -> Segment {
         (*cells).goes_on = false;
         return segment;
     }
-    let size = vec3i(vec3u(tables[(*cells).grid], tables[(*cells).grid + 1], tables[(*cells).grid + 2]));
+    let size = vec3i(words_at((*cells).grid).xyz);
     let c = (*cells).cell;
-    segment.density = number((*cells).grid + 3 + u32((c.z * size.y + c.y) * size.x + c.x));
+    segment.density = number((*cells).grid + 4 + u32((c.z * size.y + c.y) * size.x + c.x));
     let next = (*cells).next;
     var axis = select(2, 1, next.y <= next.z);
     axis = select(axis, 0, next.x <= next.y && next.x <= next.z);
@@ -399,7 +396,7 @@ fn fly(
     var flight: Flight;
     let m = matter(medium, lambda);
     let hero = heroes.hero;
-    let is_exact = tables[medium] == HOMOGENEOUS;
+    let is_exact = word(medium) == HOMOGENEOUS;
     let per_density = m.sigma_a + m.sigma_s;
     if (is_exact && is_shadow) {
         let passed = attenuation(per_density, min(t_max, GREATEST));
@@ -408,10 +405,10 @@ fn fly(
         flight.end = select(PASSED, ABSORBED, is_black((*path).beta));
         return flight;
     }
-    let emission = tables[medium + 5];
+    let emission = word(medium + 5);
     if (is_exact && emission != 0) {
         // Along the whole ray at once.
-        let le = spectrum(tables[emission + 2], lambda) * number(emission + 1);
+        let le = spectrum(word(emission + 2), lambda) * number(emission + 1);
         let seen = emitted_along(m, le, min(t_max, GREATEST));
         flight.emitted = (*path).beta * seen / mean_of(heroes, (*path).r_u);
     }

@@ -36,6 +36,17 @@ struct Placement {
     translation: vec3f,
 }
 
+// One in the tables.
+fn kept_placement(at: u32) -> Placement {
+    let row = rows_at(at);
+    return Placement(Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
+}
+
+// A point that is taken along.
+fn times_point(m: Placement, p: vec3f) -> vec3f {
+    return times(m.linear, p) + m.translation;
+}
+
 // What a transform at a time is made of.
 struct Key {
     time: f32,
@@ -53,16 +64,16 @@ struct Motion {
 }
 
 // The numbers of a key in the tables.
-const MOTION_KEY = 17u;
+const MOTION_KEY = 20u;
 
 fn kept_key(at: u32) -> Key {
-    let rotation = vec4f(vector(at + 4), number(at + 7));
-    return Key(number(at), vector(at + 1), rotation, Rows(vector(at + 8), vector(at + 11), vector(at + 14)));
+    let first = numbers_at(at);
+    return Key(first.w, first.xyz, numbers_at(at + 4), Rows(vector(at + 8), vector(at + 12), vector(at + 16)));
 }
 
 // A motion in the tables.
 fn kept_motion(at: u32) -> Motion {
-    return Motion(kept_key(at), kept_key(at + MOTION_KEY), number(at + 2 * MOTION_KEY));
+    return Motion(kept_key(at), kept_key(at + MOTION_KEY), number(at + 11));
 }
 
 // A transform at a time, interpolated between two keys as in `math/src/animated.rs`.

@@ -7,9 +7,10 @@ const MOST_TEXTURES = 30u;
 // below.
 fn coat_normal(at: u32, uv: vec2f) -> vec3f {
     var normals = array(vec3f(0, 0, 1), vec3f(0, 0, 1));
+    let images = words_at(at + 8).zw;
     for (var i = 0u; i < 2; i++) {
-        if (tables[at + 33 + i] != 0) {
-            normals[i] = mapped_normal(tables[at + 33 + i], uv);
+        if (images[i] != 0) {
+            normals[i] = mapped_normal(images[i], uv);
         }
     }
     let normal = Frame_to_local(Frame_from_z_and_x(normals[1], vec3f(1, 0, 0)), normals[0]);
@@ -24,30 +25,35 @@ fn openpbr_at(
     uv: vec2f,
     lambda: ptr<function, SampledWavelengths>,
 ) -> OpenPbr {
+    let head = words_at(at);
     var values = textures;
     var colors: array<vec4f, 6>;
     for (var i = 0u; i < 6; i++) {
-        let texture = tables[at + 3 + i];
+        let texture = word(at + 4 + i);
         colors[i] = vec4f(1);
         if (texture != 0xffffffffu) {
             colors[i] = clamp(values[texture], vec4f(), vec4f(1));
         }
     }
     var n: array<f32, 24>;
-    for (var i = 0u; i < 24; i++) {
-        n[i] = number(at + 9 + i);
+    for (var i = 0u; i < 6; i++) {
+        let four = numbers_at(at + 12 + 4 * i);
+        for (var j = 0u; j < 4; j++) {
+            n[4 * i + j] = four[j];
+        }
     }
-    for (var i = 0u; i < tables[at + 2]; i++) {
-        let number_at = at + 35 + 3 * i;
-        n[tables[number_at]] = clamp(values[i].x, number(number_at + 1), number(number_at + 2));
+    for (var i = 0u; i < head.z; i++) {
+        let own = words_at(at + 36 + 4 * i);
+        n[own.x] = clamp(values[i].x, bitcast<f32>(own.y), bitcast<f32>(own.z));
     }
-    let is_thin = tables[at] == 1;
+    let is_thin = head.x == 1;
     if (!is_thin && n[8] > 0) {
         // The medium inside absorbs instead of the boundary.
         colors[2] = vec4f(1);
     }
     var coat_normal_here = vec3f(0, 0, 1);
-    if ((tables[at + 33] | tables[at + 34]) != 0 && n[14] > 0) {
+    let images = words_at(at + 8).zw;
+    if ((images.x | images.y) != 0 && n[14] > 0) {
         coat_normal_here = coat_normal(at, uv);
     }
     if (!is_thin && n[7] > 0 && n[9] > 0) {
@@ -59,5 +65,5 @@ fn openpbr_at(
         n[11], colors[3], vec4f(), n[13], n[14], colors[4], n[15], n[16], n[17], n[18], coat_normal_here,
         n[19], colors[5], n[20], n[21], n[22], n[23], is_thin,
     );
-    return OpenPbr_new(tables[at + 1], p, *lambda);
+    return OpenPbr_new(head.y, p, *lambda);
 }

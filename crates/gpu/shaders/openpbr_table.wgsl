@@ -7,7 +7,7 @@ alias OpenPbrTable = u32;
 const OPENPBR_COSINES = 37u;
 // Where the axes of a table begin, and the words of each.
 const OPENPBR_AXES = 8u;
-const OPENPBR_AXIS = 5u;
+const OPENPBR_AXIS = 8u;
 
 struct Means {
     fuzz: f32,
@@ -37,7 +37,7 @@ fn node_of(x: f32, len: u32, second: u32) -> Node {
 }
 
 fn OpenPbrTable_has_film(table: u32) -> bool {
-    return tables[table + 2] > 1;
+    return word(table + 2) > 1;
 }
 
 fn OpenPbrTable_locate(table: u32, p: OpenPbrParameters) -> array<f32, 12> {
@@ -47,24 +47,26 @@ fn OpenPbrTable_locate(table: u32, p: OpenPbrParameters) -> array<f32, 12> {
         p.fuzz_weight, p.fuzz_roughness, p.thin_film_weight, p.thin_film_ior,
     );
     var places: array<f32, 12>;
-    for (var i = 0u; i < tables[table]; i++) {
-        let axis = table + OPENPBR_AXES + i * OPENPBR_AXIS;
-        var unit = numbers[tables[axis]];
-        switch (tables[axis + 1]) {
+    for (var i = 0u; i < word(table); i++) {
+        let at = table + OPENPBR_AXES + i * OPENPBR_AXIS;
+        let axis = words_at(at);
+        let range = numbers_at(at + 4).xy;
+        var unit = numbers[axis.x];
+        switch (axis.y) {
             case 1: { unit = sqrt(unit) / (1 + sqrt(unit)); }
             case 2: { unit = (unit - 1) / (unit + 1); }
             case 3: { unit = sqrt(unit); }
             default: {}
         }
-        let part = (unit - number(axis + 3)) / (number(axis + 4) - number(axis + 3));
-        places[i] = real_min(real_max(part, 0), 1) * f32(tables[axis + 2] - 1);
+        let part = (unit - range.x) / (range.y - range.x);
+        places[i] = real_min(real_max(part, 0), 1) * f32(axis.z - 1);
     }
     return places;
 }
 
 // The number of nodes around a place.
 fn openpbr_corners(table: u32) -> u32 {
-    return select(1u, 2u, OpenPbrTable_has_film(table)) << tables[table];
+    return select(1u, 2u, OpenPbrTable_has_film(table)) << word(table);
 }
 
 // One of them, under a film of the optical thickness of so many wavelengths.
@@ -72,15 +74,15 @@ fn openpbr_corner(table: u32, location: array<f32, 12>, waves: f32, corner: u32)
     var places = location;
     var node = Node(0, 1);
     var left = corner;
-    let films = tables[table + 2];
+    let films = word(table + 2);
     if (films > 1) {
         let least = number(table + 3);
         node = node_of((waves - least) / (number(table + 4) - least), films, left & 1);
         left >>= 1u;
     }
     var stride = films;
-    for (var i = 0u; i < tables[table]; i++) {
-        let len = tables[table + OPENPBR_AXES + i * OPENPBR_AXIS + 2];
+    for (var i = 0u; i < word(table); i++) {
+        let len = word(table + OPENPBR_AXES + i * OPENPBR_AXIS + 2);
         let next = node_among(places[i], len, (left >> i) & 1);
         node = Node(node.index + next.index * stride, node.weight * next.weight);
         stride *= len;
@@ -90,13 +92,13 @@ fn openpbr_corner(table: u32, location: array<f32, 12>, waves: f32, corner: u32)
 
 // The number of rows around a direction.
 fn openpbr_rows(table: u32) -> u32 {
-    return select(2u, 4u, tables[table + 1] > 1);
+    return select(2u, 4u, word(table + 1) > 1);
 }
 
 // One of them.
 fn openpbr_row(table: u32, w: vec3f, i: u32) -> Node {
     let across = node_of(sqrt(abs(w.z)), OPENPBR_COSINES, i & 1);
-    let azimuths = tables[table + 1];
+    let azimuths = word(table + 1);
     if (azimuths == 1) {
         return across;
     }
@@ -108,15 +110,15 @@ fn openpbr_row(table: u32, w: vec3f, i: u32) -> Node {
 fn OpenPbrTable_taken(table: u32, location: array<f32, 12>, waves: f32, w: vec3f) -> Taken {
     var low = vec4f();
     var high = vec4f();
-    let rows = tables[table + 1] * OPENPBR_COSINES;
+    let rows = word(table + 1) * OPENPBR_COSINES;
     for (var corner = 0u; corner < openpbr_corners(table); corner++) {
         let node = openpbr_corner(table, location, waves, corner);
         for (var i = 0u; i < openpbr_rows(table); i++) {
             let row = openpbr_row(table, w, i);
             let weight = node.weight * row.weight;
-            let at = tables[table + 5] + 8 * (node.index * rows + row.index);
-            low += weight * vec4f(number(at), number(at + 1), number(at + 2), number(at + 3));
-            high += weight * vec4f(number(at + 4), number(at + 5), number(at + 6), number(at + 7));
+            let at = word(table + 5) + 8 * (node.index * rows + row.index);
+            low += weight * numbers_at(at);
+            high += weight * numbers_at(at + 4);
         }
     }
     return Taken(low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w);
@@ -124,14 +126,14 @@ fn OpenPbrTable_taken(table: u32, location: array<f32, 12>, waves: f32, w: vec3f
 
 fn OpenPbrTable_inside(table: u32, location: array<f32, 12>, waves: vec4f, w: vec3f) -> Inside {
     var sum = vec3f();
-    let rows = tables[table + 1] * OPENPBR_COSINES;
+    let rows = word(table + 1) * OPENPBR_COSINES;
     let count = select(1u, 4u, OpenPbrTable_has_film(table));
     for (var wave = 0u; wave < count; wave++) {
         for (var corner = 0u; corner < openpbr_corners(table); corner++) {
             let node = openpbr_corner(table, location, waves[wave], corner);
             for (var i = 0u; i < openpbr_rows(table); i++) {
                 let row = openpbr_row(table, w, i);
-                let at = tables[table + 6] + 3 * (node.index * rows + row.index);
+                let at = word(table + 6) + 4 * (node.index * rows + row.index);
                 sum += node.weight * row.weight / f32(count) * vector(at);
             }
         }
@@ -140,12 +142,13 @@ fn OpenPbrTable_inside(table: u32, location: array<f32, 12>, waves: vec4f, w: ve
 }
 
 fn OpenPbrTable_means(table: u32, location: array<f32, 12>, waves: f32) -> Means {
-    var sums: array<f32, 6>;
+    var low = vec4f();
+    var high = vec4f();
     for (var corner = 0u; corner < openpbr_corners(table); corner++) {
         let node = openpbr_corner(table, location, waves, corner);
-        for (var i = 0u; i < 6; i++) {
-            sums[i] += node.weight * number(tables[table + 7] + 6 * node.index + i);
-        }
+        let at = word(table + 7) + 8 * node.index;
+        low += node.weight * numbers_at(at);
+        high += node.weight * numbers_at(at + 4);
     }
-    return Means(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]);
+    return Means(low.x, low.y, low.z, low.w, high.x, high.y);
 }

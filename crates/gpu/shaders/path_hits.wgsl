@@ -8,7 +8,7 @@ fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
     }
     var sum = vec4f();
     for (var i = 0u; i < world.infinite_count; i++) {
-        let light = tables[world.infinite + i];
+        let light = word(world.infinite + i);
         let seen = sky(light, path.ray.o, path.ray.d, lambda);
         var weight = 1.0;
         if (path.is_found_twice) {

@@ -6,20 +6,20 @@
 // solid angle around ω there grows by |det W|/|Wω|³ on the way in.
 
 fn is_placed(at: u32) -> bool {
-    return HAS_PLACED_LIGHTS && tables[at] == PLACED_LIGHT;
+    return HAS_PLACED_LIGHTS && word(at) == PLACED_LIGHT;
 }
 
 // The record of the surface of a light, in its own space.
 fn surface_record(at: u32) -> u32 {
     if (is_placed(at)) {
-        return tables[at + 4];
+        return word(at + 4);
     }
     return at;
 }
 
 // The way into the space of the surface of a light.
 fn way_to_surface(at: u32) -> Placement {
-    let row = instance_rows(tables[at + 5]);
+    let row = instance_rows(word(at + 5));
     return Placement(Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
 }
 
@@ -29,7 +29,7 @@ fn determinant(m: Rows) -> f32 {
 
 // A reference point as the surface sees it; in media it has no normals.
 fn context_inside(inward: Placement, context: ShapeSampleContext) -> ShapeSampleContext {
-    let p = times(inward.linear, context.p.p) + inward.translation;
+    let p = times_point(inward, context.p.p);
     let size = times(absolute(inward.linear), abs(context.p.p)) + abs(inward.translation);
     let error = times(absolute(inward.linear), context.p.error) + POINT_ERROR * size;
     let outward = inverse(inward.linear);
@@ -74,11 +74,11 @@ fn density_on_light(at: u32, n: vec3f, uv: vec2f) -> f32 {
 
 // The texture of the alpha of a light, or 0.
 fn alpha_of_light(at: u32) -> u32 {
-    let more = tables[at + 3] >> 2;
+    let more = word(at + 3) >> 2;
     if (!HAS_LIGHT_HOLES || more == 0) {
         return 0;
     }
-    return tables[more + 2];
+    return word(more + 2);
 }
 
 // Whether a light does not emit at a point of its surface, by a hash of the point.

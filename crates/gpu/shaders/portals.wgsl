@@ -11,7 +11,7 @@ struct PortalWindow {
 }
 
 fn portal_frame(at: u32) -> Rows {
-    return Rows(vector(at + 7), vector(at + 10), vector(at + 13));
+    return Rows(vector(at + 8), vector(at + 12), vector(at + 16));
 }
 
 // The position of a direction in the rectified square, and 1 if it leads out of the scene.
@@ -35,7 +35,7 @@ fn portal_direction(st: vec2f) -> vec4f {
 
 fn portal_window(at: u32, p: vec3f) -> PortalWindow {
     let corner = vector(at + 4);
-    let far = corner + vector(at + 7) * number(at + 16) + vector(at + 10) * number(at + 17);
+    let far = corner + vector(at + 8) * number(at + 20) + vector(at + 12) * number(at + 21);
     var ends: array<vec3f, 2>;
     for (var i = 0; i < 2; i++) {
         ends[i] = portal_position(at, select(corner, far, i == 1) - p);
@@ -46,8 +46,8 @@ fn portal_window(at: u32, p: vec3f) -> PortalWindow {
 }
 
 fn portal_sum(at: u32, corner: vec2u) -> vec2u {
-    let index = tables[at + 20] + 2 * (corner.y * (tables[at + 18] + 1) + corner.x);
-    return vec2u(tables[index], tables[index + 1]);
+    let index = word(at + 24) + 2 * (corner.y * (word(at + 22) + 1) + corner.x);
+    return vec2u(word(index), word(index + 1));
 }
 
 // The sum of the cells between two corners.
@@ -61,7 +61,7 @@ fn portal_cells(at: u32, base: vec2u, corner: vec2u) -> f32 {
 // The sum of the values between a corner and a position, where a cell that this divides counts by
 // its part there.
 fn portal_mass(at: u32, base: vec2u, p: vec2f) -> f32 {
-    let count = tables[at + 18];
+    let count = word(at + 22);
     let place = clamp(p, vec2f(), vec2f(1)) * f32(count);
     let cell = max(min(vec2u(place), vec2u(count - 1)), base);
     let part = place - vec2f(cell);
@@ -75,7 +75,7 @@ fn portal_mass(at: u32, base: vec2u, p: vec2f) -> f32 {
 
 // The cell at the low corner of a window, from which sums are counted.
 fn portal_base(at: u32, window: PortalWindow) -> vec2u {
-    let count = tables[at + 18];
+    let count = word(at + 22);
     return min(vec2u(clamp(window.low, vec2f(), vec2f(1)) * f32(count)), vec2u(count - 1));
 }
 
@@ -91,14 +91,14 @@ fn portal_integral(at: u32, window: PortalWindow) -> f32 {
     let base = portal_base(at, window);
     let across = vec2f(window.low.y, window.high.y);
     let after = portal_mass_before(at, base, false, across, window.high.x);
-    let count = f32(tables[at + 18]);
+    let count = f32(word(at + 22));
     return (after - portal_mass_before(at, base, false, across, window.low.x)) / (count * count);
 }
 
 // The density per solid angle of a position within a window.
 fn portal_density(at: u32, st: vec2f, window: PortalWindow) -> f32 {
     let integral = portal_integral(at, window);
-    let count = tables[at + 18];
+    let count = word(at + 22);
     let cell = min(vec2u(st * f32(count)), vec2u(count - 1));
     let value = portal_cells(at, cell, cell + 1);
     return select(0, value / integral / portal_direction(st).w, integral > 0);
@@ -106,10 +106,10 @@ fn portal_density(at: u32, st: vec2f, window: PortalWindow) -> f32 {
 
 // The radiance at a position, over the emission.
 fn portal_share(at: u32, st: vec2f, lambda: SampledWavelengths) -> vec4f {
-    if (tables[at + 19] == 0) {
+    if (word(at + 23) == 0) {
         return vec4f(1);
     }
-    return image_pixel(at + 21, tables[at + 19], st, lambda);
+    return image_pixel(vec2u(word(at + 25), word(at + 26)), word(at + 23), st, lambda);
 }
 
 // What multiplies the emission along a ray that leaves the scene, and the density of sampling it.
@@ -128,7 +128,7 @@ fn sample_portal(at: u32, p: vec3f, u: vec2f, lambda: SampledWavelengths, sample
     if (!window.valid || !(portal_integral(at, window) > 0)) {
         return;
     }
-    let count = tables[at + 18];
+    let count = word(at + 22);
     let base = portal_base(at, window);
     let last_cell = min(vec2u(clamp(window.high, vec2f(), vec2f(1)) * f32(count)), vec2u(count - 1));
     var st: vec2f;

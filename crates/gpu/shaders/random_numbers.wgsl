@@ -11,32 +11,32 @@ const PMJ02BN = 6u;
 fn coordinates(is_pair: bool) -> vec2f {
     var at = world.random_numbers;
     if (is_light_path) {
-        at = tables[world.light_paths];
+        at = word(world.light_paths);
     }
-    let key = tables[at + 1];
-    if (tables[at] == INDEPENDENT) {
+    let key = word(at + 1);
+    if (word(at) == INDEPENDENT) {
         return Independent_at_2d(Independent(1, key, place), place);
     }
     if (HAS_RARE_SAMPLERS) {
-        switch (tables[at]) {
-            case PADDED_SOBOL: { return padded_sobol(place, key, tables[at + 2], tables[at + 3], is_pair); }
+        switch (word(at)) {
+            case PADDED_SOBOL: { return padded_sobol(place, key, word(at + 2), word(at + 3), is_pair); }
             case SOBOL: { return sobol(at, is_pair); }
             case HALTON: { return halton_at(at, is_pair); }
             case STRATIFIED: {
-                let grid = vec2u(tables[at + 3], tables[at + 4]);
-                return stratified(place, grid, tables[at + 2], key, tables[at + 5] == 1, is_pair);
+                let grid = vec2u(word(at + 3), word(at + 4));
+                return stratified(place, grid, word(at + 2), key, word(at + 5) == 1, is_pair);
             }
-            case PMJ02BN: { return pmj02bn(place, tables[at + 2], key, is_pair); }
+            case PMJ02BN: { return pmj02bn(place, word(at + 2), key, is_pair); }
             default: {}
         }
     }
-    return ZSobol_at_2d(ZSobol(tables[at + 2], tables[at + 3], tables[at + 4], key, place), place);
+    return ZSobol_at_2d(ZSobol(word(at + 2), word(at + 3), word(at + 4), key, place), place);
 }
 
 // The coordinates of `sobol`. On the CPU its first two dimensions are the position in the pixel,
 // and others begin with the third; here camera paths have that position after their first number.
 fn sobol(at: u32, is_pair: bool) -> vec2f {
-    let m = tables[at + 2];
+    let m = word(at + 2);
     let kept = (1u << m) - 1;
     let bits = ((place.pixel[0] & kept) << m) | (place.pixel[1] & kept);
     let is_position = !is_light_path && place.dimension == 1;
@@ -44,30 +44,30 @@ fn sobol(at: u32, is_pair: bool) -> vec2f {
     if (is_light_path || first == 0) {
         first += 2;
     }
-    first = select(wrapped_dimension(first, select(1u, 2u, is_pair), tables[at + 3]), 0, is_position);
+    first = select(wrapped_dimension(first, select(1u, 2u, is_pair), word(at + 3)), 0, is_position);
     var u: vec2f;
     for (var c = 0u; c < select(1u, 2u, is_pair); c++) {
-        let matrix = tables[at + 5] + 64 * (first + c);
+        let matrix = word(at + 5) + 64 * (first + c);
         var digits = 0u;
         for (var bit = 0u; bit < 32; bit++) {
-            digits ^= tables[matrix + bit] & (0u - ((bits >> bit) & 1));
-            digits ^= tables[matrix + 32 + bit] & (0u - ((place.index >> bit) & 1));
+            digits ^= word(matrix + bit) & (0u - ((bits >> bit) & 1));
+            digits ^= word(matrix + 32 + bit) & (0u - ((place.index >> bit) & 1));
         }
         digits >>= select(0u, m, is_position);
-        u[c] = Randomize_digits(tables[at + 1], digits, tables[tables[at + 4] + first + c]);
+        u[c] = Randomize_digits(word(at + 1), digits, word(word(at + 4) + first + c));
     }
     return u;
 }
 
 // The coordinates of `halton`.
 fn halton_at(at: u32, is_pair: bool) -> vec2f {
-    let pixel = mix_word(mix_word(tables[at + 1] ^ place.pixel[0]) ^ place.pixel[1]);
-    let randomize = tables[at + 2];
+    let pixel = mix_word(mix_word(word(at + 1) ^ place.pixel[0]) ^ place.pixel[1]);
+    let randomize = word(at + 2);
     let index = place.index + select(0u, pixel, randomize == 0);
-    let first = wrapped_dimension(place.dimension, select(1u, 2u, is_pair), tables[at + 3]);
+    let first = wrapped_dimension(place.dimension, select(1u, 2u, is_pair), word(at + 3));
     var u: vec2f;
     for (var c = 0u; c < select(1u, 2u, is_pair); c++) {
-        let base = tables[tables[at + 4] + first + c];
+        let base = word(word(at + 4) + first + c);
         u[c] = halton(index, base, randomize, mix_word(pixel ^ mix_word(first + c)));
     }
     return u;

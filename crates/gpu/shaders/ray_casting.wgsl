@@ -5,7 +5,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     var l = vec4f();
     if (!hit.found) {
         for (var i = 0u; i < world.infinite_count; i++) {
-            l += sky(tables[world.infinite + i], ray.o, ray.d, *lambda).l;
+            l += sky(word(world.infinite + i), ray.o, ray.d, *lambda).l;
         }
         return l;
     }

@@ -2,7 +2,8 @@
 //
 // Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` has
 // what Rust calls a `Head`. Tables are words; a record refers to another by the index of its first
-// word. The files of `src/flatten/` describe the records.
+// word, which is a multiple of four: what is read together is four words. The files of
+// `src/flatten/` describe the records.
 
 struct World {
     roots: vec2u,
@@ -35,7 +36,7 @@ struct World {
 @group(0) @binding(0) var<storage, read_write> world: World;
 @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
 @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
-@group(0) @binding(4) var<storage, read_write> tables: array<u32>;
+@group(0) @binding(4) var<storage, read_write> tables: array<vec4u>;
 @group(0) @binding(7) var<storage, read_write> texels: array<u32>;
 
 // The bits of `settings`.
@@ -53,14 +54,6 @@ var<private> place: Address;
 
 // The rays traced for the sample.
 var<private> rays: u32;
-
-fn number(at: u32) -> f32 {
-    return bitcast<f32>(tables[at]);
-}
-
-fn vector(at: u32) -> vec3f {
-    return vec3f(number(at), number(at + 1), number(at + 2));
-}
 
 // Whether random numbers are those of a light path.
 var<private> is_light_path: bool;

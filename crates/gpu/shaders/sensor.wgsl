@@ -6,8 +6,9 @@ fn response(l: vec4f, lambda: SampledWavelengths) -> vec3f {
     let seen = select(vec4f(), l / select(vec4f(1), lambda.pdf, known), known);
     var sum = vec3f();
     for (var i = 0; i < 4; i++) {
-        for (var c = 0u; c < 3; c++) {
-            sum[c] += seen[i] * dense_spectrum(tables[world.sensor + c], lambda.lambda[i]);
+        let nanometre = lambda.lambda[i] - 359.5;
+        if (nanometre >= 0 && nanometre < 471) {
+            sum += seen[i] * vector(world.sensor + 12 + 4 * u32(nanometre));
         }
     }
     return sum * 0.25;
@@ -19,13 +20,14 @@ fn exposed(l: vec4f, lambda: SampledWavelengths, weight: f32) -> vec4f {
     let at = world.sensor;
     var seen = response(l, lambda);
     let largest = max(seen.x, max(seen.y, seen.z));
-    let limit = number(at + 3);
+    let row = rows_at(at);
+    let limit = row[0].w;
     if (largest > limit) {
         seen *= limit / largest;
     }
     if (!all(abs(seen) < vec3f(1e30))) {
         return vec4f();
     }
-    let color = times(Rows(vector(at + 4), vector(at + 7), vector(at + 10)), seen);
+    let color = times(Rows(row[0].xyz, row[1].xyz, row[2].xyz), seen);
     return vec4f(color, 1) * weight;
 }

@@ -29,7 +29,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         if (!hit.found) {
             for (var i = 0u; i < world.infinite_count && counts; i++) {
-                l += beta * sky(tables[world.infinite + i], next.o, next.d, *lambda).l;
+                l += beta * sky(word(world.infinite + i), next.o, next.d, *lambda).l;
             }
             break;
         }

@@ -3,48 +3,51 @@
 const SPECTRUM_CONSTANT = 0u;
 const SPECTRUM_LINEAR = 1u;
 const SPECTRUM_DENSE = 2u;
+const SPECTRUM_RGB = 3u;
 
 // The value of a spectrum at a wavelength in nanometres.
 fn spectrum_at(at: u32, lambda: f32) -> f32 {
-    switch (tables[at]) {
-        case SPECTRUM_CONSTANT: { return number(at + 1); }
-        case SPECTRUM_LINEAR: { return linear_spectrum(at, lambda); }
+    return spectrum_of(at, words_at(at), lambda);
+}
+
+// The same, given the first words of the spectrum.
+fn spectrum_of(at: u32, head: vec4u, lambda: f32) -> f32 {
+    let scale = bitcast<f32>(head.y);
+    switch (head.x) {
+        case SPECTRUM_CONSTANT: { return scale; }
+        case SPECTRUM_LINEAR: { return linear_spectrum(at, head.y, lambda); }
         case SPECTRUM_DENSE: { return dense_spectrum(at, lambda); }
         default: {}
     }
-    let value = number(at + 1) * RgbSigmoidPolynomial_at(RgbSigmoidPolynomial(vector(at + 2)), lambda);
-    if (tables[at] == 3) {
+    let value = scale * RgbSigmoidPolynomial_at(RgbSigmoidPolynomial(vector(at + 4)), lambda);
+    if (head.x == SPECTRUM_RGB) {
         return value;
     }
-    return value * dense_spectrum(tables[at + 5], lambda);
+    return value * dense_spectrum(head.z, lambda);
 }
 
-// Linear between wavelengths, and 0 beyond them.
-fn linear_spectrum(at: u32, lambda: f32) -> f32 {
-    let count = tables[at + 1];
-    let wavelengths = at + 2;
-    if (!(lambda >= number(wavelengths) && lambda <= number(wavelengths + count - 1))) {
-        return 0;
-    }
+// Linear between so many wavelengths, and 0 beyond them.
+fn linear_spectrum(at: u32, count: u32, lambda: f32) -> f32 {
     // The last wavelength that is at most `lambda`.
     var below = 0u;
     var above = count;
     while (above - below > 1) {
         let middle = (below + above) / 2;
-        if (number(wavelengths + middle) <= lambda) {
+        if (number(at + 4 + 4 * middle) <= lambda) {
             below = middle;
         } else {
             above = middle;
         }
     }
-    let values = wavelengths + count;
-    let value = number(values + below);
-    if (below + 1 == count) {
-        return value;
+    // A wavelength and its value, and the next ones; the last has none but itself.
+    let pair = numbers_at(at + 4 + 4 * below);
+    if (!(lambda >= pair.x) || (below + 1 == count && lambda > pair.x)) {
+        return 0;
     }
-    let from_ = number(wavelengths + below);
-    let slope = (number(values + below + 1) - value) / (number(wavelengths + below + 1) - from_);
-    return value + slope * (lambda - from_);
+    if (below + 1 == count) {
+        return pair.y;
+    }
+    return pair.y + (pair.w - pair.y) / (pair.z - pair.x) * (lambda - pair.x);
 }
 
 // The value at the nearest of 471 nanometres.
@@ -57,12 +60,13 @@ fn dense_spectrum(at: u32, lambda: f32) -> f32 {
 }
 
 fn spectrum(at: u32, lambda: SampledWavelengths) -> vec4f {
-    if (tables[at] == SPECTRUM_CONSTANT) {
-        return vec4f(number(at + 1));
+    let head = words_at(at);
+    if (head.x == SPECTRUM_CONSTANT) {
+        return vec4f(bitcast<f32>(head.y));
     }
     var values: vec4f;
     for (var i = 0; i < 4; i++) {
-        values[i] = spectrum_at(at, lambda.lambda[i]);
+        values[i] = spectrum_of(at, head, lambda.lambda[i]);
     }
     return values;
 }
@@ -85,7 +89,7 @@ fn rgb_spectrum(space: u32, kind: u32, rgb: vec3f, lambda: SampledWavelengths) -
     for (var i = 0; i < 4; i++) {
         values[i] = RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]) * scale;
         if (kind == ILLUMINANT) {
-            values[i] *= dense_spectrum(tables[space + 4], lambda.lambda[i]);
+            values[i] *= dense_spectrum(word(space + 4), lambda.lambda[i]);
         }
     }
     return values;
@@ -118,16 +122,17 @@ fn uplifted(space: u32, rgb: vec3f) -> vec3f {
         // Finite where the reflectance is 0 or 1.
         return vec3f(0, 0, (rgb.x - 0.5) / sqrt(max(rgb.x * (1 - rgb.x), 1e-30)));
     }
-    let nodes = tables[space];
-    let values = tables[space + 1];
-    let coordinates = tables[space + 2];
+    let offsets = words_at(space);
+    let nodes = offsets.x;
+    let values = offsets.y;
+    let coordinates = offsets.z;
     // The largest component comes first, and of equal ones the last.
     let green_leads = rgb.y >= rgb.x;
     let blue_leads = rgb.z >= max(rgb.x, rgb.y);
     let largest = select(select(0u, 1u, green_leads), 2u, blue_leads);
     let turned = select(select(rgb, rgb.yzx, green_leads), rgb.zxy, blue_leads);
-    let x = ratio_cell(tables[space + 3], turned.y / turned.x);
-    let y = ratio_cell(tables[space + 3], turned.z / turned.x);
+    let x = ratio_cell(offsets.w, turned.y / turned.x);
+    let y = ratio_cell(offsets.w, turned.z / turned.x);
     let darkest = number(values);
     let value = max(turned.x, darkest);
     var below = 0u;

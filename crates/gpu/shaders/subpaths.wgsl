@@ -143,7 +143,7 @@ fn light_subpath(lambda: SampledWavelengths) -> Subpath {
     walk.beta = emission.beta;
     walk.share = vec4f(1);
     walk.origin = emission.origin;
-    walk.looks_back = emission.origin.is_distant && tables[world.light_paths + 3] == 1;
+    walk.looks_back = emission.origin.is_distant && word(world.light_paths + 3) == 1;
     if (walk.looks_back) {
         walk.ray.d = -walk.ray.d;
     }
@@ -179,7 +179,7 @@ fn lights_met(walk: Subpath, before: ShapeSampleContext, hit: Hit, s: Surface) -
             point = LightPoint(s.light - 1, s.p.p, s.n, hit.uv, false);
             l = light_radiance(light_record(point.light), s, walk.lambda);
         } else {
-            point.light = tables[world.infinite + i];
+            point.light = word(world.infinite + i);
             point.is_distant = true;
             l = sky(point.light, walk.ray.o, wi, walk.lambda).l;
         }

@@ -5,11 +5,11 @@
 // of the gains of rough boundaries, the number of rows of what walks return, and then albedos,
 // radii, effective albedos, profiles, their integrals, and those rows.
 fn table_of(record: u32) -> u32 {
-    return tables[record + 5];
+    return word(record + 5);
 }
 
 fn walks_under(record: u32) -> bool {
-    return tables[record + 6] == 1;
+    return word(record + 6) == 1;
 }
 
 fn eta_under(record: u32) -> f32 {
@@ -136,14 +136,14 @@ fn roughness_place(facets: TrowbridgeReitz, count: u32) -> vec2f {
 // The albedo of a medium that returns a share of the light that entered.
 fn albedo_under(record: u32, facets: TrowbridgeReitz, share: f32) -> f32 {
     let table = table_of(record);
-    let count = tables[table + 1];
+    let count = word(table + 1);
     let albedos = table + 5;
-    let radii = tables[table + 2];
+    let radii = word(table + 2);
     let effective = albedos + count + radii;
     if (!walks_under(record)) {
         return spline_inverse(albedos, effective, count, share);
     }
-    let place = roughness_place(facets, tables[table + 4]);
+    let place = roughness_place(facets, word(table + 4));
     let rows = effective + count + 2 * count * radii + u32(place.x) * count;
     var found: vec2f;
     for (var i = 0u; i < 2; i++) {
@@ -155,7 +155,7 @@ fn albedo_under(record: u32, facets: TrowbridgeReitz, share: f32) -> f32 {
 // The medium of a body, given the values of its textures: extinction, and albedo.
 fn medium_under(record: u32, facets: TrowbridgeReitz, a: vec4f, b: vec4f) -> array<vec4f, 2> {
     let scale = number(record + 8);
-    if (tables[record + 7] == 0) {
+    if (word(record + 7) == 0) {
         let absorbs = max(a * scale, vec4f());
         let scatters = max(b * scale, vec4f());
         let sigma_t = absorbs + scatters;
@@ -182,7 +182,7 @@ fn boundary_gain(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
     let r = roughness_place(bsdf.facets, ROUGHNESSES);
     let x = clamp(sqrt(max(select(wi.z, wo.z, wo.z > 0), 0)), 0, 1) * f32(COSINES - 1);
     let lower = min(floor(x), f32(COSINES - 2));
-    let first = tables[table_of(bsdf.record) + 3] + u32(r.x) * COSINES + u32(lower);
+    let first = word(table_of(bsdf.record) + 3) + u32(r.x) * COSINES + u32(lower);
     let near = mix(number(first), number(first + 1), x - lower);
     let far = mix(number(first + COSINES), number(first + COSINES + 1), x - lower);
     return mix(near, far, r.y);
@@ -221,8 +221,8 @@ fn exit_sample(bsdf: Bsdf, wo: vec3f, u: vec2f) -> BsdfSample {
 
 // The profile of a wavelength at a distance in mean free paths, and its density over the plane.
 fn profile_at(table: u32, albedo: f32, r: f32) -> vec2f {
-    let count = tables[table + 1];
-    let radii = tables[table + 2];
+    let count = word(table + 1);
+    let radii = word(table + 2);
     let albedos = table + 5;
     let rows = spline_place(albedos, count, albedo);
     let columns = spline_place(albedos + count, radii, r);

@@ -9,7 +9,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
         reference = context_inside(inward, context);
     }
     var point: ShapeSample;
-    switch (tables[record]) {
+    switch (word(record)) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             point = FlatShape_sample_from(flat_light(record), reference, u).v0;
         }
@@ -52,9 +52,10 @@ struct Cone {
 }
 
 fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
-    let toward = vector(at + 4) - context.p.p;
+    let ball = numbers_at(at + 4);
+    let toward = ball.xyz - context.p.p;
     let distance = length(toward);
-    let radius = number(at + 7);
+    let radius = ball.w;
     if (distance - length(context.p.error) <= radius) {
         return Cone(vec3f(), 0, 2);
     }
@@ -64,14 +65,15 @@ fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
 
 // The direction from the centre of a sphere to a point of it, by area.
 fn outward_by_area(at: u32, u: vec2f) -> vec3f {
-    let rotation = Rows(vector(at + 9), vector(at + 12), vector(at + 15));
+    let rotation = Rows(vector(at + 8), vector(at + 12), vector(at + 16));
     return times(rotation, sample_uniform_sphere(vec2f(1 - u.x, u.y)));
 }
 
 // A point of a sphere: by the cone from outside, by area from inside.
 fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
-    let center = vector(at + 4);
-    let radius = number(at + 7);
+    let ball = numbers_at(at + 4);
+    let center = ball.xyz;
+    let radius = ball.w;
     let cone = cone_of(at, context);
     var outward: vec3f;
     var pdf = 1 / (6.2831855 * cone.one_minus_cos);
@@ -87,7 +89,7 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
         outward = outward_by_area(at, u);
     }
     let p = center + outward * radius;
-    let n = outward * number(at + 8);
+    let n = outward * number(at + 11);
     if (cone.sine == 0) {
         pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, n, vec2f());
     }
@@ -96,7 +98,7 @@ fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample 
 
 // A point of the surface of a light, with its density per area.
 fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
-    switch (tables[at]) {
+    switch (word(at)) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             let flat_shape = flat_light(at);
             var uv = u;
@@ -107,12 +109,13 @@ fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
             return ShapeSample(FlatShape_point(flat_shape, uv), n, uv, surface_density(at, n, uv));
         }
         case SPHERE_LIGHT: {
-            let center = vector(at + 4);
-            let radius = number(at + 7);
+            let ball = numbers_at(at + 4);
+            let center = ball.xyz;
+            let radius = ball.w;
             let outward = outward_by_area(at, u);
             let error = POINT_ERROR * (abs(center) + vec3f(radius));
             let p = Point3Error(center + outward * radius, error);
-            let n = outward * number(at + 8);
+            let n = outward * number(at + 11);
             return ShapeSample(p, n, vec2f(), surface_density(at, n, vec2f()));
         }
         case PATCH_LIGHT: { return patch_by_area(at, u); }
@@ -122,39 +125,36 @@ fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
 
 // The normal of a patch, as long as its area element.
 fn patch_normal(at: u32, uv: vec2f) -> vec3f {
-    let twist = vector(at + 13);
-    return cross(vector(at + 7) + twist * uv.y, vector(at + 10) + twist * uv.x);
+    let twist = vector(at + 16);
+    return cross(vector(at + 8) + twist * uv.y, vector(at + 12) + twist * uv.x);
 }
 
-// The area elements at the corners of a patch.
-fn patch_weights(at: u32) -> vec4f {
-    return vec4f(number(at + 16), number(at + 17), number(at + 18), number(at + 19));
-}
-
-// The density with which parameters of a patch are chosen.
+// The density with which parameters of a patch are chosen: by an image, or by the area elements at
+// its corners.
 fn patch_density(at: u32, uv: vec2f) -> f32 {
-    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
-        return density_of(tables[at + 21], uv);
+    if (HAS_EMISSION_IMAGES && word(at + 25) != 0) {
+        return density_of(word(at + 25), uv);
     }
-    return bilinear_pdf(uv, patch_weights(at));
+    return bilinear_pdf(uv, numbers_at(at + 20));
 }
 
 fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
     var uv: vec2f;
-    if (HAS_EMISSION_IMAGES && tables[at + 21] != 0) {
-        uv = draw_2d(tables[at + 21], u).xy;
+    if (HAS_EMISSION_IMAGES && word(at + 25) != 0) {
+        uv = draw_2d(word(at + 25), u).xy;
     } else {
-        uv = sample_bilinear(u, patch_weights(at));
+        uv = sample_bilinear(u, numbers_at(at + 20));
     }
-    let sides = vector(at + 7) * uv.x + vector(at + 10) * uv.y + vector(at + 13) * (uv.x * uv.y);
-    let p = Point3Error(vector(at + 4) + sides, POINT_ERROR * (abs(vector(at + 4)) + abs(sides)));
-    let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 20);
+    let corner = vector(at + 4);
+    let sides = vector(at + 8) * uv.x + vector(at + 12) * uv.y + vector(at + 16) * (uv.x * uv.y);
+    let p = Point3Error(corner + sides, POINT_ERROR * (abs(corner) + abs(sides)));
+    let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 24);
     return ShapeSample(p, n, uv, surface_density(at, n, uv));
 }
 
 // The density per area of a point of a surface with the normal `n`, sampled by area.
 fn surface_density(at: u32, n: vec3f, uv: vec2f) -> f32 {
-    switch (tables[at]) {
+    switch (word(at)) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             let flat_shape = flat_light(at);
             let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
@@ -175,16 +175,17 @@ fn surface_density(at: u32, n: vec3f, uv: vec2f) -> f32 {
 
 // A point of a disk, a cylinder, or a part of a sphere.
 fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
-    let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
-    let translation = vec3f(number(at + 7), number(at + 11), number(at + 15));
-    let first = number(at + 16);
-    let low = number(at + 17);
-    let high = number(at + 18);
-    let angle = number(at + 19);
+    let out = kept_placement(at + 4);
+    let m = out.linear;
+    let shape = numbers_at(at + 16);
+    let first = shape.x;
+    let low = shape.y;
+    let high = shape.z;
+    let angle = shape.w;
     var p: vec3f;
     var n = vec3f(0, 0, 1);
     let phi = sin_cos(u.y * angle);
-    switch (tables[at]) {
+    switch (word(at)) {
         case DISK_LIGHT: {
             // The numbers are those of the radius and of the hole.
             let distance = sqrt(high * high + (low * low - high * high) * u.x);
@@ -203,11 +204,11 @@ fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
             p = n * first;
         }
     }
-    let placed = times(m, p) + translation;
-    let size = times(absolute(m), abs(p)) + abs(translation);
+    let there = times_point(out, p);
+    let size = times(absolute(m), abs(p)) + abs(out.translation);
     let normal = Vec3_normalize(transposed(inverse(m), n)) * number(at + 20);
     let density = surface_density(at, normal, vec2f());
-    return ShapeSample(Point3Error(placed, POINT_ERROR * size), normal, vec2f(), density);
+    return ShapeSample(Point3Error(there, POINT_ERROR * size), normal, vec2f(), density);
 }
 
 // The density per solid angle with which a light's surface is sampled where a ray hits it.
@@ -225,12 +226,12 @@ fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv:
     if (is_placed(at)) {
         let inward = way_to_surface(at);
         reference = context_inside(inward, context);
-        point = times(inward.linear, p) + inward.translation;
+        point = times_point(inward, p);
         normal = Vec3_normalize(transposed(inverse(inward.linear), n));
         factor = solid_angle_factor(inward, Vec3_normalize(p - context.p.p));
         at = surface_record(at);
     }
-    switch (tables[at]) {
+    switch (word(at)) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
         }

@@ -38,7 +38,7 @@ fn spawn(s: Surface, d: vec3f) -> Ray {
 
 // The point of a hit by a ray of unit direction.
 fn surface_at(hit: Hit, ray: Ray) -> Surface {
-    let geometry = world.geometries + 5 * hit.geometry;
+    let geometry = world.geometries + 8 * hit.geometry;
     var s: Surface;
     var o = ray.o;
     var d = ray.d;
@@ -49,7 +49,7 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
         d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
     }
     if (hit.is_triangle) {
-        s = triangle_point(hit, tables[geometry + 2], tables[geometry + 3] == 1);
+        s = triangle_point(hit, word(geometry + 2), word(geometry + 3) == 1);
     } else {
         s = shape_point(hit, o, d);
     }
@@ -57,8 +57,8 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
         place_surface(&s, Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
     }
     s.wo = Vec3_normalize(-ray.d);
-    s.material = tables[geometry];
-    s.light = tables[geometry + 1];
+    s.material = word(geometry);
+    s.light = word(geometry + 1);
     if (s.light != 0) {
         s.light += hit.primitive;
         if (HAS_PLACED_LIGHTS && hit.instance != NO_HIT) {
@@ -99,8 +99,8 @@ fn normal_change(inward: Rows, inner_n: vec3f, inner_dn: vec3f) -> vec3f {
 }
 
 // A mix of three vectors of the attributes.
-fn mixed(at: u32, b: vec3f) -> vec3f {
-    return vector(at) * b.x + vector(at + 3) * b.y + vector(at + 6) * b.z;
+fn mixed(row: array<vec4f, 3>, b: vec3f) -> vec3f {
+    return row[0].xyz * b.x + row[1].xyz * b.y + row[2].xyz * b.z;
 }
 
 fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
@@ -114,21 +114,22 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     s.p = Point3Error(corner + du * b.y + dv * b.z, error);
     s.n = Vec3_normalize(cross(du, dv)) * select(1.0, -1.0, flips);
     var uv = array(vec2f(), vec2f(1, 0), vec2f(1, 1));
-    var next = attributes + 1;
+    var normals: array<vec4f, 3>;
+    var next = attributes + 4;
     var flags = 0u;
     if (attributes != 0) {
-        flags = tables[attributes];
-        let numbers = select(0u, 9u, (flags & 1) != 0) + select(0u, 6u, (flags & 2) != 0)
-            + select(0u, 9u, (flags & 4) != 0);
-        next += numbers * hit.primitive;
-    }
-    let normals = next;
-    next += select(0u, 9u, (flags & 1) != 0);
-    if ((flags & 2) != 0) {
-        for (var i = 0u; i < 3; i++) {
-            uv[i] = vec2f(number(next + 2 * i), number(next + 2 * i + 1));
+        flags = word(attributes);
+        let has_normals = (flags & 1) != 0;
+        let has_coordinates = (flags & 2) != 0;
+        let rows = select(select(0u, 2u, has_coordinates), 3 + u32(has_coordinates), has_normals);
+        next += 4 * (rows + select(0u, 3u, (flags & 4) != 0)) * hit.primitive;
+        normals = rows_at(next);
+        if (has_coordinates) {
+            let first = select(normals[0].xyz, vec3f(normals[0].w, normals[1].w, normals[2].w), has_normals);
+            let second = vector(next + 4 * (rows - 1));
+            uv = array(vec2f(first.x, second.x), vec2f(first.y, second.y), vec2f(first.z, second.z));
         }
-        next += 6;
+        next += 4 * rows;
     }
     s.uv = uv[0] * b.x + uv[1] * b.y + uv[2] * b.z;
     set_tangents(&s, du, dv, uv[1] - uv[0], uv[2] - uv[0]);
@@ -140,8 +141,8 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
         s.ns = select(s.n, ns.v0, ns.v1);
         s.n = face_forward(s.n, s.ns);
         let inverse = 1 / area(uv[1] - uv[0], uv[2] - uv[0]);
-        let nu = vector(normals + 3) - vector(normals);
-        let nv = vector(normals + 6) - vector(normals);
+        let nu = normals[1].xyz - normals[0].xyz;
+        let nv = normals[2].xyz - normals[0].xyz;
         let dndu = (nu * (uv[2].y - uv[0].y) - nv * (uv[1].y - uv[0].y)) * inverse;
         let dndv = (nv * (uv[1].x - uv[0].x) - nu * (uv[2].x - uv[0].x)) * inverse;
         let is_regular = abs(inverse) < infinity();
@@ -149,7 +150,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
         s.dndv = select(vec3f(), dndv, is_regular);
     }
     if ((flags & 4) != 0) {
-        let ss = mixed(next, b);
+        let ss = mixed(rows_at(next), b);
         s.ss = select(s.dpdu, ss, dot(ss, ss) > 0);
     }
     if ((flags & 5) != 0) {
@@ -271,9 +272,9 @@ fn curve_point(hit: Hit, o: vec3f, d: vec3f, flip: f32) -> Surface {
 
 // The normal of a ribbon, between those at the ends of a primitive.
 fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f {
-    let at = tables[world.geometries + 5 * geometry + 2] + 6 * primitive;
+    let at = word(world.geometries + 8 * geometry + 2) + 8 * primitive;
     let start = vector(at);
-    let end = vector(at + 3);
+    let end = vector(at + 4);
     let angle = 2 * atan2(length(end - start), length(end + start));
     let sine = sin(angle);
     // The plane of rotation is undefined at angles of 0 and π.
@@ -330,7 +331,7 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
 
 // The probability that a hit counts: the alpha of its surface.
 fn alpha_at(hit: Hit, s: Surface) -> f32 {
-    let alpha = tables[world.geometries + 5 * hit.geometry + 4];
+    let alpha = word(world.geometries + 8 * hit.geometry + 4);
     if (!HAS_HOLES || alpha == 0) {
         return 1;
     }
@@ -346,7 +347,7 @@ fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
     if (!HAS_HOLES) {
         return true;
     }
-    if (HAS_INTERFACES && is_interface(tables[world.geometries + 5 * hit.geometry])) {
+    if (HAS_INTERFACES && is_interface(word(world.geometries + 8 * hit.geometry))) {
         return !passes_interfaces;
     }
     let alpha = alpha_at(hit, surface_at(hit, Ray(o, d, 0)));

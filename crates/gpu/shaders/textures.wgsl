@@ -32,27 +32,30 @@ struct TextureContext {
 
 // A spectrum, or a number four times.
 fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
-    if (tables[at] == TEXTURE_NUMBER) {
-        return vec4f(number(at + 1));
+    let head = words_at(at);
+    if (head.x == TEXTURE_NUMBER) {
+        return vec4f(bitcast<f32>(head.y));
     }
-    if (tables[at] == TEXTURE_SPECTRUM) {
-        return spectrum(tables[at + 1], lambda);
+    if (head.x == TEXTURE_SPECTRUM) {
+        return spectrum(head.y, lambda);
     }
-    return program(at, context, lambda);
+    return program(at + 4, head.y, context, lambda);
 }
 
-// The result of a program: a function of its own, which sets all slots to zero where it begins.
-fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
+// The result of so many operations: a function of its own, which sets all slots to zero where it
+// begins.
+fn program(at: u32, count: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
     var slots: array<vec4f, 32>;
-    for (var i = 0u; i < tables[at + 1]; i++) {
-        let operation = at + 2 + 4 * i;
-        let operands = tables[operation + 2];
+    for (var i = 0u; i < count; i++) {
+        let operation = words_at(at + 4 * i);
+        let code = operation.x;
+        let operands = operation.z;
         let a = slots[operands & 255];
         let b = slots[(operands >> 8) & 255];
         let c = slots[(operands >> 16) & 255];
-        let argument = tables[operation + 3];
+        let argument = operation.w;
         var value: vec4f;
-        switch (tables[operation]) {
+        switch (code) {
             case CODE_NUMBER: { value = vec4f(bitcast<f32>(argument)); }
             case CODE_SPECTRUM: { value = spectrum(argument, lambda); }
             case CODE_CUBES: { value = vec4f(cubes(in_texture(argument, context))); }
@@ -64,13 +67,13 @@ fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
                 value = select(select(mixed, b, c.x == 1), a, c.x == 0);
             }
             case CODE_SQUARES, CODE_BILERP, CODE_IMAGE, CODE_DOTS: {
-                let is_image = tables[operation] == CODE_IMAGE;
-                let place = on_texture(select(argument, tables[argument + 1], is_image), context);
+                let is_image = code == CODE_IMAGE;
+                let place = on_texture(select(argument, word(argument + 1), is_image), context);
                 if (HAS_IMAGES && is_image) {
                     value = image_texture(argument, place, lambda);
-                } else if (tables[operation] == CODE_SQUARES) {
+                } else if (code == CODE_SQUARES) {
                     value = vec4f(squares(place));
-                } else if (HAS_NOISE && tables[operation] == CODE_DOTS) {
+                } else if (HAS_NOISE && code == CODE_DOTS) {
                     value = vec4f(coverage(place.st));
                 } else {
                     let w = weights(place.st);
@@ -79,11 +82,11 @@ fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
             }
             default: {
                 if (HAS_NOISE) {
-                    value = pattern(tables[operation], argument, context, lambda);
+                    value = pattern(code, argument, context, lambda);
                 }
             }
         }
-        slots[tables[operation + 1]] = value;
+        slots[operation.y] = value;
     }
     return slots[0];
 }
@@ -92,13 +95,14 @@ fn program(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
 fn image_texture(at: u32, place: TexCoord2d, lambda: SampledWavelengths) -> vec4f {
     // Rows of images go down.
     let st = vec2f(place.st.x, 1 - place.st.y);
-    let found = filtered_color(at, st, place.dstdx, place.dstdy) * number(at + 4);
-    let is_inverted = tables[at + 5] == 1;
+    let how = words_at(at + 4);
+    let found = filtered_color(words_at(at), st, place.dstdx, place.dstdy) * bitcast<f32>(how.x);
+    let is_inverted = how.y == 1;
     let color = select(found, 1 - found, is_inverted);
-    if (tables[at + 6] == 0) {
+    if (how.z == 0) {
         return vec4f(select(color.x, max(color.x, 0), is_inverted));
     }
-    return rgb_spectrum(tables[at + 6], tables[at + 7], max(color, vec3f()), lambda);
+    return rgb_spectrum(how.z, how.w, max(color, vec3f()), lambda);
 }
 
 // What is made of noise.
@@ -106,15 +110,18 @@ fn pattern(code: u32, at: u32, context: TextureContext, lambda: SampledWavelengt
     if (code == CODE_WINDY) {
         return vec4f(windy(in_texture(at, context)));
     }
-    let place = in_texture(tables[at], context);
-    let octaves = tables[at + 1];
-    let roughness = number(at + 2);
+    let head = words_at(at);
+    let place = in_texture(head.x, context);
+    let octaves = head.y;
+    let roughness = bitcast<f32>(head.z);
     switch (code) {
         case CODE_FBM: { return vec4f(fbm(place, octaves, roughness)); }
         case CODE_WRINKLED: { return vec4f(turbulence(place, octaves, roughness)); }
         default: {
-            let marble = Marble(Fractal(0, octaves, roughness), number(at + 3), number(at + 4));
-            return rgb_spectrum(tables[at + 5], ALBEDO, marble_color(Marble_place(marble, place)), lambda);
+            let more = words_at(at + 4);
+            let fractal = Fractal(0, octaves, roughness);
+            let marble = Marble(fractal, bitcast<f32>(head.w), bitcast<f32>(more.x));
+            return rgb_spectrum(more.y, ALBEDO, marble_color(Marble_place(marble, place)), lambda);
         }
     }
 }
@@ -143,17 +150,19 @@ fn marble_color(place: f32) -> vec3f {
 // The point on the plane of a texture.
 fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
     let footprint = context.footprint;
-    if (tables[at] == LINEAR_MAPPING) {
-        let u = vec2f(number(at + 1), number(at + 2));
-        let v = vec2f(number(at + 3), number(at + 4));
-        let delta = vec2f(number(at + 5), number(at + 6));
+    let kind = word(at);
+    if (kind == LINEAR_MAPPING) {
+        let columns = numbers_at(at + 4);
+        let u = columns.xy;
+        let v = columns.zw;
+        let delta = numbers_at(at + 8).xy;
         return TexCoord2d(
             u * context.uv.x + v * context.uv.y + delta,
             u * footprint.dudx + v * footprint.dvdx,
             u * footprint.dudy + v * footprint.dvdy,
         );
     }
-    let place = in_texture(at + 1, context);
+    let place = in_texture(at + 4, context);
     let p = place.p;
     let outward = dot(p.xy, p.xy);
     let around = vec3f(-p.y, p.x, 0) / (6.2831855 * outward);
@@ -161,21 +170,22 @@ fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
     // The gradients of the coordinates.
     var s: vec3f;
     var t: vec3f;
-    if (tables[at] == SPHERICAL_MAPPING) {
+    if (kind == SPHERICAL_MAPPING) {
         let rho = sqrt(outward);
         s = vec3f(p.xy * (p.z / rho), -rho) / (3.1415927 * dot(p, p));
         t = around;
         let direction = Vec3_normalize_masked(p);
         let w = select(vec3f(), direction.v0, direction.v1);
         st = vec2f(arc_acos(clamp(w.z, -1, 1)) / 3.1415927, spherical_phi(w) / 6.2831855);
-    } else if (tables[at] == CYLINDRICAL_MAPPING) {
+    } else if (kind == CYLINDRICAL_MAPPING) {
         s = around;
         t = vec3f(0, 0, 1);
         st = vec2f((3.1415927 + arc_atan2(p.y, p.x)) / 6.2831855, p.z);
     } else {
-        s = vector(at + 13);
-        t = vector(at + 16);
-        st = vec2f(dot(p, s), dot(p, t)) + vec2f(number(at + 19), number(at + 20));
+        let axes = array(numbers_at(at + 16), numbers_at(at + 20));
+        s = axes[0].xyz;
+        t = axes[1].xyz;
+        st = vec2f(dot(p, s), dot(p, t)) + vec2f(axes[0].w, axes[1].w);
     }
     let dx = vec2f(dot(s, place.dpdx), dot(t, place.dpdx));
     return TexCoord2d(st, dx, vec2f(dot(s, place.dpdy), dot(t, place.dpdy)));
@@ -183,9 +193,7 @@ fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
 
 // The point in the space of a texture.
 fn in_texture(at: u32, context: TextureContext) -> TexCoord3d {
-    let m = Rows(vector(at), vector(at + 4), vector(at + 8));
-    let translation = vec3f(number(at + 3), number(at + 7), number(at + 11));
-    return TexCoord3d(
-        times(m, context.p) + translation, times(m, context.footprint.dpdx), times(m, context.footprint.dpdy),
-    );
+    let m = kept_placement(at);
+    let d = context.footprint;
+    return TexCoord3d(times_point(m, context.p), times(m.linear, d.dpdx), times(m.linear, d.dpdy));
 }

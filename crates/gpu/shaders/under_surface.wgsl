@@ -105,8 +105,8 @@ fn profiles_at(r: f32) -> array<vec4f, 2> {
 // A distance with the density of the profile of the hero; negative without a profile.
 fn sampled_radius(u: f32) -> f32 {
     let table = table_of(under.record);
-    let count = tables[table + 1];
-    let radii = tables[table + 2];
+    let count = word(table + 1);
+    let radii = word(table + 2);
     let nodes = table + 5 + count;
     let profile = nodes + radii + count;
     let cdf = profile + count * radii;

@@ -124,7 +124,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     var path: Path;
     path.ray = ray;
     path.near = near;
-    path.medium = tables[world.media];
+    path.medium = word(world.media);
     path.throughput = Throughput(vec4f(1), vec4f(1), vec4f(1));
     path.heroes = Heroes(vec4f(0.25), min(u32(get_1d() * 4), 3));
     path.eta_scale = 1;
@@ -147,7 +147,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         rays++;
         let hit = trace(part.o, part.d, t_max, false);
         let geometry = hit.geometry;
-        let is_open = hit.found && is_interface(tables[world.geometries + 5 * geometry]);
+        let is_open = hit.found && is_interface(word(world.geometries + 8 * geometry));
         if (is_shadow && hit.found && !is_open) {
             shadow.is_on_its_way = false;
             continue;

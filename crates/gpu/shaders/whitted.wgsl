@@ -22,7 +22,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         let hit = nearest(branch.ray);
         if (!hit.found) {
             for (var i = 0u; i < world.infinite_count; i++) {
-                l += branch.beta * sky(tables[world.infinite + i], branch.ray.o, branch.ray.d, *lambda).l;
+                l += branch.beta * sky(word(world.infinite + i), branch.ray.o, branch.ray.d, *lambda).l;
             }
             continue;
         }

@@ -57,13 +57,16 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 18] = plumbing! {
-    "scene" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
+const PLUMBING: [&str; 19] = plumbing! {
+    "tables" "scene" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
     "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "surface_lights" "placed_lights" "light_choices" "cameras"
 };
 
-/// The law of measured surfaces, and the look-ups in their tables, for kernels that declare
-/// `tables`, and how a `number` is read there.
+/// How `tables` are read, for kernels that declare them.
+pub const TABLES: &str = include_str!("../shaders/tables.wgsl");
+
+/// The law of measured surfaces, and the look-ups in their tables, for kernels that have
+/// [`TABLES`].
 pub const MEASURED: &str = concat!(
     include_str!("../shaders/law/piecewise_bilinear.wgsl"),
     include_str!("../shaders/law/measured.wgsl"),
@@ -101,8 +104,8 @@ pub fn with_laws(parts: &[&str]) -> String {
     all.copied().collect::<Vec<_>>().join("\n")
 }
 
-/// The laws of principled surfaces, and the look-ups in their tables, for kernels that declare
-/// `tables`, and how a `number` and a `vector` are read there.
+/// The laws of principled surfaces, and the look-ups in their tables, for kernels that have
+/// [`TABLES`].
 pub fn principled() -> String {
     let table = include_str!("../shaders/openpbr_table.wgsl");
     let all = PRINCIPLED_LAWS.iter().chain([&table]);

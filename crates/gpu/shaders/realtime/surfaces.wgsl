@@ -13,7 +13,7 @@ const LEAST_GUIDE = 0.02;
 fn guide_of_sky(o: vec3f, d: vec3f, lambda: SampledWavelengths) -> vec3f {
     var l = vec3f();
     for (var i = 0u; i < world.infinite_count; i++) {
-        l += sky(tables[world.infinite + i], o, d, lambda).l.xyz;
+        l += sky(word(world.infinite + i), o, d, lambda).l.xyz;
     }
     return l;
 }

@@ -6,7 +6,7 @@ fn queue_of(hit: Hit) -> u32 {
     if (batch.sorts == 1 || !hit.found) {
         return HITS;
     }
-    let kind = tables[material_record(tables[world.geometries + 5 * hit.geometry])];
+    let kind = word(material_record(word(world.geometries + 8 * hit.geometry)));
     return HITS + 1 + countOneBits(batch.kinds & ((1u << kind) - 1));
 }
 

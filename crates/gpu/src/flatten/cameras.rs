@@ -1,13 +1,19 @@
-//! Cameras: the kind, the upper three rows of the matrix from camera to render space, the screen
-//! (top left and pixel; of a sphere its width and height in pixels; behind lenses the sides of a
-//! pixel and half those of the film) and the lens (radius and focal distance; behind lenses the
-//! greatest distance of a point of the film from the axis); then the factors on differences to rays
-//! of neighbouring pixels, of rays that have them and of others, and the smallest of these
-//! differences, of origins and of directions; then 1 if it moves, the times at which the shutter
-//! opens and closes, the offset of the lenses, and the least and the largest wavelength of a
-//! spectral film, or zeros. The matrix of one that moves is that of the first key, and there follow
-//! for both keys the time, the translation, the unit quaternion of the rotation, and the rows of
-//! the stretch, and the angle between these quaternions.
+//! Cameras:
+//!
+//! | words | what |
+//! |---|---|
+//! | 0–2 | the kind, 1 if it moves, the offset of the lenses |
+//! | 4–15 | the upper three rows of the matrix from camera to render space; of one that moves, of its first key |
+//! | 16–19 | the screen: top left and pixel; of a sphere its width and height in pixels; behind lenses the sides of a pixel and half those of the film |
+//! | 20, 21 | the lens: radius and focal distance; behind lenses the greatest distance of a point of the film from the axis |
+//! | 22, 23 | the factors on differences to rays of neighbouring pixels, of rays that have them and of others |
+//! | 24–27 | the times at which the shutter opens and closes, and the least and the largest wavelength of a spectral film, or zeros |
+//! | 28–43 | the smallest of the differences, of origins and of directions, four words each |
+//! | 44–83 | the motion of one that moves |
+//!
+//! A motion has two keys, of five times four words each: translation and time, the unit quaternion
+//! of the rotation, and the rows of the stretch, of which the first of the first key has the angle
+//! between the quaternions as its fourth word.
 
 use description::{Span, SphericalMapping};
 use math::MotionKeys;
@@ -15,6 +21,8 @@ use scene::View;
 use scene::camera::{PlainLens, Projection, Screen, ThinLens, differential_scale};
 
 use super::Flattener;
+use super::slab::padded;
+use super::textures::rows;
 use crate::Algorithm;
 use crate::bvh::angle;
 
@@ -63,34 +71,34 @@ pub fn words(view: &View, lenses: u32) -> Vec<u32> {
             (REALISTIC, [pixel.x, pixel.y, half.x, half.y, radius, 1.0])
         }
     };
-    let matrix = motion.start().matrix();
-    let mut numbers: Vec<f32> = [0, 1, 2].iter().flat_map(|&row| matrix.row(row).to_array()).collect();
+    let mut numbers = rows(motion.start());
     numbers.extend(film);
     let samples = view.samples_per_pixel;
     let least = if view.options.disable_pixel_jitter { 1 } else { samples };
     numbers.extend([samples, least].map(differential_scale));
     let differences = view.camera.minimum_differentials().differences();
-    numbers.extend(differences.as_flattened().iter().flat_map(|v| v.to_array()));
+    numbers.extend(view.camera.shutter());
+    numbers.extend(view.wavelengths.unwrap_or_default());
+    numbers.extend(padded(differences.as_flattened().iter().map(|v| v.to_array())));
     let keys = motion.keys().map(|keys| interpolated(&keys));
     let moves = keys.is_some().into();
-    let bits = |numbers: Vec<f32>| numbers.into_iter().map(f32::to_bits);
-    let mut words = vec![kind];
-    words.extend(bits(numbers).chain([moves]).chain(bits(view.camera.shutter().to_vec())));
-    words.extend([lenses].into_iter().chain(view.wavelengths.unwrap_or_default().map(f32::to_bits)));
-    words.extend(bits(keys.unwrap_or_default()));
-    words
+    numbers.extend(keys.unwrap_or_default());
+    [kind, moves, lenses, 0].into_iter().chain(numbers.into_iter().map(f32::to_bits)).collect()
 }
 
-/// The numbers of both keys of a motion, and the angle.
+/// The numbers of a motion.
 pub(super) fn interpolated(keys: &MotionKeys) -> Vec<f32> {
     let &MotionKeys { times, translations, rotations, stretches } = keys;
-    let mut numbers = Vec::new();
-    for i in 0..2 {
-        numbers.push(times[i]);
-        numbers.extend(translations[i].as_vec3().to_array());
-        numbers.extend(rotations[i].as_quat().to_array());
-        numbers.extend(stretches[i].transpose().as_mat3().to_cols_array());
-    }
-    numbers.push(angle(keys));
-    numbers
+    let key = |i: usize| {
+        let fourth = if i == 0 { angle(keys) } else { 0.0 };
+        let [x, y, z] = stretches[i].transpose().as_mat3().to_cols_array_2d();
+        [
+            translations[i].as_vec3().extend(times[i]).to_array(),
+            rotations[i].as_quat().to_array(),
+            [x[0], x[1], x[2], fourth],
+            [y[0], y[1], y[2], 0.0],
+            [z[0], z[1], z[2], 0.0],
+        ]
+    };
+    [key(0), key(1)].concat().concat()
 }

@@ -1,14 +1,16 @@
-//! Geometries: five words for each, its material, its first light plus one or 0, the offset of its
-//! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, and the
-//! texture of its alpha or 0.
+//! Geometries: eight words for each, its material, its first light plus one or 0, the offset of its
+//! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, the texture
+//! of its alpha or 0, and zeros.
 //!
-//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
-//! triangle what it has at its three corners, in this order. Those of ribbons are the normals at
-//! both ends of each primitive.
+//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), three zeros, and then
+//! four words for each of these of each triangle: the three normals, each with a first coordinate
+//! as the fourth word; without normals, all first coordinates; all second ones; the three tangents.
+//! Those of ribbons are the normals at both ends of each primitive.
 
 use geometry::{CurveKind, Curves, Geometry, GeometryId, PlainShape, Triangle, TriangleMesh};
 
 use super::Flattener;
+use super::slab::padded;
 
 const NORMALS: u32 = 1;
 const COORDINATES: u32 = 2;
@@ -34,7 +36,7 @@ impl Flattener<'_> {
             let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
             self.parts.holes |= entry.alpha.is_some();
             let light = entry.first_light.map_or(0, |light| light + 1);
-            rows.extend([entry.material.0, light, attributes, flips.into(), alpha]);
+            rows.extend([entry.material.0, light, attributes, flips.into(), alpha, 0, 0, 0]);
         }
         self.slab.add(rows)
     }
@@ -49,7 +51,7 @@ impl Flattener<'_> {
             return 0;
         }
         let all = (0..curves.len() as u32).filter_map(normals).flatten();
-        self.slab.add_numbers(all.flat_map(|n| n.to_array()))
+        self.slab.add_numbers(padded(all.map(|n| n.to_array())))
     }
 
     /// The attributes of a mesh's vertices; their offset, or 0 where there are none.
@@ -63,15 +65,19 @@ impl Flattener<'_> {
         if flags == 0 {
             return 0;
         }
-        let at = self.slab.add([flags]);
+        let at = self.slab.add([flags, 0, 0, 0]);
         for triangle in (0..mesh.len()).map(|i| mesh.triangle(i)) {
-            let vectors = |vectors: Option<[_; 3]>| {
-                vectors.into_iter().flatten().flat_map(|v: math::Vec3| v.to_array())
-            };
-            let coordinates =
-                triangle.uv.into_iter().filter(|_| has_coordinates).flat_map(|uv| uv.to_array());
-            let numbers = vectors(triangle.n).chain(coordinates).chain(vectors(triangle.s));
-            self.slab.add_numbers(numbers);
+            let first = triangle.uv.map(|uv| uv.x);
+            if let Some(normals) = triangle.n {
+                let rows = normals.into_iter().zip(first);
+                self.slab.extend_numbers(rows.flat_map(|(n, u)| n.extend(u).to_array()));
+            }
+            if has_coordinates {
+                let second = triangle.uv.map(|uv| uv.y);
+                let apart = triangle.n.is_none().then_some(first);
+                self.slab.extend_numbers(padded(apart.into_iter().chain([second])));
+            }
+            self.slab.extend_numbers(padded(triangle.s.into_iter().flatten().map(|s| s.to_array())));
         }
         at
     }

@@ -8,7 +8,7 @@
 //! | 3–5 | which of them are red, green and blue |
 //! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude |
 //! | 7 | of bytes, the offset of the 256 numbers that they stand for |
-//! | 8… | for each level where it begins in the buffer of texels, its width and its height |
+//! | 8… | for each level where it begins in the buffer of texels, its width, its height, and 0 |
 //!
 //! Texels are stored as in the image, as many values a word as it holds, the first one lowest.
 
@@ -63,7 +63,7 @@ impl Flattener<'_> {
         let mut words = vec![levels.len() as u32, format];
         words.extend(channels.into_iter().chain([wrap, decoded]));
         for level in levels {
-            words.extend([self.texels(level, span), level.width(), level.height()]);
+            words.extend([self.texels(level, span), level.width(), level.height(), 0]);
         }
         self.slab.add(words)
     }

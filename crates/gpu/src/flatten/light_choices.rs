@@ -3,10 +3,10 @@
 //! | words | choice |
 //! |---|---|
 //! | 0 | each light alike |
-//! | 1, and for each light 3 words: threshold, probability, alias | in proportion to power |
+//! | 1, and for each light 4 words from the fifth on: threshold, probability, alias, 0 | in proportion to power |
 //! | 2, offsets of nodes, trails and infinite lights, the number of these and of nodes, the probability of them all | through a tree |
 //!
-//! A node of the tree is 13 words, the numbers of its cluster and its kind.
+//! A node of the tree is 16 words: the numbers of its cluster, its kind, and zeros.
 
 use description::Span;
 use scene::light_sampler::{LightSampler, PowerLightSampler};
@@ -23,15 +23,15 @@ impl Flattener<'_> {
         match lights {
             LightSampler::Uniform(_) => self.slab.add([UNIFORM]),
             LightSampler::Power(power) => {
-                let at = self.slab.add([POWER]);
-                self.power(power);
+                let at = self.slab.add([POWER, 0, 0, 0]);
+                self.slab.extend(bins(power));
                 at
             }
             LightSampler::Bvh(tree) => {
                 let nodes = tree.nodes();
                 let count = nodes.len() as u32;
                 let node = |(numbers, kind): (&[f32], u32)| {
-                    numbers.iter().map(|x| x.to_bits()).chain([kind]).collect::<Vec<u32>>()
+                    numbers.iter().map(|x| x.to_bits()).chain([kind, 0, 0, 0]).collect::<Vec<u32>>()
                 };
                 let nodes = self.slab.add(nodes.flat_map(node));
                 let trails = self.slab.add(tree.trails().flatten());
@@ -46,10 +46,13 @@ impl Flattener<'_> {
         }
     }
 
-    /// The three words of each light that is chosen in proportion to power; their offset.
+    /// The four words of each light that is chosen in proportion to power; their offset.
     pub fn power(&mut self, power: &PowerLightSampler) -> u32 {
-        let bins = power.table().into_iter().flat_map(|table| table.bins());
-        let words = bins.flat_map(|(threshold, pmf, alias)| [threshold.to_bits(), pmf.to_bits(), alias]);
-        self.slab.add(words.collect::<Vec<u32>>())
+        self.slab.add(bins(power))
     }
+}
+
+fn bins(power: &PowerLightSampler) -> impl Iterator<Item = u32> {
+    let bins = power.table().into_iter().flat_map(|table| table.bins());
+    bins.flat_map(|(threshold, pmf, alias)| [threshold.to_bits(), pmf.to_bits(), alias, 0])
 }

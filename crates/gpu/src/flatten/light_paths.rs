@@ -40,7 +40,7 @@ impl Flattener<'_> {
         let at = self.slab.add([numbers, emitting, count.to_bits(), is_unbounded.into()]);
         let places = [&sphere.center.to_array()[..], &[sphere.radius]].concat();
         let bounds = [reach.min, reach.max].map(|corner| corner.to_array());
-        self.slab.add_numbers(places.into_iter().chain(bounds.into_iter().flatten()));
+        self.slab.extend_numbers(places.into_iter().chain(bounds.into_iter().flatten()));
         at
     }
 }

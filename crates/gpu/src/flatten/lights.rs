@@ -1,20 +1,21 @@
 //! Lights: the kind, the offset of the spectrum, its scale, 1 where both sides emit plus 2 where no
 //! ray hits the surface plus four times the offset of what else a surface has, and numbers. A light
 //! without a surface has there four times the offset of its motion, or 0 where it is at rest; one
-//! that moves has its position and direction in its own space.
+//! that moves has its position and direction in its own space. A vector is four words, of which the
+//! last is the number that follows it in brackets, or 0.
 //!
 //! | kind | numbers |
 //! |---|---|
 //! | 0 point | position |
 //! | 1 spot | position, axis, cosines of the start and of the end of the falloff |
 //! | 2 distant | direction |
-//! | 3 triangle, 4 rectangle | corner, sides, normal, and of a triangle with an image the texture coordinates at its corners |
-//! | 5 sphere | centre, radius, 1 or −1 where the outside is inside, the rows of the rotation from object to render space |
+//! | 3 triangle, 4 rectangle | corner, sides, normal, and of a triangle with an image or holes the texture coordinates at its corners |
+//! | 5 sphere | centre (radius), the rows of the rotation from object to render space (the first: 1 or −1 where the outside is inside) |
 //! | 6 uniform infinite | none |
-//! | 8 disk, 9 cylinder, 15 part of a sphere | the rows of the matrix from object to render space, the numbers of the shape, 1 or −1 where the outside is inside, area in object space |
+//! | 8 disk, 9 cylinder, 15 part of a sphere | the rows of the matrix from object to render space (translation), the numbers of the shape, 1 or −1 where the outside is inside, area in object space |
 //! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
 //! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
-//! | 11 projection | the same with the distribution of positions, width, height, least and largest coordinates of the screen, offset of pixels |
+//! | 11 projection | the same with the distribution of positions, width, height, offset of pixels, least and largest coordinates of the screen |
 //! | 13 infinite behind a portal | those that `portals.rs` describes |
 //! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
 //! | 14 surface in an instance | the offset of its record in the instance's space, the item of the instance |
@@ -38,6 +39,7 @@ use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 
 use super::Flattener;
 use super::cameras::interpolated;
+use super::slab::padded;
 
 const POINT: u32 = 0;
 const SPOT: u32 = 1;
@@ -74,17 +76,17 @@ impl Flattener<'_> {
         match light.row() {
             Light::Point(l) => {
                 let motion = self.motion(l.motion.as_deref(), span);
-                self.emitter(POINT, &l.intensity, motion, &l.p.to_array())
+                self.emitter(POINT, &l.intensity, motion, &padded([l.p.to_array()]))
             }
             Light::Spot(l) => {
                 let motion = self.motion(l.motion.as_deref(), span);
-                let numbers =
-                    [&l.p.to_array()[..], &l.axis.to_array(), &[l.cos_falloff_start, l.cos_falloff_end]];
+                let vectors = padded([l.p, l.axis].map(|v| v.to_array()));
+                let numbers = [&vectors[..], &[l.cos_falloff_start, l.cos_falloff_end]];
                 self.emitter(SPOT, &l.intensity, motion, &numbers.concat())
             }
             Light::Distant(l) => {
                 let motion = self.motion(l.motion.as_deref(), span);
-                self.emitter(DISTANT, &l.radiance, motion, &l.w.to_array())
+                self.emitter(DISTANT, &l.radiance, motion, &padded([l.w.to_array()]))
             }
             Light::UniformInfinite(l) => self.emitter(UNIFORM_INFINITE, &l.radiance, 0, &[]),
             Light::Area(area) => {
@@ -105,7 +107,7 @@ impl Flattener<'_> {
                 let (motion, distribution) =
                     (self.motion(Some(transform), span), self.distribution(distribution));
                 let at = self.emitter(GONIOMETRIC, intensity, motion, &placement(transform));
-                self.slab.add([distribution]);
+                self.slab.extend([distribution]);
                 at
             }
             Light::Projection(l) => self.projection(l, span),
@@ -131,7 +133,7 @@ impl Flattener<'_> {
     pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, motion: u32, numbers: &[f32]) -> u32 {
         let spectrum = self.spectrum(&emission.spectrum);
         let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 4 * motion]);
-        self.slab.add_numbers(numbers.iter().copied());
+        self.slab.extend_numbers(numbers.iter().copied());
         at
     }
 
@@ -144,9 +146,9 @@ impl Flattener<'_> {
         let spectrum = color_space.illuminant();
         let at = self.emitter(PROJECTION, &Emission { spectrum, scale }, motion, &placement(transform));
         let screen = slide.screen();
-        self.slab.add([distribution, image.width(), image.height()]);
-        self.slab.add_numbers([screen.min, screen.max].map(|corner| corner.to_array()).into_iter().flatten());
-        self.slab.add([pixels]);
+        self.slab.extend([distribution, image.width(), image.height(), pixels]);
+        let corners = [screen.min, screen.max].map(|corner| corner.to_array());
+        self.slab.extend_numbers(corners.into_iter().flatten());
         at
     }
 
@@ -175,8 +177,8 @@ impl Flattener<'_> {
         let scale = light.scale.to_bits();
         let words = [IMAGE_INFINITE, illuminant, scale, 4 * motion, width, height, kind, complete];
         let at = self.slab.add(words);
-        self.slab.add_numbers(placement(&light.render_from_light)[3..].iter().copied());
-        self.slab.add([pixels, incomplete]);
+        self.slab.extend_numbers(placement(&light.render_from_light)[4..].iter().copied());
+        self.slab.extend([pixels, incomplete]);
         at
     }
 
@@ -214,7 +216,7 @@ impl Flattener<'_> {
         let (kind, mut numbers) = if let Some(flat) = shape.flat_shape() {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
-            (kind, vectors.iter().flat_map(|v| v.to_array()).collect())
+            (kind, padded(vectors.map(|v| v.to_array())))
         } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain)) {
             numbers
         } else {
@@ -232,8 +234,8 @@ impl Flattener<'_> {
         };
         self.parts.emission_images |= distribution != 0;
         let at = self.slab.add([kind].into_iter().chain(words));
-        self.slab.add_numbers(numbers);
-        self.slab.add([distribution]);
+        self.slab.extend_numbers(numbers);
+        self.slab.extend([distribution]);
         at
     }
 
@@ -259,15 +261,12 @@ impl Flattener<'_> {
 
 /// The position of a light, the rows of the matrix to its space, and those of the inverse, before
 /// it moves.
-fn placement(motion: &AnimatedTransform) -> [f32; 21] {
+fn placement(motion: &AnimatedTransform) -> Vec<f32> {
     let render_from_light = motion.start().matrix().as_dmat4();
-    let mut numbers = [0.0; 21];
     let rows = [render_from_light.inverse(), render_from_light]
         .map(|matrix| [0, 1, 2].map(|row| matrix.row(row).truncate().as_vec3().to_array()));
     let position = render_from_light.transform_point3(DVec3::ZERO).as_vec3().to_array();
-    let all = position.iter().chain(rows.as_flattened().as_flattened());
-    numbers.iter_mut().zip(all).for_each(|(number, x)| *number = *x);
-    numbers
+    padded([position].into_iter().chain(rows.into_iter().flatten()))
 }
 
 /// The kind and the numbers of a patch, a sphere, a disk or a cylinder, or of a part of one; `None`
@@ -279,7 +278,7 @@ fn surface(shape: &PlainShape) -> Option<(u32, Vec<f32>)> {
             let elements = [element(0.0, 0.0), element(1.0, 0.0), element(0.0, 1.0), element(1.0, 1.0)];
             let vectors = [corner, right, up, twist].map(|vector| vector.to_array());
             let side = if flips { -1.0 } else { 1.0 };
-            return Some((PATCH, [vectors.as_flattened(), &elements, &[side]].concat()));
+            return Some((PATCH, [&padded(vectors)[..], &elements, &[side]].concat()));
         }
         PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
             (kind, render_from_object, flips, numbers)
@@ -306,8 +305,9 @@ fn surface(shape: &PlainShape) -> Option<(u32, Vec<f32>)> {
             let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
             let rotation =
                 [0, 1, 2].map(|row| (render_from_object.row(row).truncate() / scale).as_vec3().to_array());
-            let numbers = [&center.to_array()[..], &[first * scale as f32, side], rotation.as_flattened()];
-            Some((SPHERE, numbers.concat()))
+            let mut numbers = padded([center.to_array()].into_iter().chain(rotation));
+            (numbers[3], numbers[7]) = (first * scale as f32, side);
+            Some((SPHERE, numbers))
         }
         RevolvedKind::Disk => Some((DISK, placed(0.5 * phi * (second * second - third * third)))),
         RevolvedKind::Cylinder => Some((CYLINDER, placed(phi * first * (third - second)))),

@@ -66,7 +66,7 @@ impl Flattener<'_> {
         }
         let kind = |entry: &GeometryEntry| {
             let offset: u32 = offsets[entry.material.0 as usize];
-            self.slab.words[offset as usize]
+            self.slab.word(offset)
         };
         let kinds = self.scene.geometries().iter().fold(0, |kinds, entry| kinds | 1 << kind(entry));
         (self.slab.add(offsets), kinds)

@@ -1,8 +1,8 @@
 //! Participating media: that of the camera, those on the two sides of each geometry, and what they
 //! are made of. A medium is the offset of its record, or 0 for empty space.
 //!
-//! The first record is the camera's medium, and for each geometry three words: 1 where its sides
-//! differ, the medium inside, and that outside. A medium has
+//! The first record is the camera's medium, three zeros, and for each geometry four words: 1 where
+//! its sides differ, the medium inside, that outside, and 0. A medium has
 //!
 //! | words | what |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | 2–4 | σ_a and σ_s, of colours as grids or 0, and a factor on both |
 //! | 5 | its emission, or 0 |
 //! | 6 | the grid of densities, the cloud or the voxels |
-//! | 7 | its majorants: numbers of cells in x, y and z, and bounds of densities |
+//! | 7 | its majorants: numbers of cells in x, y and z, 0, and bounds of densities |
 //! | 8–19 | three rows from render space to the unit cube |
 //!
 //! and what these refer to
@@ -20,7 +20,7 @@
 //! |---|---|
 //! | grid or 0, factor, spectrum or 0, temperatures, offset, scale | emission |
 //! | numbers of values in x, y and z, first texel | a grid, of colours four words each |
-//! | lowest corner, size, factor on the noise, fraying, frequency | a cloud |
+//! | lowest corner, factor on the noise, size, fraying, frequency | a cloud |
 //! | three rows to index space, first index, numbers of bricks, first texels of table and of values | voxels |
 
 use description::Span;
@@ -54,11 +54,11 @@ impl Flattener<'_> {
         let media = self.scene.media();
         let offsets: Vec<u32> = media.iter().map(|medium| self.medium(medium)).collect();
         let offset = |id: Option<MediumId>| id.map_or(0, |id| offsets[id.0 as usize]);
-        let mut words = vec![offset(of_camera)];
+        let mut words = vec![offset(of_camera), 0, 0, 0];
         for entry in self.scene.geometries() {
             words.extend(match entry.media.filter(|media| media.is_transition()) {
-                Some(media) => [1, offset(media.inside), offset(media.outside)],
-                None => [0; 3],
+                Some(media) => [1, offset(media.inside), offset(media.outside), 0],
+                None => [0; 4],
             });
         }
         self.slab.add(words)
@@ -83,7 +83,7 @@ impl Flattener<'_> {
         let majorants = majorants.map_or(0, |majorants| self.majorants(majorants));
         let words = [&[kind, medium.phase.g.to_bits()], &coefficients[..], &[emission, values, majorants]];
         let at = self.slab.add(words.concat());
-        self.slab.add_numbers(placement.map(Placement::unit_from_render).map_or(vec![0.0; 12], rows));
+        self.slab.extend_numbers(placement.map(Placement::unit_from_render).map_or(vec![0.0; 12], rows));
         at
     }
 
@@ -120,9 +120,9 @@ impl Flattener<'_> {
 
     fn cloud(&mut self, medium: &CloudMedium) -> Matter {
         let CloudMedium { bounds, density, wispiness, frequency, .. } = medium;
-        let corners = [bounds.min, bounds.diagonal()];
-        let numbers = corners.into_iter().flat_map(|v| v.to_array());
-        let values = self.slab.add_numbers(numbers.chain([*density, *wispiness, *frequency]));
+        let [low, size] = [bounds.min, bounds.diagonal()].map(|v| v.to_array());
+        let numbers = [&low[..], &[*density], &size, &[*wispiness], &[*frequency]];
+        let values = self.slab.add_numbers(numbers.concat());
         let coefficients = self.coefficients(&medium.coefficients);
         Matter { kind: CLOUD, coefficients, emission: 0, values }
     }
@@ -141,8 +141,9 @@ impl Flattener<'_> {
     }
 
     fn majorants(&mut self, majorants: &MajorantGrid) -> u32 {
-        let at = self.slab.add(majorants.resolution().map(|n| n as u32));
-        self.slab.add_numbers(majorants.values().iter().copied());
+        let [x, y, z] = majorants.resolution().map(|n| n as u32);
+        let at = self.slab.add([x, y, z, 0]);
+        self.slab.extend_numbers(majorants.values().iter().copied());
         at
     }
 
@@ -166,7 +167,7 @@ impl Flattener<'_> {
         let table = self.values(values.table.iter().copied());
         let first = self.values(values.values.iter().map(|value| value.to_bits()));
         let at = self.slab.add_numbers(rows(index_from_render));
-        self.slab.add(
+        self.slab.extend(
             values.origin.map(i32::cast_unsigned).into_iter().chain(values.bricks).chain([table, first]),
         );
         at

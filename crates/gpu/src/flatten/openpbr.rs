@@ -1,11 +1,12 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
-//! numbers; for each colour the place of its texture, or [`WHITE`]; the values of all numbers; the
-//! images of the normals of the coat and of the base where they differ, or 0; and for each number
-//! that has a texture, in the order of the textures, which it is, and its range.
+//! numbers, and 0; for each colour the place of its texture, or [`WHITE`]; the images of the normals
+//! of the coat and of the base where they differ, or 0; the values of all numbers; and for each
+//! number that has a texture, in the order of the textures, which it is, its range, and 0.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
-//! offsets of what is taken, of what is inside, and of means; then its axes: which number, how it
-//! is made one from 0 to 1, its nodes and its range.
+//! offsets of what is taken, of what is inside, and of means, whose rows are of four or eight
+//! words; then its axes: which number, how it is made one from 0 to 1, its nodes, 0, its range, and
+//! two zeros.
 
 use description::{OpenPbrDesc, Span};
 use scattering::OpenPbrTable;
@@ -41,7 +42,7 @@ impl Flattener<'_> {
             constants[number] > 0.0 || varying.iter().any(|(varies, _)| *varies == number)
         };
         let mut used: Vec<u32> = varying.iter().map(|(_, id)| self.number_texture(*id, span)).collect();
-        let mut words = vec![is_thin.into(), self.openpbr_table(table), varying.len() as u32];
+        let mut words = vec![is_thin.into(), self.openpbr_table(table), varying.len() as u32, 0];
         for (color, shown_by) in colors.iter().zip(SHOWN_BY) {
             let is_seen = shown_by.is_none_or(is_seen);
             words.push(if is_seen { used.len() as u32 } else { WHITE });
@@ -49,13 +50,13 @@ impl Flattener<'_> {
                 used.push(self.spectrum_texture(*color, span));
             }
         }
-        words.extend(constants.map(f32::to_bits));
         for map in coat_normals.map_or([None; 2], |normals| normals.maps()) {
             words.push(map.map_or(0, |map| self.normal_map(map, span)));
         }
+        words.extend(constants.map(f32::to_bits));
         for (number, _) in varying {
             let [least, most] = OpenPbrDesc::NUMBERS[number].range;
-            words.extend([number as u32, least.to_bits(), most.to_bits()]);
+            words.extend([number as u32, least.to_bits(), most.to_bits(), 0]);
         }
         (self.slab.add(words), used)
     }
@@ -70,11 +71,15 @@ impl Flattener<'_> {
 pub fn openpbr_table(table: &OpenPbrTable, mut add: impl FnMut(&[f32]) -> u32) -> Vec<u32> {
     let table = table.plain();
     let [least, most] = table.waves.map(f32::to_bits);
-    let rows = [table.taken, table.inside, table.means].map(&mut add);
+    let padded = |numbers: &[f32], from: usize, to: usize| -> Vec<f32> {
+        let rows = numbers.chunks_exact(from);
+        rows.flat_map(|row| row.iter().copied().chain(std::iter::repeat_n(0.0, to - from))).collect()
+    };
+    let rows = [add(table.taken), add(&padded(table.inside, 3, 4)), add(&padded(table.means, 6, 8))];
     let mut words = vec![table.axes.len() as u32, table.azimuths, table.films, least, most];
     words.extend(rows);
     for (number, scale, nodes, range) in table.axes {
-        words.extend([number, scale, nodes, range[0].to_bits(), range[1].to_bits()]);
+        words.extend([number, scale, nodes, 0, range[0].to_bits(), range[1].to_bits(), 0, 0]);
     }
     words
 }

@@ -1,7 +1,7 @@
 //! Infinite lights behind portals: as all lights the kind, the offset of the spectrum, its scale
-//! and a zero; then a corner, the axes along the edges and out of the scene, and the lengths of the
-//! edges; the cells of the density along each axis, the offset of pixels or 0, that of the sums of
-//! cells, and the width and height of the image.
+//! and a zero; then a corner, and the axes along the edges and out of the scene, four words each;
+//! the lengths of the edges, the cells of the density along each axis, the offset of pixels or 0,
+//! that of the sums of cells, and the width and height of the image.
 //!
 //! Sums are of the cells before a column and a row, for each corner of cells, row by row, as
 //! integers of two words, the lower one first. All cells together are about 2⁶⁰.
@@ -10,6 +10,7 @@ use scene::light::{Emission, PlainPortal, PortalInfiniteLight, PortalRadiance};
 use spectrum::RgbUnboundedSpectrum;
 
 use super::Flattener;
+use super::slab::padded;
 
 /// The sum of all cells.
 const WHOLE: f64 = (1u64 << 60) as f64;
@@ -34,10 +35,10 @@ impl Flattener<'_> {
         };
         let sums = sums(&brightness, resolution as usize);
         let sums = self.slab.add(sums.into_iter().flat_map(|sum| [sum as u32, (sum >> 32) as u32]));
-        let vectors = [corner, frame.x, frame.y, frame.z].map(|v| v.to_array());
-        let numbers = [vectors.as_flattened(), &size.to_array()].concat();
+        let vectors = padded([corner, frame.x, frame.y, frame.z].map(|v| v.to_array()));
+        let numbers = [&vectors[..], &size.to_array()].concat();
         let at = self.emitter(kind, &emission, 0, &numbers);
-        self.slab.add([resolution, pixels, sums, resolution, resolution]);
+        self.slab.extend([resolution, pixels, sums, resolution, resolution]);
         at
     }
 }

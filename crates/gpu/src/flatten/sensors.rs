@@ -1,24 +1,26 @@
-//! The sensor: the offsets of its three sensitivities, the largest response that a sample may
-//! have, and the rows of the matrix from responses to the colours of the picture.
+//! The sensor: the rows of the matrix from responses to the colours of the picture, of which the
+//! first has the largest response that a sample may have as its fourth word, and the sensitivities
+//! of its three channels at each nanometre from 360 on; four words for each row and nanometre.
 
 use film::{Film, FilmSettings, PixelSensor};
 use spectrum::{DenselySampled, LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
 
 use super::Flattener;
+use super::slab::padded;
 
 impl Flattener<'_> {
     /// The sensor of a film; its offset.
     pub fn sensor(&mut self, film: &Film) -> u32 {
         let FilmSettings { sensor, max_component_value, color_space, .. } = film.settings();
-        let curves = [0, 1, 2].map(|channel| {
-            let curve = DenselySampled::from_fn(|lambda| sensitivity(&sensor, channel, lambda));
-            self.curve(&curve)
-        });
+        let curves = [0, 1, 2]
+            .map(|channel| DenselySampled::from_fn(|lambda| sensitivity(&sensor, channel, lambda)));
         let matrix = color_space.rgb_from_xyz() * sensor.xyz_from_sensor_rgb();
-        let at = self.slab.add(curves);
-        self.slab.add_numbers([max_component_value]);
-        self.slab.add_numbers(matrix.0.as_flattened().iter().map(|&x| x as f32));
-        at
+        let mut rows = padded(matrix.0.map(|row| row.map(|x| x as f32)));
+        rows[3] = max_component_value;
+        let [red, green, blue] = curves.each_ref().map(|curve| curve.values());
+        let responses = red.iter().zip(green).zip(blue).map(|((&r, &g), &b)| [r, g, b]);
+        rows.extend(padded(responses));
+        self.slab.add_numbers(rows)
     }
 }
 

@@ -3,10 +3,10 @@
 //! | words | spectrum |
 //! |---|---|
 //! | 0, value | constant |
-//! | 1, count, wavelengths, values | linear between wavelengths |
+//! | 1, count, 0, 0, and for each wavelength 4 words: it and its value, and those of the next | linear between wavelengths |
 //! | 2, values | at each nanometre from 360 on |
-//! | 3, scale, 3 coefficients | of RGB |
-//! | 4, scale, 3 coefficients, offset of a spectrum | the same times another one |
+//! | 3, scale, 0, 0, 3 coefficients | of RGB |
+//! | 4, scale, offset of a spectrum, 0, 3 coefficients | the same times another one |
 //!
 //! A colour space is five words, the offsets of what [`RgbToSpectrumTable::numbers`] has and of the
 //! illuminant.
@@ -41,21 +41,21 @@ impl Flattener<'_> {
                 let wavelengths = (360..=830).map(|nanometre| nanometre as f32);
                 self.linear(wavelengths.map(|lambda| (lambda, body.at(lambda))))
             }
-            Spectrum::RgbAlbedo(rgb) => self.slab.add(rgb_words(RGB, 1.0, rgb.polynomial())),
-            Spectrum::RgbUnbounded(rgb) => self.slab.add(rgb_words(RGB, rgb.scale(), rgb.polynomial())),
+            Spectrum::RgbAlbedo(rgb) => self.slab.add(rgb_words(RGB, 1.0, 0, rgb.polynomial())),
+            Spectrum::RgbUnbounded(rgb) => self.slab.add(rgb_words(RGB, rgb.scale(), 0, rgb.polynomial())),
             Spectrum::RgbIlluminant(rgb) => {
                 let (illuminant, factor) = (self.dense(rgb.illuminant()), rgb.factor());
-                let words = rgb_words(RGB_LIGHT, factor.scale(), factor.polynomial());
-                self.slab.add(words.into_iter().chain([illuminant]))
+                self.slab.add(rgb_words(RGB_LIGHT, factor.scale(), illuminant, factor.polynomial()))
             }
         }
     }
 
     /// A spectrum that is linear between pairs of wavelength and value.
     fn linear(&mut self, pairs: impl Iterator<Item = (f32, f32)>) -> u32 {
-        let (wavelengths, values): (Vec<f32>, Vec<f32>) = pairs.unzip();
-        let at = self.slab.add([LINEAR, wavelengths.len() as u32]);
-        self.slab.add_numbers(wavelengths.into_iter().chain(values));
+        let pairs: Vec<(f32, f32)> = pairs.collect();
+        let at = self.slab.add([LINEAR, pairs.len() as u32, 0, 0]);
+        let next = pairs.iter().skip(1).chain(pairs.last());
+        self.slab.extend_numbers(pairs.iter().zip(next).flat_map(|(a, b)| [a.0, a.1, b.0, b.1]));
         at
     }
 
@@ -80,20 +80,14 @@ impl Flattener<'_> {
         if let Some(&at) = self.spectra.get(&address) {
             return at;
         }
-        let at = self.curve(dense);
-        self.spectra.insert(address, at);
-        at
-    }
-
-    /// A densely sampled spectrum that no other shares; its offset.
-    pub fn curve(&mut self, dense: &DenselySampled) -> u32 {
         let at = self.slab.add([DENSE]);
-        self.slab.add_numbers(dense.values().iter().copied());
+        self.slab.extend_numbers(dense.values().iter().copied());
+        self.spectra.insert(address, at);
         at
     }
 }
 
-fn rgb_words(kind: u32, scale: f32, polynomial: &RgbSigmoidPolynomial) -> [u32; 5] {
+fn rgb_words(kind: u32, scale: f32, other: u32, polynomial: &RgbSigmoidPolynomial) -> [u32; 7] {
     let [a, b, c] = polynomial.coefficients.map(f32::to_bits);
-    [kind, scale.to_bits(), a, b, c]
+    [kind, scale.to_bits(), other, 0, a, b, c]
 }

@@ -46,9 +46,9 @@ impl Flattener<'_> {
         let counts = [albedos.len() as u32, radii.len() as u32, gains, rows.len() as u32];
         let at = self.slab.add([exit_norm.to_bits()].into_iter().chain(counts));
         for numbers in [albedos, radii, effective_albedos, profile, cdf] {
-            self.slab.add_numbers(numbers.iter().copied());
+            self.slab.extend_numbers(numbers.iter().copied());
         }
-        self.slab.add_numbers(rows.iter().flatten().copied());
+        self.slab.extend_numbers(rows.iter().flatten().copied());
         at
     }
 }

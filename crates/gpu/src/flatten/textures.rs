@@ -4,7 +4,7 @@
 //! |---|---|
 //! | 0, number | the number everywhere |
 //! | 1, offset | a spectrum everywhere |
-//! | 2, count, and for each operation 4 words: code, target, slots of operands, argument | a program |
+//! | 2, count, 0, 0, and for each operation 4 words: code, target, slots of operands, argument | a program |
 //!
 //! Slots of operands are bytes of a word. Codes are those of [`Code`] in the order of the constants
 //! below. Their arguments are numbers or offsets: of a spectrum, a direction, a mapping, or of one
@@ -16,13 +16,14 @@
 //! | mapping, octaves, roughness | fBm, turbulence |
 //! | mapping, octaves, roughness, scale, variation, colour space | marble |
 //!
-//! A mapping to texture space is three rows of a matrix. One to the plane is its kind and numbers:
+//! A mapping to texture space is three rows of a matrix. One to the plane is its kind, three zeros
+//! and numbers:
 //!
 //! | kind | numbers |
 //! |---|---|
 //! | 0 linear | three columns of a matrix |
 //! | 1 spherical, 2 cylindrical | the mapping to texture space |
-//! | 3 planar | the same, two axes, two offsets |
+//! | 3 planar | the same, two axes, each with an offset |
 
 use description::Span;
 use image::TextureFilter;
@@ -87,7 +88,7 @@ impl Flattener<'_> {
                 self.slab.add([SPECTRUM, spectrum])
             }
             operations => {
-                let mut words = vec![PROGRAM, operations.len() as u32];
+                let mut words = vec![PROGRAM, operations.len() as u32, 0, 0];
                 for operation in operations {
                     let [code, argument] = self.code(operation.code, span);
                     let slots = u32::from_le_bytes(operation.operands);
@@ -193,11 +194,11 @@ impl Flattener<'_> {
             Mapping2d::Cylindrical { texture_from_render } => (CYLINDRICAL, rows(texture_from_render)),
             Mapping2d::Planar { texture_from_render, axes, delta } => {
                 let [s, t] = axes.map(|axis| axis.to_array());
-                (PLANAR, [&rows(texture_from_render)[..], &s, &t, &delta.to_array()].concat())
+                (PLANAR, [&rows(texture_from_render)[..], &s, &[delta.x], &t, &[delta.y]].concat())
             }
         };
-        let at = self.slab.add([kind]);
-        self.slab.add_numbers(numbers);
+        let at = self.slab.add([kind, 0, 0, 0]);
+        self.slab.extend_numbers(numbers);
         at
     }
 }

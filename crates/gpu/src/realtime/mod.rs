@@ -147,7 +147,7 @@ impl Realtime {
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();
-        let tables: Vec<u32> = flat.tables.iter().copied().chain([INDEPENDENT, key]).collect();
+        let tables: Vec<u32> = flat.tables.iter().copied().chain([INDEPENDENT, key, 0, 0]).collect();
         let scene = [
             device.buffer("heads of the scene", &[flat.head])?,
             device.buffer("triangles of the scene", &flat.bvh.triangles)?,

@@ -29,6 +29,7 @@ fn words() -> Vec<u32> {
     let mut words = openpbr_table(&TABLE, |numbers| {
         let at = len + rows.len();
         rows.extend(numbers.iter().map(|number| number.to_bits()));
+        assert!(at.is_multiple_of(4) && rows.len().is_multiple_of(4));
         at as u32
     });
     words.append(&mut rows);

@@ -48,9 +48,7 @@ fn inputs() -> Vec<[f32; INPUTS]> {
 }
 
 /// What laws of principled surfaces read.
-const TABLES: &str = "@group(0) @binding(2) var<storage, read_write> tables: array<u32>;
-    fn number(at: u32) -> f32 { return bitcast<f32>(tables[at]); }
-    fn vector(at: u32) -> vec3f { return vec3f(number(at), number(at + 1), number(at + 2)); }";
+const TABLES: &str = "@group(0) @binding(2) var<storage, read_write> tables: array<vec4u>;";
 
 /// Starts laws on the GPU, which are functions of one shader; those of principled surfaces have
 /// tables. What they find is in the buffers that are returned.
@@ -66,6 +64,7 @@ fn on_gpu(
     );
     if tables.is_some() {
         source += TABLES;
+        source += shaders::TABLES;
         source += &shaders::principled();
     }
     let names: Vec<String> = (0..laws.len()).map(|i| format!("law_{i}")).collect();
