@@ -1,6 +1,7 @@
 // The random numbers of samples: the records of `src/flatten/samplers.rs`.
 
 const INDEPENDENT = 0u;
+const ZSOBOL = 1u;
 const PADDED_SOBOL = 2u;
 const SOBOL = 3u;
 const HALTON = 4u;
@@ -13,24 +14,25 @@ fn coordinates(is_pair: bool) -> vec2f {
     if (is_light_path) {
         at = word(world.light_paths);
     }
-    let key = word(at + 1);
-    if (word(at) == INDEPENDENT) {
-        return Independent_at_2d(Independent(1, key, place), place);
+    let head = words_at(at);
+    let key = head.y;
+    if (HAS_ZSOBOL && head.x == ZSOBOL) {
+        return ZSobol_at_2d(ZSobol(head.z, head.w, word(at + 4), key, place), place);
     }
     if (HAS_RARE_SAMPLERS) {
-        switch (word(at)) {
-            case PADDED_SOBOL: { return padded_sobol(place, key, word(at + 2), word(at + 3), is_pair); }
+        switch (head.x) {
+            case PADDED_SOBOL: { return padded_sobol(place, key, head.z, head.w, is_pair); }
             case SOBOL: { return sobol(at, is_pair); }
             case HALTON: { return halton_at(at, is_pair); }
             case STRATIFIED: {
-                let grid = vec2u(word(at + 3), word(at + 4));
-                return stratified(place, grid, word(at + 2), key, word(at + 5) == 1, is_pair);
+                let more = words_at(at + 4);
+                return stratified(place, vec2u(head.w, more.x), head.z, key, more.y == 1, is_pair);
             }
-            case PMJ02BN: { return pmj02bn(place, word(at + 2), key, is_pair); }
+            case PMJ02BN: { return pmj02bn(place, head.z, key, is_pair); }
             default: {}
         }
     }
-    return ZSobol_at_2d(ZSobol(word(at + 2), word(at + 3), word(at + 4), key, place), place);
+    return Independent_at_2d(Independent(1, key, place), place);
 }
 
 // The coordinates of `sobol`. On the CPU its first two dimensions are the position in the pixel,

@@ -13,10 +13,14 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             point = FlatShape_sample_from(flat_light(record), reference, u).v0;
         }
-        case SPHERE_LIGHT: { point = sample_sphere(record, reference, u); }
         default: {
-            point = point_by_area(record, u);
-            point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
+            let cone = cone_of(record, reference);
+            if (cone.sine > 0) {
+                point = sample_cone(record, cone, u);
+            } else {
+                point = point_by_area(record, u);
+                point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
+            }
         }
     }
     if (is_placed(at)) {
@@ -44,7 +48,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
 }
 
 // The cone in which a sphere is seen: sine, 1 − cosine of its half angle, and its axis. Within the
-// sphere the sine is 0.
+// sphere, and of other shapes, the sine is 0.
 struct Cone {
     axis: vec3f,
     sine: f32,
@@ -56,7 +60,7 @@ fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
     let toward = ball.xyz - context.p.p;
     let distance = length(toward);
     let radius = ball.w;
-    if (distance - length(context.p.error) <= radius) {
+    if (word(at) != SPHERE_LIGHT || distance - length(context.p.error) <= radius) {
         return Cone(vec3f(), 0, 2);
     }
     let sine = radius / distance;
@@ -69,58 +73,48 @@ fn outward_by_area(at: u32, u: vec2f) -> vec3f {
     return times(rotation, sample_uniform_sphere(vec2f(1 - u.x, u.y)));
 }
 
-// A point of a sphere: by the cone from outside, by area from inside.
-fn sample_sphere(at: u32, context: ShapeSampleContext, u: vec2f) -> ShapeSample {
+// A point of a sphere in the cone in which it is seen.
+fn sample_cone(at: u32, cone: Cone, u: vec2f) -> ShapeSample {
     let ball = numbers_at(at + 4);
-    let center = ball.xyz;
-    let radius = ball.w;
-    let cone = cone_of(at, context);
-    var outward: vec3f;
-    var pdf = 1 / (6.2831855 * cone.one_minus_cos);
-    if (cone.sine > 0) {
-        let below_one = cone.one_minus_cos * u.x;
-        let cosine = 1 - below_one;
-        let sin2 = below_one * (1 + cosine);
-        let cos_alpha = sin2 / cone.sine + cosine * safe_sqrt(1 - sin2 / (cone.sine * cone.sine));
-        let local = spherical_direction(safe_sqrt(1 - cos_alpha * cos_alpha), cos_alpha, u.y * 6.2831855);
-        let x = coordinate_system(cone.axis).v1;
-        outward = -(x * local.x + cross(cone.axis, x) * local.y + cone.axis * local.z);
-    } else {
-        outward = outward_by_area(at, u);
-    }
-    let p = center + outward * radius;
-    let n = outward * number(at + 11);
-    if (cone.sine == 0) {
-        pdf = ShapeSampleContext_area_per_solid_angle(context, p, n) * surface_density(at, n, vec2f());
-    }
-    return ShapeSample(Point3Error(p, POINT_ERROR * (abs(center) + vec3f(radius))), n, vec2f(), pdf);
+    let below_one = cone.one_minus_cos * u.x;
+    let cosine = 1 - below_one;
+    let sin2 = below_one * (1 + cosine);
+    let cos_alpha = sin2 / cone.sine + cosine * safe_sqrt(1 - sin2 / (cone.sine * cone.sine));
+    let local = spherical_direction(safe_sqrt(1 - cos_alpha * cos_alpha), cos_alpha, u.y * 6.2831855);
+    let x = coordinate_system(cone.axis).v1;
+    let outward = -(x * local.x + cross(cone.axis, x) * local.y + cone.axis * local.z);
+    return ShapeSample(
+        point_of_ball(ball, outward), outward * number(at + 11), vec2f(), 1 / (6.2831855 * cone.one_minus_cos),
+    );
+}
+
+fn point_of_ball(ball: vec4f, outward: vec3f) -> Point3Error {
+    return Point3Error(ball.xyz + outward * ball.w, POINT_ERROR * (abs(ball.xyz) + vec3f(ball.w)));
 }
 
 // A point of the surface of a light, with its density per area.
 fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
+    var point: ShapeSample;
     switch (word(at)) {
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             let flat_shape = flat_light(at);
-            var uv = u;
+            point.uv = u;
             if (flat_shape.is_triangle) {
-                uv = sample_uniform_triangle(u).yz;
+                point.uv = sample_uniform_triangle(u).yz;
             }
-            let n = flat_shape.n;
-            return ShapeSample(FlatShape_point(flat_shape, uv), n, uv, surface_density(at, n, uv));
+            point.p = FlatShape_point(flat_shape, point.uv);
+            point.n = flat_shape.n;
         }
         case SPHERE_LIGHT: {
-            let ball = numbers_at(at + 4);
-            let center = ball.xyz;
-            let radius = ball.w;
             let outward = outward_by_area(at, u);
-            let error = POINT_ERROR * (abs(center) + vec3f(radius));
-            let p = Point3Error(center + outward * radius, error);
-            let n = outward * number(at + 11);
-            return ShapeSample(p, n, vec2f(), surface_density(at, n, vec2f()));
+            point.p = point_of_ball(numbers_at(at + 4), outward);
+            point.n = outward * number(at + 11);
         }
-        case PATCH_LIGHT: { return patch_by_area(at, u); }
-        default: { return revolved_by_area(at, u); }
+        case PATCH_LIGHT: { point = patch_by_area(at, u); }
+        default: { point = revolved_by_area(at, u); }
     }
+    point.pdf = surface_density(at, point.n, point.uv);
+    return point;
 }
 
 // The normal of a patch, as long as its area element.
@@ -138,6 +132,7 @@ fn patch_density(at: u32, uv: vec2f) -> f32 {
     return bilinear_pdf(uv, numbers_at(at + 20));
 }
 
+// A point of a patch, without its density.
 fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
     var uv: vec2f;
     if (HAS_EMISSION_IMAGES && word(at + 25) != 0) {
@@ -149,7 +144,7 @@ fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
     let sides = vector(at + 8) * uv.x + vector(at + 12) * uv.y + vector(at + 16) * (uv.x * uv.y);
     let p = Point3Error(corner + sides, POINT_ERROR * (abs(corner) + abs(sides)));
     let n = Vec3_normalize(patch_normal(at, uv)) * number(at + 24);
-    return ShapeSample(p, n, uv, surface_density(at, n, uv));
+    return ShapeSample(p, n, uv, 0);
 }
 
 // The density per area of a point of a surface with the normal `n`, sampled by area.
@@ -173,7 +168,7 @@ fn surface_density(at: u32, n: vec3f, uv: vec2f) -> f32 {
     }
 }
 
-// A point of a disk, a cylinder, or a part of a sphere.
+// A point of a disk, a cylinder, or a part of a sphere, without its density.
 fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
     let out = kept_placement(at + 4);
     let m = out.linear;
@@ -207,8 +202,7 @@ fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
     let there = times_point(out, p);
     let size = times(absolute(m), abs(p)) + abs(out.translation);
     let normal = Vec3_normalize(transposed(inverse(m), n)) * number(at + 20);
-    let density = surface_density(at, normal, vec2f());
-    return ShapeSample(Point3Error(there, POINT_ERROR * size), normal, vec2f(), density);
+    return ShapeSample(Point3Error(there, POINT_ERROR * size), normal, vec2f(), 0);
 }
 
 // The density per solid angle with which a light's surface is sampled where a ray hits it.
@@ -235,13 +229,12 @@ fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv:
         case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
             return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
         }
-        case SPHERE_LIGHT: {
+        default: {
             let cone = cone_of(at, reference);
             if (cone.sine > 0) {
                 return factor / (6.2831855 * cone.one_minus_cos);
             }
         }
-        default: {}
     }
     let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);
     return by_area * surface_density(at, normal, uv) * factor;

@@ -3,16 +3,19 @@
 //! Nothing here panics for what a machine or a driver does: faults that drivers report at any time
 //! are kept, and the next call returns them.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
+use wgpu::naga::front::wgsl;
 use wgpu::util::DeviceExt;
 use wgpu::{
     BindingResource, BufferUsages, DeviceType, ExperimentalFeatures, Features, InstanceFlags, Limits,
 };
 
 use crate::bvh::MOST_FOR_RAY_QUERIES;
+use crate::pruning::{bindings, prune};
 
 /// What buffers are used for.
 const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
@@ -70,6 +73,8 @@ pub struct Device {
 #[derive(Debug)]
 pub struct Kernel {
     pub(crate) pipeline: wgpu::ComputePipeline,
+    /// The bindings that it uses.
+    bindings: Vec<u32>,
 }
 
 /// Memory of the GPU.
@@ -276,8 +281,8 @@ impl Device {
 
     /// Compiles the function `main` of a shader.
     pub fn kernel(&self, name: &str, source: &str) -> Result<Kernel, GpuError> {
-        let module = self.module(name, source);
-        self.checked(self.function(&module, "main"))
+        let mut kernels = self.kernels(name, source, &["main"])?;
+        Ok(kernels.remove(0))
     }
 
     /// Compiles functions of a shader, as many at once as there are threads.
@@ -287,29 +292,30 @@ impl Device {
         source: &str,
         functions: &[S],
     ) -> Result<Vec<Kernel>, GpuError> {
-        let module = self.module(name, source);
-        let kernels = functions.par_iter().map(|function| self.function(&module, function.as_ref()));
+        let parsed = wgsl::parse_str(source);
+        let mut module = parsed.map_err(|error| GpuError::Invalid(error.emit_to_string(source)))?;
+        prune(&mut module);
+        let bindings: Vec<Vec<u32>> =
+            functions.iter().map(|function| bindings(&module, function.as_ref())).collect();
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
+        let module =
+            self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
+        let kernels = functions.par_iter().zip(bindings).map(|(function, bindings)| {
+            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(function.as_ref()),
+                layout: None,
+                module: &module,
+                entry_point: Some(function.as_ref()),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            Kernel { pipeline, bindings }
+        });
         self.checked(kernels.collect())
     }
 
-    fn module(&self, name: &str, source: &str) -> wgpu::ShaderModule {
-        let source = wgpu::ShaderSource::Wgsl(source.into());
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source })
-    }
-
-    fn function(&self, module: &wgpu::ShaderModule, name: &str) -> Kernel {
-        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
-            layout: None,
-            module,
-            entry_point: Some(name),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Kernel { pipeline }
-    }
-
-    /// Starts a kernel in this many workgroups, after all that was started before.
+    /// Starts a kernel in this many workgroups, after all that was started before. It gets those of
+    /// the buffers that it uses; their bindings are their places.
     pub fn run<B: Binding + ?Sized>(
         &self,
         kernel: &Kernel,
@@ -320,7 +326,7 @@ impl Device {
         self.run_tasks([&Task { kernel, bindings, workgroups: Workgroups::Of(workgroups) }])
     }
 
-    /// A kernel on buffers of these bindings: it has those alone that it uses.
+    /// A kernel on those of these buffers that it uses, given by their bindings.
     pub(crate) fn task<'a>(
         &self,
         kernel: &'a Kernel,
@@ -360,8 +366,9 @@ impl Device {
         kernel: &Kernel,
         buffers: impl Iterator<Item = (u32, &'a B)>,
     ) -> wgpu::BindGroup {
-        let entries =
-            buffers.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.resource() });
+        let entries = buffers
+            .filter(|(binding, _)| kernel.bindings.contains(binding))
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.resource() });
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &kernel.pipeline.get_bind_group_layout(0),

@@ -16,6 +16,7 @@ mod commands;
 mod device;
 mod dynamic;
 mod flatten;
+mod pruning;
 mod raster;
 mod realtime;
 mod renderer;

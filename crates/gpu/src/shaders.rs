@@ -145,7 +145,9 @@ pub struct Parts {
     pub measured: bool,
     /// Bodies under whose surface light is scattered.
     pub subsurface: bool,
-    /// Samplers other than `independent` and `zsobol`.
+    /// Sampler `zsobol`.
+    pub zsobol: bool,
+    /// Samplers other than that and `independent`, which all kernels have.
     pub rare_samplers: bool,
     /// Participating media, or interfaces, which paths pass.
     pub media: bool,
@@ -326,6 +328,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         hair,
         measured,
         subsurface,
+        zsobol,
         rare_samplers,
         media,
         force_diffuse,
@@ -338,7 +341,8 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\
         const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\
         const HAS_MEASURED = {measured};\nconst HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
-        const HAS_SUBSURFACE = {subsurface};\nconst HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_SUBSURFACE = {subsurface};\nconst HAS_ZSOBOL = {zsobol};\n\
+        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

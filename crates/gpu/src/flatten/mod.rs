@@ -253,7 +253,8 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let radius = scene.sphere().radius;
     let passes = algorithm.passes(sampler);
-    let flat = Flat { bvh, head, tables: slab.into_words(), texels: texels.words, parts, radius, kinds, passes };
+    let flat =
+        Flat { bvh, head, tables: slab.into_words(), texels: texels.words, parts, radius, kinds, passes };
     if refusals.is_empty() { Ok(flat) } else { Err(refusals) }
 }
 

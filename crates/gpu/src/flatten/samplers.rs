@@ -27,7 +27,9 @@ const PMJ02BN: u32 = 6;
 impl Flattener<'_> {
     /// A sampler; its offset.
     pub fn sampler(&mut self, sampler: &Sampler) -> u32 {
-        self.parts.rare_samplers |= !matches!(sampler, Sampler::Independent(_) | Sampler::ZSobol(_));
+        let is_zsobol = matches!(sampler, Sampler::ZSobol(_));
+        self.parts.zsobol |= is_zsobol;
+        self.parts.rare_samplers |= !is_zsobol && !matches!(sampler, Sampler::Independent(_));
         match sampler {
             Sampler::Independent(sampler) => self.slab.add([INDEPENDENT, sampler.key()]),
             Sampler::ZSobol(sampler) => {

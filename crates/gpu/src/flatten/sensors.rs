@@ -12,8 +12,8 @@ impl Flattener<'_> {
     /// The sensor of a film; its offset.
     pub fn sensor(&mut self, film: &Film) -> u32 {
         let FilmSettings { sensor, max_component_value, color_space, .. } = film.settings();
-        let curves = [0, 1, 2]
-            .map(|channel| DenselySampled::from_fn(|lambda| sensitivity(&sensor, channel, lambda)));
+        let curves =
+            [0, 1, 2].map(|channel| DenselySampled::from_fn(|lambda| sensitivity(&sensor, channel, lambda)));
         let matrix = color_space.rgb_from_xyz() * sensor.xyz_from_sensor_rgb();
         let mut rows = padded(matrix.0.map(|row| row.map(|x| x as f32)));
         rows[3] = max_component_value;

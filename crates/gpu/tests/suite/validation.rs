@@ -58,6 +58,7 @@ fn parts(bits: u32) -> Parts {
         hair,
         measured,
         subsurface: false,
+        zsobol: false,
         rare_samplers,
         media: false,
         force_diffuse: false,
@@ -113,6 +114,9 @@ fn kernels_are_valid() {
         let lights = Parts { placed_lights: true, light_holes: true, ..parts };
         for algorithm in [&path, &Algorithm::Bdpt(Default::default())] {
             add(&"placed lights", shaders::pixels(algorithm, lights));
+        }
+        for algorithm in [&path, &Algorithm::Bdpt(Default::default())] {
+            add(&"zsobol", shaders::pixels(algorithm, Parts { zsobol: true, ..parts }));
         }
         add(&"lenses", shaders::pixels(&path, Parts { lenses: true, ..parts }));
         let bodies = Parts { subsurface: true, ..parts };
