@@ -107,6 +107,15 @@ fn image_direction_density(at: u32, w: vec3f) -> f32 {
     return select(0, density * factor, on_slide.z == 1);
 }
 
+// The density of a direction from a light at a point.
+fn point_direction_density(at: u32, w: vec3f) -> f32 {
+    switch (word(at)) {
+        case POINT_LIGHT: { return UNIFORM_DIRECTION; }
+        case SPOT_LIGHT: { return spot_density(at, dot(w, vector(at + 8))); }
+        default: { return image_direction_density(at, w); }
+    }
+}
+
 // The density of a direction from a surface.
 fn surface_direction_density(at: u32, n: vec3f, w: vec3f) -> f32 {
     let cosine = dot(n, w);
@@ -130,58 +139,48 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     var share = vec4f(1);
     var pdf = 1.0;
     var w: vec3f;
-    switch (word(at)) {
-        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
-            e.origin.p = vector(at + 4);
-            switch (word(at)) {
-                case POINT_LIGHT: {
-                    w = sample_uniform_sphere(u_direction);
-                    pdf = UNIFORM_DIRECTION;
-                }
-                case SPOT_LIGHT: {
-                    let axis = vector(at + 8);
-                    w = Frame_from_local(Frame_from_z(axis), spot_direction(at, u_direction));
-                    pdf = spot_density(at, dot(w, axis));
-                }
-                default: {
-                    w = image_direction(at, u_direction);
-                    pdf = image_direction_density(at, w);
-                }
+    let kind = word(at);
+    if (is_far(kind)) {
+        let seen = sample_far_light(at, vec3f(), u_direction, lambda, false);
+        share = seen.l;
+        let sphere = sphere_of_scene();
+        let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);
+        let o = sphere.xyz + Frame_from_local(Frame_from_z(seen.wi), disk) * sphere.w;
+        e.ray = Ray(o, -seen.wi, 0);
+        e.origin.is_distant = true;
+        e.valid = e.valid && seen.valid;
+        pdf = seen.pdf / (3.1415927 * sphere.w * sphere.w);
+    } else if (HAS_POINT_LIGHTS && is_at_point(kind)) {
+        e.origin.p = vector(at + 4);
+        switch (kind) {
+            case POINT_LIGHT: { w = sample_uniform_sphere(u_direction); }
+            case SPOT_LIGHT: {
+                w = Frame_from_local(Frame_from_z(vector(at + 8)), spot_direction(at, u_direction));
             }
-            share = point_share(at, w, lambda);
-            e.ray = Ray(e.origin.p, w, 0);
+            default: { w = image_direction(at, u_direction); }
         }
-        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT: {
-            let seen = sample_far_light(at, vec3f(), u_direction, lambda, false);
-            share = seen.l;
-            let sphere = sphere_of_scene();
-            let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);
-            let o = sphere.xyz + Frame_from_local(Frame_from_z(seen.wi), disk) * sphere.w;
-            e.ray = Ray(o, -seen.wi, 0);
-            e.origin.is_distant = true;
-            e.valid = e.valid && seen.valid;
-            pdf = seen.pdf / (3.1415927 * sphere.w * sphere.w);
-        }
-        default: {
-            let point = point_on_light(at, u_position);
-            e.valid = e.valid && !is_cut_out_of_light(at, point.p.p, point.n, point.uv);
-            var u_side = u_direction;
-            var side = point.n;
-            if (is_two_sided(at)) {
-                u_side.x *= 2;
-                if (u_side.x >= 1) {
-                    u_side.x -= 1;
-                    side = -side;
-                }
+        pdf = point_direction_density(at, w);
+        share = point_share(at, w, lambda);
+        e.ray = Ray(e.origin.p, w, 0);
+    } else if (HAS_SURFACE_LIGHTS) {
+        let point = point_on_light(at, u_position);
+        e.valid = e.valid && !is_cut_out_of_light(at, point.p.p, point.n, point.uv);
+        var u_side = u_direction;
+        var side = point.n;
+        if (is_two_sided(at)) {
+            u_side.x *= 2;
+            if (u_side.x >= 1) {
+                u_side.x -= 1;
+                side = -side;
             }
-            w = Frame_from_local(Frame_from_z(side), sample_cosine_hemisphere(u_side));
-            e.origin.p = point.p.p;
-            e.origin.n = point.n;
-            e.origin.uv = point.uv;
-            e.ray = Ray_spawn(point.p, point.n, w, 0);
-            share = image_share_at(at, point.p.p, point.uv, lambda) * abs(dot(point.n, w));
-            pdf = point.pdf * surface_direction_density(at, point.n, w);
         }
+        w = Frame_from_local(Frame_from_z(side), sample_cosine_hemisphere(u_side));
+        e.origin.p = point.p.p;
+        e.origin.n = point.n;
+        e.origin.uv = point.uv;
+        e.ray = Ray_spawn(point.p, point.n, w, 0);
+        share = image_share_at(at, point.p.p, point.uv, lambda) * abs(dot(point.n, w));
+        pdf = point.pdf * surface_direction_density(at, point.n, w);
     }
     let l = emission(at, lambda) * share;
     e.valid = e.valid && pdf > 0 && !is_black(l);
@@ -189,19 +188,26 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     return e;
 }
 
+// The density of a direction to an infinitely distant light; of one direction, 1.
+fn far_density(at: u32, wi: vec3f) -> f32 {
+    if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
+        return sky_density(at, sky_position(at, wi), false);
+    }
+    return select(UNIFORM_DIRECTION, 1, word(at) == DISTANT_LIGHT);
+}
+
 // The density per solid angle with which a surface chooses a light and a point of it, or a
 // direction, which is `wi`.
 fn direct_pdf(point: LightPoint, context: ShapeSampleContext, wi: vec3f) -> f32 {
     let at = light_record(point.light);
     var pdf = 1.0;
-    switch (word(at)) {
-        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
-            pdf = Vec3_length_squared(point.p - context.p.p);
-        }
-        case DISTANT_LIGHT: {}
-        case UNIFORM_LIGHT: { pdf = UNIFORM_DIRECTION; }
-        case IMAGE_LIGHT: { pdf = sky_density(at, sky_position(at, wi), false); }
-        default: { pdf = pdf_of_point(point.light, context, point.p, point.n, point.uv); }
+    let kind = word(at);
+    if (is_far(kind)) {
+        pdf = far_density(at, wi);
+    } else if (HAS_POINT_LIGHTS && is_at_point(kind)) {
+        pdf = Vec3_length_squared(point.p - context.p.p);
+    } else if (HAS_SURFACE_LIGHTS) {
+        pdf = pdf_of_point(point.light, context, point.p, point.n, point.uv);
     }
     return light_pmf(context, point.light) * pdf;
 }
@@ -211,17 +217,14 @@ fn light_end(point: LightPoint, from_: vec3f, wi: vec3f, direct: f32) -> LightEn
     let at = light_record(point.light);
     var pdf = 1.0;
     var cosine = 1.0;
-    switch (word(at)) {
-        case POINT_LIGHT: { pdf = UNIFORM_DIRECTION; }
-        case SPOT_LIGHT: { pdf = spot_density(at, dot(-wi, vector(at + 8))); }
-        case GONIOMETRIC_LIGHT, PROJECTION_LIGHT: { pdf = image_direction_density(at, -wi); }
-        case DISTANT_LIGHT: { pdf = disk_density(from_, wi); }
-        case UNIFORM_LIGHT: { pdf = disk_density(from_, wi) * UNIFORM_DIRECTION; }
-        case IMAGE_LIGHT: { pdf = disk_density(from_, wi) * sky_density(at, sky_position(at, wi), false); }
-        default: {
-            pdf = density_on_light(at, point.n, point.uv) * surface_direction_density(at, point.n, -wi);
-            cosine = abs(dot(point.n, wi));
-        }
+    let kind = word(at);
+    if (is_far(kind)) {
+        pdf = disk_density(from_, wi) * far_density(at, wi);
+    } else if (HAS_POINT_LIGHTS && is_at_point(kind)) {
+        pdf = point_direction_density(at, -wi);
+    } else if (HAS_SURFACE_LIGHTS) {
+        pdf = density_on_light(at, point.n, point.uv) * surface_direction_density(at, point.n, -wi);
+        cosine = abs(dot(point.n, wi));
     }
     let pmf = number(word(world.light_paths + 1) + 4 * point.light + 1);
     return LightEnd(direct, pmf * pdf, cosine, is_delta(at));

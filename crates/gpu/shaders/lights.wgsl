@@ -17,6 +17,16 @@ const PORTAL_LIGHT = 13u;
 const PLACED_LIGHT = 14u;
 const SPHERE_PART_LIGHT = 15u;
 
+// Whether a light is at a point: these have kinds of their own.
+fn is_at_point(kind: u32) -> bool {
+    return kind == POINT_LIGHT || kind == SPOT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
+}
+
+// Whether a light is infinitely far away.
+fn is_far(kind: u32) -> bool {
+    return kind == DISTANT_LIGHT || kind == UNIFORM_LIGHT || kind == IMAGE_LIGHT || kind == PORTAL_LIGHT;
+}
+
 // Incident light, before its visibility is tested.
 struct LightSample {
     l: vec4f,
@@ -41,10 +51,8 @@ fn light_record(light: u32) -> u32 {
 
 fn is_delta(at: u32) -> bool {
     let head = words_at(at);
-    let has_no_surface =
-        head.x <= DISTANT_LIGHT || head.x == GONIOMETRIC_LIGHT || head.x == PROJECTION_LIGHT;
     // No ray hits a surface that is invisible.
-    return has_no_surface || (head.w & 2) != 0;
+    return is_at_point(head.x) || head.x == DISTANT_LIGHT || (head.w & 2) != 0;
 }
 
 // The spectrum of a light times its scale.
@@ -134,15 +142,14 @@ fn sample_light(
     allow_incomplete: bool,
 ) -> LightSample {
     let at = light_record(light);
+    let kind = word(at);
     var sample: LightSample;
-    switch (word(at)) {
-        case POINT_LIGHT, SPOT_LIGHT, GONIOMETRIC_LIGHT, PROJECTION_LIGHT: {
-            sample = sample_point_light(at, context, lambda);
-        }
-        case DISTANT_LIGHT, UNIFORM_LIGHT, IMAGE_LIGHT, PORTAL_LIGHT: {
-            sample = sample_far_light(at, context.p.p, u, lambda, allow_incomplete);
-        }
-        default: { sample = sample_surface(at, context, u, lambda); }
+    if (is_far(kind)) {
+        sample = sample_far_light(at, context.p.p, u, lambda, allow_incomplete);
+    } else if (HAS_POINT_LIGHTS && is_at_point(kind)) {
+        sample = sample_point_light(at, context, lambda);
+    } else if (HAS_SURFACE_LIGHTS) {
+        sample = sample_surface(at, context, u, lambda);
     }
     sample.l *= emission(at, lambda);
     sample.valid = sample.valid && !is_black(sample.l);
@@ -228,7 +235,11 @@ fn sample_far_light(
             sample.pdf = 1;
             sample.valid = true;
         }
-        case IMAGE_LIGHT: { sample_sky(at, u, lambda, allow_incomplete, &sample); }
+        case IMAGE_LIGHT: {
+            if (HAS_SKY_IMAGES) {
+                sample_sky(at, u, lambda, allow_incomplete, &sample);
+            }
+        }
         case PORTAL_LIGHT: { sample_portal(at, p, u, lambda, &sample); }
         default: {
             sample.wi = sample_uniform_sphere(u);
@@ -249,7 +260,7 @@ struct Sky {
 fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     let at = light_record(light);
     var seen = Sky(emission(at, lambda), 0);
-    if (word(at) == IMAGE_LIGHT) {
+    if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
         let st = sky_position(at, d);
         seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, true));
     }

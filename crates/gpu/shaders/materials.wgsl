@@ -94,7 +94,7 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     loop {
         head = words_at(at);
         let is_mix = head.x == MIX;
-        let is_raised = head.z != 0 && height < 3;
+        let is_raised = HAS_BUMPS && head.z != 0 && height < 3;
         if (!is_mix && !is_raised && value == head.w) {
             break;
         }
@@ -117,17 +117,18 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     }
     let given = words_at(at + 4);
     let more = words_at(at + 8);
-    if (head.y != 0) {
+    if (HAS_BUMPS && head.y != 0) {
         map_normal(s, head.y);
-    } else if (height == 3) {
+    } else if (HAS_BUMPS && height == 3) {
         raise(s, context, heights);
     }
     var bsdf: Bsdf;
     bsdf.kind = head.x;
     bsdf.frame = Frame_from_z_and_x((*s).ns, (*s).ss);
     bsdf.eta = 1;
-    let is_coated = bsdf.kind == COATED_DIFFUSE || bsdf.kind == COATED_CONDUCTOR;
-    if (is_coated || bsdf.kind == DIELECTRIC || bsdf.kind == THIN_DIELECTRIC) {
+    let is_coated = HAS_COATS && (bsdf.kind == COATED_DIFFUSE || bsdf.kind == COATED_CONDUCTOR);
+    let is_glass = HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == THIN_DIELECTRIC);
+    if (is_coated || is_glass) {
         let eta = spectrum_at(given.y, (*lambda).lambda.x);
         // A spectrum is zero outside of its table, where the index is unknown.
         bsdf.eta = select(eta, 1, eta == 0);
@@ -144,22 +145,24 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
             bsdf.a = clamp(values[0] * scale, vec4f(), vec4f(1));
             bsdf.b = clamp(values[1] * scale, vec4f(), vec4f(1));
         }
-        case CONDUCTOR, COATED_CONDUCTOR: {
-            bsdf.facets = facets_of(values[first].x, values[first + 1].x, given.x);
-            bsdf.b = values[first + 2];
-            bsdf.a = values[first + 3];
-            if (given.w == 1) {
-                let r = clamp(bsdf.b, vec4f(), vec4f(0.9999));
-                bsdf.a = vec4f(1);
-                bsdf.b = 2 * sqrt(r) / sqrt(1 - r);
-            }
-            // Seen from within the coat, whose index is that of the BSDF.
-            bsdf.a /= bsdf.eta;
-            bsdf.b /= bsdf.eta;
-        }
-        case DIELECTRIC: { bsdf.facets = facets_of(values[0].x, values[1].x, given.x); }
         case PRINCIPLED: { bsdf.surface = openpbr_at(given.x, values, context.uv, lambda); }
         default: {}
+    }
+    if (HAS_FACETS && (bsdf.kind == CONDUCTOR || bsdf.kind == COATED_CONDUCTOR)) {
+        bsdf.facets = facets_of(values[first].x, values[first + 1].x, given.x);
+        bsdf.b = values[first + 2];
+        bsdf.a = values[first + 3];
+        if (given.w == 1) {
+            let r = clamp(bsdf.b, vec4f(), vec4f(0.9999));
+            bsdf.a = vec4f(1);
+            bsdf.b = 2 * sqrt(r) / sqrt(1 - r);
+        }
+        // Seen from within the coat, whose index is that of the BSDF.
+        bsdf.a /= bsdf.eta;
+        bsdf.b /= bsdf.eta;
+    }
+    if (HAS_FACETS && bsdf.kind == DIELECTRIC) {
+        bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
     }
     if (HAS_HAIR && bsdf.kind == HAIR) {
         bsdf.fibre = hair_at(given.xy, values, context.uv.y, *lambda);
@@ -228,7 +231,6 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
     if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
         return Layered_Conductor_flags(coated_conductor(bsdf));
     }
-    let is_smooth = TrowbridgeReitz_effectively_smooth(bsdf.facets);
     switch (bsdf.kind) {
         case HAIR: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
         case MEASURED: { return BxdfFlags_GLOSSY_REFLECTION; }
@@ -240,19 +242,19 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
             return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a))
                 | select(BxdfFlags_DIFFUSE_TRANSMISSION, 0, is_black(bsdf.b));
         }
-        case CONDUCTOR: {
-            return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
-        }
-        case DIELECTRIC, SUBSURFACE: {
-            let is_specular = bsdf.eta == 1 || is_smooth;
-            return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
-                | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
-        }
         case PRINCIPLED: { return OpenPbr_flags(bsdf.surface); }
-        default: {
-            return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
-        }
+        default: {}
     }
+    let is_smooth = HAS_FACETS && TrowbridgeReitz_effectively_smooth(bsdf.facets);
+    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+        return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
+    }
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+        let is_specular = bsdf.eta == 1 || is_smooth;
+        return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
+            | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
+    }
+    return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
 }
 
 fn is_non_specular(flags: u32) -> bool {
@@ -298,22 +300,22 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
         return exit_f(bsdf, wo, wi);
     }
+    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+        return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
+    }
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+        var factor = 1.0;
+        if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+            factor = boundary_factor(bsdf, wo, wi, false);
+        }
+        return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
         case DIFFUSE_TRANSMISSION: {
             return DiffuseTransmission_f(DiffuseTransmission(bsdf.a, bsdf.b), wo, wi, bsdf.mode);
         }
-        case CONDUCTOR: {
-            return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
-        }
         case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
-        case DIELECTRIC, SUBSURFACE: {
-            var factor = 1.0;
-            if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
-                factor = boundary_factor(bsdf, wo, wi, false);
-            }
-            return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
-        }
         default: { return vec4f(); }
     }
 }
@@ -340,17 +342,17 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
         return exit_pdf(wo, wi);
     }
+    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+        return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
+    }
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+        return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
+    }
     switch (bsdf.kind) {
         case DIFFUSE: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
         case DIFFUSE_TRANSMISSION: {
             let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
             return DiffuseTransmission_pdf(bxdf, wo, wi, mode, Directions_All);
-        }
-        case CONDUCTOR: {
-            return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
-        }
-        case DIELECTRIC, SUBSURFACE: {
-            return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
         }
         case PRINCIPLED: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
         default: { return 0; }
@@ -376,23 +378,22 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
             let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
             sample = DiffuseTransmission_sample_f(bxdf, wo, uc, u, mode, directions);
         }
-        case CONDUCTOR: {
-            let bxdf = Conductor(bsdf.facets, bsdf.a, bsdf.b);
-            sample = Conductor_sample_f(bxdf, wo, uc, u, mode, directions);
-        }
-        case DIELECTRIC, SUBSURFACE: {
-            sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
-            if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
-                sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
-            }
-        }
-        case THIN_DIELECTRIC: {
-            sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
-        }
         case PRINCIPLED: {
             sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, directions);
         }
         default: {}
+    }
+    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+        sample = Conductor_sample_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, uc, u, mode, directions);
+    }
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+        sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
+        if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+            sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
+        }
+    }
+    if (HAS_FACETS && bsdf.kind == THIN_DIELECTRIC) {
+        sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
     }
     if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
         sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, directions);

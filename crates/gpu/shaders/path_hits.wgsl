@@ -21,7 +21,7 @@ fn escaped(path: Path, lambda: SampledWavelengths) -> vec4f {
 
 // The weighted emission of a surface back along the ray.
 fn emitted(path: Path, s: Surface, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
-    if (s.light == 0 || is_reserved(path)) {
+    if (!HAS_SURFACE_LIGHTS || s.light == 0 || is_reserved(path)) {
         return vec4f();
     }
     let light = s.light - 1;

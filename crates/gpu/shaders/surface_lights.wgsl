@@ -1,5 +1,10 @@
 // Lights with surfaces: points of them, and their densities.
 
+// Whether the surface of a light is a triangle or a rectangle.
+fn is_flat(at: u32) -> bool {
+    return !HAS_ROUND_LIGHTS || word(at) == TRIANGLE_LIGHT || word(at) == RECTANGLE_LIGHT;
+}
+
 fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: SampledWavelengths) -> LightSample {
     let record = surface_record(at);
     var inward: Placement;
@@ -9,18 +14,15 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
         reference = context_inside(inward, context);
     }
     var point: ShapeSample;
-    switch (word(record)) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            point = FlatShape_sample_from(flat_light(record), reference, u).v0;
-        }
-        default: {
-            let cone = cone_of(record, reference);
-            if (cone.sine > 0) {
-                point = sample_cone(record, cone, u);
-            } else {
-                point = point_by_area(record, u);
-                point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
-            }
+    if (is_flat(record)) {
+        point = FlatShape_sample_from(flat_light(record), reference, u).v0;
+    } else {
+        let cone = cone_of(record, reference);
+        if (cone.sine > 0) {
+            point = sample_cone(record, cone, u);
+        } else {
+            point = point_by_area(record, u);
+            point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
         }
     }
     if (is_placed(at)) {
@@ -95,23 +97,22 @@ fn point_of_ball(ball: vec4f, outward: vec3f) -> Point3Error {
 // A point of the surface of a light, with its density per area.
 fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
     var point: ShapeSample;
-    switch (word(at)) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            point.uv = u;
-            if (flat_shape.is_triangle) {
-                point.uv = sample_uniform_triangle(u).yz;
-            }
-            point.p = FlatShape_point(flat_shape, point.uv);
-            point.n = flat_shape.n;
+    if (is_flat(at)) {
+        let flat_shape = flat_light(at);
+        point.uv = u;
+        if (flat_shape.is_triangle) {
+            point.uv = sample_uniform_triangle(u).yz;
         }
-        case SPHERE_LIGHT: {
-            let outward = outward_by_area(at, u);
-            point.p = point_of_ball(numbers_at(at + 4), outward);
-            point.n = outward * number(at + 11);
-        }
-        case PATCH_LIGHT: { point = patch_by_area(at, u); }
-        default: { point = revolved_by_area(at, u); }
+        point.p = FlatShape_point(flat_shape, point.uv);
+        point.n = flat_shape.n;
+    } else if (word(at) == SPHERE_LIGHT) {
+        let outward = outward_by_area(at, u);
+        point.p = point_of_ball(numbers_at(at + 4), outward);
+        point.n = outward * number(at + 11);
+    } else if (word(at) == PATCH_LIGHT) {
+        point = patch_by_area(at, u);
+    } else {
+        point = revolved_by_area(at, u);
     }
     point.pdf = surface_density(at, point.n, point.uv);
     return point;
@@ -149,12 +150,12 @@ fn patch_by_area(at: u32, u: vec2f) -> ShapeSample {
 
 // The density per area of a point of a surface with the normal `n`, sampled by area.
 fn surface_density(at: u32, n: vec3f, uv: vec2f) -> f32 {
+    if (is_flat(at)) {
+        let flat_shape = flat_light(at);
+        let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
+        return select(1.0, 2.0, flat_shape.is_triangle) / area;
+    }
     switch (word(at)) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            let flat_shape = flat_light(at);
-            let area = length(cross(flat_shape.sides[0], flat_shape.sides[1]));
-            return select(1.0, 2.0, flat_shape.is_triangle) / area;
-        }
         case SPHERE_LIGHT: {
             let radius = number(at + 7);
             return 1 / (4 * 3.1415927 * radius * radius);
@@ -225,16 +226,12 @@ fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv:
         factor = solid_angle_factor(inward, Vec3_normalize(p - context.p.p));
         at = surface_record(at);
     }
-    switch (word(at)) {
-        case TRIANGLE_LIGHT, RECTANGLE_LIGHT: {
-            return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
-        }
-        default: {
-            let cone = cone_of(at, reference);
-            if (cone.sine > 0) {
-                return factor / (6.2831855 * cone.one_minus_cos);
-            }
-        }
+    if (is_flat(at)) {
+        return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
+    }
+    let cone = cone_of(at, reference);
+    if (cone.sine > 0) {
+        return factor / (6.2831855 * cone.one_minus_cos);
     }
     let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);
     return by_area * surface_density(at, normal, uv) * factor;

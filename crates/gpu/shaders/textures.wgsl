@@ -39,7 +39,10 @@ fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4
     if (head.x == TEXTURE_SPECTRUM) {
         return spectrum(head.y, lambda);
     }
-    return program(at + 4, head.y, context, lambda);
+    if (HAS_PROGRAMS) {
+        return program(at + 4, head.y, context, lambda);
+    }
+    return vec4f();
 }
 
 // The result of so many operations: a function of its own, which sets all slots to zero where it

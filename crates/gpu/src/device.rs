@@ -8,14 +8,13 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
-use wgpu::naga::front::wgsl;
 use wgpu::util::DeviceExt;
 use wgpu::{
     BindingResource, BufferUsages, DeviceType, ExperimentalFeatures, Features, InstanceFlags, Limits,
 };
 
 use crate::bvh::MOST_FOR_RAY_QUERIES;
-use crate::pruning::{bindings, prune};
+use crate::pruning::{bindings, parsed};
 
 /// What buffers are used for.
 const USAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC).union(BufferUsages::COPY_DST);
@@ -292,9 +291,7 @@ impl Device {
         source: &str,
         functions: &[S],
     ) -> Result<Vec<Kernel>, GpuError> {
-        let parsed = wgsl::parse_str(source);
-        let mut module = parsed.map_err(|error| GpuError::Invalid(error.emit_to_string(source)))?;
-        prune(&mut module);
+        let module = parsed(source).map_err(GpuError::Invalid)?;
         let bindings: Vec<Vec<u32>> =
             functions.iter().map(|function| bindings(&module, function.as_ref())).collect();
         let source = wgpu::ShaderSource::Naga(Cow::Owned(module));

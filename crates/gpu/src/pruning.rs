@@ -10,13 +10,20 @@
 use std::collections::HashMap;
 
 use wgpu::naga::compact::{KeepUnused, compact};
+use wgpu::naga::front::wgsl;
 use wgpu::naga::{
     Arena, BinaryOperator, Block, Constant, Expression, Function, Handle, Literal, LocalVariable, Module,
     Span, Statement, UnaryOperator,
 };
 
-/// Leaves out of a module what never runs.
-pub fn prune(module: &mut Module) {
+/// The module of a shader, without what never runs. The error says where the shader is wrong.
+pub fn parsed(source: &str) -> Result<Module, String> {
+    let mut module = wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    prune(&mut module);
+    Ok(module)
+}
+
+fn prune(module: &mut Module) {
     let Module { functions, entry_points, constants, global_expressions, .. } = module;
     let all = functions.iter_mut().map(|(_, function)| function);
     for function in all.chain(entry_points.iter_mut().map(|entry| &mut entry.function)) {
@@ -133,7 +140,6 @@ impl Pruning<'_> {
 
 #[cfg(test)]
 mod tests {
-    use wgpu::naga::front::wgsl;
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     use super::*;
@@ -171,8 +177,7 @@ mod tests {
 
     #[test]
     fn branches_that_constants_exclude_are_left_out() {
-        let mut module = wgsl::parse_str(TEXT).expect("a shader");
-        prune(&mut module);
+        let module = parsed(TEXT).expect("a shader");
         let names: Vec<&str> =
             module.functions.iter().filter_map(|(_, function)| function.name.as_deref()).collect();
         assert_eq!(names, ["called_if", "called_last", "early"]);

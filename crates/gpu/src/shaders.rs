@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 
 use crate::Algorithm;
+pub use crate::pruning::parsed;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.
 const BY_HAND: [&str; 2] =
@@ -115,10 +116,22 @@ pub fn principled() -> String {
 /// What kernels have only for scenes that need it, because it is much code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
+    /// Textures that are neither a number nor a spectrum.
+    pub programs: bool,
+    /// Maps of normals and of heights.
+    pub bumps: bool,
     /// Surfaces with an alpha.
     pub holes: bool,
     /// Textures of images.
     pub images: bool,
+    /// Lights at points.
+    pub point_lights: bool,
+    /// Infinite lights with images.
+    pub sky_images: bool,
+    /// Lights with surfaces.
+    pub surface_lights: bool,
+    /// Those whose surfaces are neither triangles nor rectangles.
+    pub round_lights: bool,
     /// Lights with surfaces whose images are their emission, or choose their points.
     pub emission_images: bool,
     /// Lights with surfaces in instances.
@@ -129,6 +142,8 @@ pub struct Parts {
     pub portals: bool,
     /// Textures of noise.
     pub noise: bool,
+    /// Metals and glass.
+    pub facets: bool,
     /// Coated materials.
     pub coats: bool,
     /// Principled surfaces.
@@ -313,13 +328,20 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
     let Parts {
+        programs,
+        bumps,
         holes,
         images,
+        point_lights,
+        sky_images,
+        surface_lights,
+        round_lights,
         emission_images,
         placed_lights,
         light_holes,
         portals,
         noise,
+        facets,
         coats,
         principled,
         curves,
@@ -335,7 +357,10 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         ray_queries,
     } = parts;
     let has = format!(
-        "const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
+        "const HAS_PROGRAMS = {programs};\nconst HAS_BUMPS = {bumps};\nconst HAS_FACETS = {facets};\n\
+        const HAS_POINT_LIGHTS = {point_lights};\nconst HAS_SKY_IMAGES = {sky_images};\n\
+        const HAS_SURFACE_LIGHTS = {surface_lights};\nconst HAS_ROUND_LIGHTS = {round_lights};\n\
+        const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
         const HAS_PLACED_LIGHTS = {placed_lights};\nconst HAS_LIGHT_HOLES = {light_holes};\n\
         const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
         const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\

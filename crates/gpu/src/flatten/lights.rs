@@ -75,10 +75,12 @@ impl Flattener<'_> {
         let span = light.span();
         match light.row() {
             Light::Point(l) => {
+                self.parts.point_lights = true;
                 let motion = self.motion(l.motion.as_deref(), span);
                 self.emitter(POINT, &l.intensity, motion, &padded([l.p.to_array()]))
             }
             Light::Spot(l) => {
+                self.parts.point_lights = true;
                 let motion = self.motion(l.motion.as_deref(), span);
                 let vectors = padded([l.p, l.axis].map(|v| v.to_array()));
                 let numbers = [&vectors[..], &[l.cos_falloff_start, l.cos_falloff_end]];
@@ -103,6 +105,7 @@ impl Flattener<'_> {
                 self.portal(PORTAL_INFINITE, l)
             }
             Light::Goniometric(l) => {
+                self.parts.point_lights = true;
                 let (transform, intensity, distribution) = l.parts();
                 let (motion, distribution) =
                     (self.motion(Some(transform), span), self.distribution(distribution));
@@ -138,6 +141,7 @@ impl Flattener<'_> {
     }
 
     fn projection(&mut self, light: &ProjectionLight, span: Span) -> u32 {
+        self.parts.point_lights = true;
         let (transform, slide, scale, distribution) = light.parts();
         let motion = self.motion(Some(transform), span);
         let EmissionImage { image, color_space, .. } = &slide.image;
@@ -164,6 +168,7 @@ impl Flattener<'_> {
     }
 
     fn image_light(&mut self, light: &ImageInfiniteLight, span: Span) -> u32 {
+        self.parts.sky_images = true;
         let motion = self.motion(Some(&light.render_from_light), span);
         let (width, height) = (light.image.width(), light.image.height());
         let pixels = self.pixels(&light.image, light.color_space);
@@ -189,6 +194,7 @@ impl Flattener<'_> {
         span: Span,
         shared: &mut Option<[u32; 2]>,
     ) -> u32 {
+        self.parts.surface_lights = true;
         let emission = &self.scene.emissions()[area.emission.0 as usize];
         let [spectrum, more] = *shared.get_or_insert_with(|| self.emission(area, emission, span));
         let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
@@ -218,6 +224,7 @@ impl Flattener<'_> {
             let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
             (kind, padded(vectors.map(|v| v.to_array())))
         } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain)) {
+            self.parts.round_lights = true;
             numbers
         } else {
             return self.no_light("area lights of this shape", span);

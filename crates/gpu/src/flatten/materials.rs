@@ -77,6 +77,7 @@ impl Flattener<'_> {
         let (kind, words, textures) = self.material(&entry.material, span);
         let normals = entry.normal_map.as_ref().map_or(0, |map| self.normal_map(map, span));
         let height = entry.bump_map.map_or(0, |map| self.number_texture(map.displacement, span));
+        self.parts.bumps |= entry.normal_map.is_some() || entry.bump_map.is_some();
         let head = [kind, normals, height, textures.len() as u32];
         self.slab.add(head.into_iter().chain(words).chain(textures))
     }
@@ -98,11 +99,13 @@ impl Flattener<'_> {
                 (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures)
             }
             Material::Dielectric(m) => {
+                self.parts.facets = true;
                 let (remap, textures) = self.roughness(&m.roughness, span);
                 let [eta, varies] = self.index(&m.eta);
                 (DIELECTRIC, words([remap, eta, varies]), textures)
             }
             Material::ThinDielectric(m) => {
+                self.parts.facets = true;
                 let [eta, varies] = self.index(&m.eta);
                 (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new())
             }
@@ -176,6 +179,7 @@ impl Flattener<'_> {
 
     /// Of a metal whether α is the square root, whether k is its reflectance, and its textures.
     fn conductor(&mut self, metal: &ConductorMaterial, span: Span) -> (u32, u32, Vec<u32>) {
+        self.parts.facets = true;
         let (remap, mut textures) = self.roughness(&metal.roughness, span);
         let (is_reflectance, spectra) = match metal.index {
             ConductorIndex::Complex { eta, k } => (0, vec![k, eta]),

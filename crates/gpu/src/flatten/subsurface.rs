@@ -14,6 +14,7 @@ impl Flattener<'_> {
     /// The words and the textures of a material.
     pub(super) fn subsurface(&mut self, body: &SubsurfaceMaterial, span: Span) -> ([u32; 7], Vec<u32>) {
         self.parts.subsurface = true;
+        self.parts.facets = true;
         if !self.follows_bodies {
             self.refuse("material `subsurface` by this algorithm or among media", span);
         }

@@ -88,6 +88,7 @@ impl Flattener<'_> {
                 self.slab.add([SPECTRUM, spectrum])
             }
             operations => {
+                self.parts.programs = true;
                 let mut words = vec![PROGRAM, operations.len() as u32, 0, 0];
                 for operation in operations {
                     let [code, argument] = self.code(operation.code, span);

@@ -19,28 +19,50 @@ pub fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
 /// The parts of the kernels of a picture: those that its scene needs, and others, so that many
 /// scenes share few kernels, and parts are tested beside others.
 pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts {
-    let with_textures =
-        |parts| Parts { holes: true, light_holes: true, images: true, noise: true, media: true, ..parts };
-    let with_motion =
-        |parts| Parts { placed_lights: true, motion: true, coats: true, curves: true, hair: true, ..parts };
-    let suits = |with: fn(Parts) -> Parts| with(needed) == with(Parts::default());
+    let common = |parts| Parts {
+        programs: true,
+        bumps: true,
+        point_lights: true,
+        sky_images: true,
+        surface_lights: true,
+        round_lights: true,
+        facets: true,
+        ..parts
+    };
+    let with_textures = |parts| Parts {
+        holes: true,
+        light_holes: true,
+        images: true,
+        noise: true,
+        media: true,
+        ..common(parts)
+    };
+    let with_motion = |parts| Parts {
+        placed_lights: true,
+        motion: true,
+        coats: true,
+        curves: true,
+        hair: true,
+        ..common(parts)
+    };
+    let suits = |with: &dyn Fn(Parts) -> Parts| with(needed) == with(Parts::default());
     match algorithm {
-        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => Parts { media: true, ..needed },
-        Algorithm::AmbientOcclusion(..) => Parts { rare_samplers: true, ..needed },
+        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => Parts { media: true, ..common(needed) },
+        Algorithm::AmbientOcclusion(..) => Parts { rare_samplers: true, ..common(needed) },
         Algorithm::Path(_) | Algorithm::RayCasting => {
-            if suits(with_textures) && schedule == Schedule::Megakernel {
+            if suits(&with_textures) && schedule == Schedule::Megakernel {
                 with_textures(needed)
-            } else if suits(with_motion) {
+            } else if suits(&with_motion) {
                 with_motion(needed)
             } else {
                 needed
             }
         }
         Algorithm::Bdpt(_) | Algorithm::LightTracing(_) | Algorithm::Sppm(..) => {
-            Parts { placed_lights: true, ..needed }
+            Parts { placed_lights: true, ..common(needed) }
         }
         Algorithm::Whitted(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) | Algorithm::Mlt(..) => {
-            needed
+            common(needed)
         }
     }
 }
