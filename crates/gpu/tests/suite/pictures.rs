@@ -336,10 +336,11 @@ fn ambient_occlusion_has_the_picture_of_the_cpu() {
     compare_all(&DRAWN[4..8], |_| Algorithm::AmbientOcclusion(near, RgbColorSpace::srgb()));
 }
 
-/// The scenes as they come: with their sampler and its settings.
+/// The scenes as they come, with their sampler and its settings, and by kernels that have the parts
+/// that they need alone: lights with surfaces, lights at points, or images.
 #[test]
 fn blue_noise_has_the_picture_of_the_cpu() {
-    for name in ["cornell-box", "textures"] {
+    for name in ["cornell-box", "spot-lights", "textures"] {
         let mut case = Case::named(name);
         case.sampler = integrators::sampler(&case.desc);
         assert!(matches!(case.sampler, Sampler::ZSobol(_)), "{name}");
