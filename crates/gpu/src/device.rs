@@ -319,18 +319,17 @@ impl Device {
         buffers: &[&B],
         workgroups: [u32; 3],
     ) -> Result<(), GpuError> {
-        let bindings = self.bindings(kernel, buffers);
-        self.run_tasks([&Task { kernel, bindings, workgroups: Workgroups::Of(workgroups) }])
+        self.run_tasks([&self.task(kernel, buffers, Workgroups::Of(workgroups))])
     }
 
-    /// A kernel on those of these buffers that it uses, given by their bindings.
-    pub(crate) fn task<'a>(
+    /// The same, not yet started.
+    pub(crate) fn task<'a, B: Binding + ?Sized>(
         &self,
         kernel: &'a Kernel,
-        buffers: &[(u32, &dyn Binding)],
+        buffers: &[&B],
         workgroups: Workgroups<'a>,
     ) -> Task<'a> {
-        Task { kernel, bindings: self.bound(kernel, buffers.iter().copied()), workgroups }
+        Task { kernel, bindings: self.bindings(kernel, buffers), workgroups }
     }
 
     /// Starts kernels one after another, after all that was started before.
@@ -353,17 +352,10 @@ impl Device {
         self.checked(())
     }
 
-    /// What a kernel is run on.
+    /// Those of the buffers that a kernel uses.
     pub(crate) fn bindings<B: Binding + ?Sized>(&self, kernel: &Kernel, buffers: &[&B]) -> wgpu::BindGroup {
-        self.bound(kernel, (0..).zip(buffers.iter().copied()))
-    }
-
-    fn bound<'a, B: Binding + ?Sized + 'a>(
-        &self,
-        kernel: &Kernel,
-        buffers: impl Iterator<Item = (u32, &'a B)>,
-    ) -> wgpu::BindGroup {
-        let entries = buffers
+        let entries = (0..)
+            .zip(buffers)
             .filter(|(binding, _)| kernel.bindings.contains(binding))
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.resource() });
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -43,20 +43,18 @@ impl SceneBuffers {
         workgroups: [u32; 2],
     ) -> Result<(), GpuError> {
         let [x, y] = workgroups;
-        self.device().run_tasks([&self.task(&[], kernel, [batch, results], Workgroups::Of([x, y, 1]))])
+        self.device().run_tasks([&self.task(kernel, [batch, results], Workgroups::Of([x, y, 1]))])
     }
 
-    /// The same, not yet started, of a kernel that does not use the buffers of some bindings.
+    /// The same, not yet started.
     pub fn task<'a>(
         &self,
-        unused: &[u32],
         kernel: &'a Kernel,
         [batch, results]: [&Buffer; 2],
         workgroups: Workgroups<'a>,
     ) -> Task<'a> {
         let [head, triangles, items, tables, texels] = self.buffers.each_ref();
         let all: [&dyn Binding; 8] = [head, &self.trees, triangles, items, tables, batch, results, texels];
-        let used = (0..).zip(all).filter(|(binding, _)| !unused.contains(binding));
-        self.device().task(kernel, &used.collect::<Vec<_>>(), workgroups)
+        self.device().task(kernel, &all, workgroups)
     }
 }

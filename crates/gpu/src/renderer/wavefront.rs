@@ -45,12 +45,6 @@ const TURNS: usize = 4;
 const WORKGROUPS: u64 = 16;
 const ALL_WORKGROUPS: u64 = 3 * WORKGROUPS;
 
-/// The bindings that paths need nothing of to begin: trees, triangles, shapes and texels; that of
-/// trees, which no ray of a shaded point is traced through; and those of a scene.
-const WITHOUT_RAYS: [u32; 4] = [1, 2, 3, 7];
-const WITHOUT_TREES: [u32; 1] = [1];
-const WITHOUT_SCENE: [u32; 6] = [0, 1, 2, 3, 4, 7];
-
 /// What the kernels are to do: `Batch` of `shaders/wavefront/queues.wgsl`, which the queues follow.
 #[repr(C)]
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -173,13 +167,13 @@ impl Wavefront {
         let paths = [&self.batch, &self.table];
         let counted = |count| Workgroups::At(&self.workgroups, WORKGROUPS * count);
         let plans = [&self.batch, &self.workgroups];
-        let plan = &scene.task(&WITHOUT_SCENE, plan, plans, Workgroups::Of([1; 3]));
+        let plan = &scene.task(plan, plans, Workgroups::Of([1; 3]));
         let turn = [
-            &scene.task(&WITHOUT_RAYS, begin, paths, counted(0)),
-            &scene.task(&[], extend, paths, counted(1)),
-            &scene.task(&WITHOUT_TREES, shade, paths, counted(1)),
+            &scene.task(begin, paths, counted(0)),
+            &scene.task(extend, paths, counted(1)),
+            &scene.task(shade, paths, counted(1)),
             plan,
-            &scene.task(&[], connect, paths, counted(2)),
+            &scene.task(connect, paths, counted(2)),
         ];
         device.run_tasks([plan])?;
         let mut before = None;
