@@ -2,8 +2,8 @@
 //!
 //! A kernel has parts that its scene does not need ([`Parts`]): they are in branches on constants.
 //! Drivers find that out only after they have put all functions into one, so what a scene does not
-//! need would cost much of the time of compiling its kernels. Here such branches are replaced by the
-//! block that is taken, and functions that nothing calls any more are left out.
+//! need would cost much of the time of compiling its kernels. Here such branches are replaced by
+//! the block that is taken, and functions that nothing calls any more are left out.
 //!
 //! [`Parts`]: crate::shaders::Parts
 

@@ -1,6 +1,6 @@
-//! Distributions over rectangles: columns and rows, two zeros, the range (least and largest x, least and
-//! largest y), the densities and edges of the rows together, and then the densities of each and the
-//! edges of each.
+//! Distributions over rectangles: columns and rows, two zeros, the range (least and largest x,
+//! least and largest y), the densities and edges of the rows together, and then the densities of
+//! each and the edges of each.
 
 use sampling::PiecewiseConstant2d;
 

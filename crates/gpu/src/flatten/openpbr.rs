@@ -1,7 +1,7 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
-//! numbers, and 0; for each colour the place of its texture, or [`WHITE`]; the images of the normals
-//! of the coat and of the base where they differ, or 0; the values of all numbers; and for each
-//! number that has a texture, in the order of the textures, which it is, its range, and 0.
+//! numbers, and 0; for each colour the place of its texture, or [`WHITE`]; the images of the
+//! normals of the coat and of the base where they differ, or 0; the values of all numbers; and for
+//! each number that has a texture, in the order of the textures, which it is, its range, and 0.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
 //! offsets of what is taken, of what is inside, and of means, whose rows are of four or eight
