@@ -99,8 +99,18 @@ fn normal_change(inward: Rows, inner_n: vec3f, inner_dn: vec3f) -> vec3f {
 }
 
 // A mix of three vectors of the attributes.
-fn mixed(row: array<vec4f, 3>, b: vec3f) -> vec3f {
-    return row[0].xyz * b.x + row[1].xyz * b.y + row[2].xyz * b.z;
+fn mixed(v: array<vec3f, 3>, b: vec3f) -> vec3f {
+    return v[0] * b.x + v[1] * b.y + v[2] * b.z;
+}
+
+// Three numbers from any word on.
+fn loose_vector(at: u32) -> vec3f {
+    return vec3f(number(at), number(at + 1), number(at + 2));
+}
+
+// The vectors at the corners of a triangle.
+fn at_corners(at: u32) -> array<vec3f, 3> {
+    return array(loose_vector(at), loose_vector(at + 3), loose_vector(at + 6));
 }
 
 fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
@@ -114,22 +124,21 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     s.p = Point3Error(corner + du * b.y + dv * b.z, error);
     s.n = Vec3_normalize(cross(du, dv)) * select(1.0, -1.0, flips);
     var uv = array(vec2f(), vec2f(1, 0), vec2f(1, 1));
-    var normals: array<vec4f, 3>;
-    var next = attributes + 4;
+    var next = attributes + 1;
     var flags = 0u;
     if (attributes != 0) {
         flags = word(attributes);
-        let has_normals = (flags & 1) != 0;
-        let has_coordinates = (flags & 2) != 0;
-        let rows = select(select(0u, 2u, has_coordinates), 3 + u32(has_coordinates), has_normals);
-        next += 4 * (rows + select(0u, 3u, (flags & 4) != 0)) * hit.primitive;
-        normals = rows_at(next);
-        if (has_coordinates) {
-            let first = select(normals[0].xyz, vec3f(normals[0].w, normals[1].w, normals[2].w), has_normals);
-            let second = vector(next + 4 * (rows - 1));
-            uv = array(vec2f(first.x, second.x), vec2f(first.y, second.y), vec2f(first.z, second.z));
+        let numbers = select(0u, 9u, (flags & 1) != 0) + select(0u, 6u, (flags & 2) != 0)
+            + select(0u, 9u, (flags & 4) != 0);
+        next += numbers * hit.primitive;
+    }
+    let normals = next;
+    next += select(0u, 9u, (flags & 1) != 0);
+    if ((flags & 2) != 0) {
+        for (var i = 0u; i < 3; i++) {
+            uv[i] = vec2f(number(next + 2 * i), number(next + 2 * i + 1));
         }
-        next += 4 * rows;
+        next += 6;
     }
     s.uv = uv[0] * b.x + uv[1] * b.y + uv[2] * b.z;
     set_tangents(&s, du, dv, uv[1] - uv[0], uv[2] - uv[0]);
@@ -137,12 +146,13 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     s.ss = s.dpdu;
     s.ts = s.dpdv;
     if ((flags & 1) != 0) {
-        let ns = Vec3_normalize_masked(mixed(normals, b));
+        let n = at_corners(normals);
+        let ns = Vec3_normalize_masked(mixed(n, b));
         s.ns = select(s.n, ns.v0, ns.v1);
         s.n = face_forward(s.n, s.ns);
         let inverse = 1 / area(uv[1] - uv[0], uv[2] - uv[0]);
-        let nu = normals[1].xyz - normals[0].xyz;
-        let nv = normals[2].xyz - normals[0].xyz;
+        let nu = n[1] - n[0];
+        let nv = n[2] - n[0];
         let dndu = (nu * (uv[2].y - uv[0].y) - nv * (uv[1].y - uv[0].y)) * inverse;
         let dndv = (nv * (uv[1].x - uv[0].x) - nu * (uv[2].x - uv[0].x)) * inverse;
         let is_regular = abs(inverse) < infinity();
@@ -150,7 +160,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
         s.dndv = select(vec3f(), dndv, is_regular);
     }
     if ((flags & 4) != 0) {
-        let ss = mixed(rows_at(next), b);
+        let ss = mixed(at_corners(next), b);
         s.ss = select(s.dpdu, ss, dot(ss, ss) > 0);
     }
     if ((flags & 5) != 0) {

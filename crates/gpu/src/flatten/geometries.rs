@@ -2,10 +2,9 @@
 //! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, the texture
 //! of its alpha or 0, and zeros.
 //!
-//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), three zeros, and then
-//! four words for each of these of each triangle: the three normals, each with a first coordinate
-//! as the fourth word; without normals, all first coordinates; all second ones; the three tangents.
-//! Those of ribbons are the normals at both ends of each primitive.
+//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
+//! triangle what it has at its three corners, in this order, without gaps to save memory. Those of
+//! ribbons are the normals at both ends of each primitive, four words each.
 
 use geometry::{CurveKind, Curves, Geometry, GeometryId, PlainShape, Triangle, TriangleMesh};
 
@@ -65,19 +64,15 @@ impl Flattener<'_> {
         if flags == 0 {
             return 0;
         }
-        let at = self.slab.add([flags, 0, 0, 0]);
+        let at = self.slab.add([flags]);
         for triangle in (0..mesh.len()).map(|i| mesh.triangle(i)) {
-            let first = triangle.uv.map(|uv| uv.x);
-            if let Some(normals) = triangle.n {
-                let rows = normals.into_iter().zip(first);
-                self.slab.extend_numbers(rows.flat_map(|(n, u)| n.extend(u).to_array()));
-            }
-            if has_coordinates {
-                let second = triangle.uv.map(|uv| uv.y);
-                let apart = triangle.n.is_none().then_some(first);
-                self.slab.extend_numbers(padded(apart.into_iter().chain([second])));
-            }
-            self.slab.extend_numbers(padded(triangle.s.into_iter().flatten().map(|s| s.to_array())));
+            let vectors = |vectors: Option<[_; 3]>| {
+                vectors.into_iter().flatten().flat_map(|v: math::Vec3| v.to_array())
+            };
+            let coordinates =
+                triangle.uv.into_iter().filter(|_| has_coordinates).flat_map(|uv| uv.to_array());
+            let numbers = vectors(triangle.n).chain(coordinates).chain(vectors(triangle.s));
+            self.slab.extend_numbers(numbers);
         }
         at
     }
