@@ -13,8 +13,9 @@ const INTERFACE = 9u;
 const HAIR = 10u;
 const MEASURED = 11u;
 const SUBSURFACE = 12u;
-// Where paths leave bodies, which have the material above.
-const EXIT = 13u;
+// Of the material above its boundary alone, where paths enter it; and where they leave it.
+const BOUNDARY = 13u;
+const EXIT = 14u;
 
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;
@@ -249,10 +250,14 @@ fn bsdf_flags(bsdf: Bsdf) -> u32 {
     if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
         return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
         let is_specular = bsdf.eta == 1 || is_smooth;
         return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
             | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
+    }
+    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        let mirrors = select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
+        return BxdfFlags_DIFFUSE_REFLECTION | select(mirrors, 0, bsdf.eta == 1);
     }
     return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
 }
@@ -300,12 +305,15 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
         return exit_f(bsdf, wo, wi);
     }
+    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        return body_f(bsdf, wo, wi);
+    }
     if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
         return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
         var factor = 1.0;
-        if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        if (HAS_SUBSURFACE && bsdf.kind == BOUNDARY) {
             factor = boundary_factor(bsdf, wo, wi, false);
         }
         return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
@@ -342,10 +350,13 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
         return exit_pdf(wo, wi);
     }
+    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        return body_pdf(bsdf, wo, wi);
+    }
     if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
         return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
         return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
     }
     switch (bsdf.kind) {
@@ -386,9 +397,9 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
     if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
         sample = Conductor_sample_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, uc, u, mode, directions);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == SUBSURFACE)) {
+    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
         sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
-        if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+        if (HAS_SUBSURFACE && bsdf.kind == BOUNDARY) {
             sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
         }
     }
@@ -409,6 +420,9 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
     }
     if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
         sample = exit_sample(bsdf, wo, u);
+    }
+    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE && directions != Directions_Transmission) {
+        sample = body_sample(bsdf, wo, uc, u);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);

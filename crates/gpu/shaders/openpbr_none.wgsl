@@ -15,6 +15,26 @@ fn openpbr_at(
     return OpenPbr();
 }
 
+fn openpbr_extinction(surface: OpenPbr) -> vec4f {
+    return vec4f();
+}
+
+fn openpbr_albedo(surface: OpenPbr) -> vec4f {
+    return vec4f();
+}
+
+fn openpbr_asymmetry(surface: OpenPbr) -> f32 {
+    return 0;
+}
+
+fn boundary_part(surface: OpenPbr) -> OpenPbr {
+    return surface;
+}
+
+fn entering_part(surface: OpenPbr) -> OpenPbr {
+    return surface;
+}
+
 fn OpenPbr_flags(surface: OpenPbr) -> u32 {
     return 0;
 }

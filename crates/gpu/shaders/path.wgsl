@@ -29,6 +29,36 @@ fn is_reserved(path: Path) -> bool {
     return HAS_RESERVOIRS && path.depth == 1 && path.is_found_twice;
 }
 
+// Whether a wavelength is chosen for each way under a surface.
+const CHOOSES_HEROES = true;
+
+// The wavelength chosen by `u` in proportion to the throughput; the first once dispersion has
+// terminated the others.
+fn heroes_under(path: Path, lambda: SampledWavelengths, u: f32) -> Heroes {
+    let beta = path.beta;
+    let sum = beta.x + beta.y + beta.z + beta.w;
+    if (SampledWavelengths_secondary_terminated(lambda) || !(sum > 0 && sum < infinity())) {
+        return Heroes(vec4f(1, 0, 0, 0), 0);
+    }
+    let probabilities = beta / sum;
+    var hero = 0u;
+    var rest = u;
+    while (hero < 3 && rest >= probabilities[hero]) {
+        rest -= probabilities[hero];
+        hero++;
+    }
+    while (hero > 0 && probabilities[hero] == 0) {
+        hero--;
+    }
+    return Heroes(probabilities, hero);
+}
+
+// Multiplies a path by its way under a surface of index of refraction `eta`.
+fn take_way(path: ptr<function, Path>, value: vec4f, density: vec4f, heroes: Heroes, eta: f32) {
+    (*path).beta *= value * (eta * eta) / mean_of(heroes, density);
+    (*path).eta_scale /= eta * eta;
+}
+
 // Leaves a vertex along a direction of its BSDF.
 fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, sample: BsdfSample, pdf: f32) {
     (*path).beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
@@ -115,6 +145,7 @@ fn shade(
             return false;
         }
         (*path).depth++;
+        keep_boundary(&bsdf);
         if (has_setting(REGULARIZES) && (*path).rough_before) {
             regularize(&bsdf);
         }

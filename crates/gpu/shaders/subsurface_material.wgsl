@@ -1,5 +1,6 @@
 // Bodies under the surface of which light is scattered: their boundary, the lobe by which light
-// enters them, and the tables of their diffusion profiles, records of `src/flatten/subsurface.rs`.
+// enters them, what they are where it is not followed there, and the tables of their diffusion
+// profiles, records of `src/flatten/subsurface.rs`.
 
 // The table of a material: the norm of the exit lobe, the numbers of albedos and radii, the offset
 // of the gains of rough boundaries, the number of rows of what walks return, and then albedos,
@@ -12,8 +13,8 @@ fn walks_under(record: u32) -> bool {
     return word(record + 6) == 1;
 }
 
-fn eta_under(record: u32) -> f32 {
-    return number(record + 9);
+fn asymmetry_under(record: u32) -> f32 {
+    return number(record + 10);
 }
 
 // The last of the first `count` − 1 ascending numbers that is at most `x`, or the first.
@@ -173,11 +174,43 @@ fn medium_under(record: u32, facets: TrowbridgeReitz, a: vec4f, b: vec4f) -> arr
 const COSINES = 19u;
 const ROUGHNESSES = 21u;
 
+// Visible normals of a quadrature, each way.
+const STEPS = 8u;
+
+// The same for a direction above a boundary that is not as rough in all directions, by quadrature
+// over the normals that it sees.
+fn brushed_gain(bsdf: Bsdf, wo: vec3f) -> f32 {
+    let facets = bsdf.facets;
+    var left = 0.0;
+    var entered = 0.0;
+    for (var i = 0u; i < STEPS * STEPS; i++) {
+        let u = (vec2f(f32(i % STEPS), f32(i / STEPS)) + 0.5) / f32(STEPS);
+        let wm = TrowbridgeReitz_sample_wm(facets, wo, u);
+        let cosine = dot(wo, wm);
+        let reflected = fr_dielectric(cosine, bsdf.eta);
+        let mirrored = fresnel_reflect(wo, wm);
+        let refracted = fresnel_refract(wo, wm, bsdf.eta);
+        // What leaves of what facets turn is not hidden by others.
+        let seen = TrowbridgeReitz_g1(facets, wo);
+        left += 1;
+        if (mirrored.z > 0) {
+            left -= reflected * TrowbridgeReitz_g(facets, wo, mirrored) / seen;
+        }
+        if (refracted.v2 && refracted.v0.z < 0) {
+            entered += (1 - reflected) * TrowbridgeReitz_g(facets, wo, refracted.v0) / seen;
+        }
+    }
+    return select(1, left / entered, entered > 0);
+}
+
 // By how much more counts what a rough boundary refracts between two directions, of which one is
 // above, so that all light enters a walk which is not reflected.
 fn boundary_gain(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
     if (!walks_under(bsdf.record) || TrowbridgeReitz_effectively_smooth(bsdf.facets)) {
         return 1;
+    }
+    if (bsdf.facets.alpha_x != bsdf.facets.alpha_y) {
+        return brushed_gain(bsdf, select(wi, wo, wo.z > 0));
     }
     let r = roughness_place(bsdf.facets, ROUGHNESSES);
     let x = clamp(sqrt(max(select(wi.z, wo.z, wo.z > 0), 0)), 0, 1) * f32(COSINES - 1);
@@ -215,6 +248,79 @@ fn exit_sample(bsdf: Bsdf, wo: vec3f, u: vec2f) -> BsdfSample {
     let wi = sample_cosine_hemisphere(u);
     let pdf = exit_pdf(wo, wi);
     var sample = BsdfSample_new(exit_f(bsdf, wo, wi), wi, pdf, BxdfFlags_DIFFUSE_REFLECTION);
+    sample.valid = pdf > 0;
+    return sample;
+}
+
+// Leaves of a body the boundary, by samples of which paths enter it.
+fn keep_boundary(bsdf: ptr<function, Bsdf>) {
+    if ((*bsdf).kind == SUBSURFACE) {
+        (*bsdf).kind = BOUNDARY;
+    } else if ((*bsdf).kind == PRINCIPLED) {
+        (*bsdf).surface = boundary_part((*bsdf).surface);
+    }
+}
+
+// The share of the light that entered which leaves again, by the profile.
+fn effective_albedo(bsdf: Bsdf) -> vec4f {
+    let table = table_of(bsdf.record);
+    let count = word(table + 1);
+    let albedos = table + 5;
+    let effective = albedos + count + word(table + 2);
+    var share: vec4f;
+    for (var i = 0; i < 4; i++) {
+        let rows = spline_place(albedos, count, bsdf.b[i]);
+        if (rows.valid) {
+            share[i] = max(spline_sum(rows, effective, 1), 0);
+        }
+    }
+    return share;
+}
+
+// The surface of a body as if light left where it entered: its boundary, and a diffuse base.
+fn body_f(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> vec4f {
+    if (!(wo.z > 0 && wi.z > 0)) {
+        return vec4f();
+    }
+    let diffused = exit_f(bsdf, wo, wi) * effective_albedo(bsdf) * (1 - fr_dielectric(wo.z, bsdf.eta));
+    return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) + diffused;
+}
+
+// The probability to sample the boundary, and not the base.
+fn boundary_probability(bsdf: Bsdf, wo: vec3f) -> f32 {
+    let reflected = select(fr_dielectric(wo.z, bsdf.eta), 0, bsdf.eta == 1);
+    let diffused = (1 - reflected) * SampledSpectrum_average(effective_albedo(bsdf));
+    return select(0, reflected / (reflected + diffused), reflected > 0);
+}
+
+fn body_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
+    if (!(wo.z > 0 && wi.z > 0)) {
+        return 0;
+    }
+    let boundary = Dielectric(bsdf.eta, bsdf.facets);
+    let mirrored = Dielectric_pdf(boundary, wo, wi, bsdf.mode, Directions_Reflection);
+    return mix(cosine_hemisphere_pdf(wi.z), mirrored, boundary_probability(bsdf, wo));
+}
+
+fn body_sample(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f) -> BsdfSample {
+    if (!(wo.z > 0)) {
+        return BsdfSample_invalid();
+    }
+    let p = boundary_probability(bsdf, wo);
+    var wi = sample_cosine_hemisphere(u);
+    var lobe = BxdfFlags_DIFFUSE_REFLECTION;
+    if (uc < p) {
+        let boundary = Dielectric(bsdf.eta, bsdf.facets);
+        var mirrored = Dielectric_sample_f(boundary, wo, uc / p, u, bsdf.mode, Directions_Reflection);
+        if (!mirrored.valid || (mirrored.flags & BxdfFlags_SPECULAR) != 0) {
+            mirrored.pdf *= p;
+            return mirrored;
+        }
+        wi = mirrored.wi;
+        lobe = mirrored.flags;
+    }
+    let pdf = body_pdf(bsdf, wo, wi);
+    var sample = BsdfSample_new(body_f(bsdf, wo, wi), wi, pdf, lobe);
     sample.valid = pdf > 0;
     return sample;
 }

@@ -30,10 +30,15 @@ const REACHED = 0.999;
 struct Under {
     state: u32,
     material: u32,
-    // The record of the material, its extinction, and its albedo.
-    record: u32,
+    // The medium: extinction, albedo, mean cosine, and index of refraction.
     sigma_t: vec4f,
     albedo: vec4f,
+    g: f32,
+    eta: f32,
+    // How it is left: the kind of the BSDF where it was entered, its record, and the surface.
+    kind: u32,
+    record: u32,
+    surface: OpenPbr,
     heroes: Heroes,
     // Of a probe where it enters, the frame there, and the end; of a walk where its flight began.
     p: vec3f,
@@ -82,10 +87,15 @@ fn emerges() -> bool {
 // How a path leaves its body.
 fn exit_lobe(s: Surface) -> Bsdf {
     var bsdf: Bsdf;
-    bsdf.kind = EXIT;
     bsdf.frame = Frame_from_z_and_x(s.ns, s.ss);
-    bsdf.eta = eta_under(under.record);
-    bsdf.record = under.record;
+    bsdf.eta = under.eta;
+    if (under.kind == PRINCIPLED) {
+        bsdf.kind = PRINCIPLED;
+        bsdf.surface = entering_part(under.surface);
+    } else {
+        bsdf.kind = EXIT;
+        bsdf.record = under.record;
+    }
     return bsdf;
 }
 
@@ -140,45 +150,40 @@ fn sampled_radius(u: f32) -> f32 {
     return select(-1, radius, radius < infinity());
 }
 
-// The wavelength chosen by `u` in proportion to a throughput; the first once dispersion has
-// terminated the others.
-fn heroes_by(beta: vec4f, lambda: SampledWavelengths, u: f32) -> Heroes {
-    let sum = beta.x + beta.y + beta.z + beta.w;
-    if (SampledWavelengths_secondary_terminated(lambda) || !(sum > 0 && sum < infinity())) {
-        return Heroes(vec4f(1, 0, 0, 0), 0);
-    }
-    let probabilities = beta / sum;
-    var hero = 0u;
-    var rest = u;
-    while (hero < 3 && rest >= probabilities[hero]) {
-        rest -= probabilities[hero];
-        hero++;
-    }
-    while (hero > 0 && probabilities[hero] == 0) {
-        hero--;
-    }
-    return Heroes(probabilities, hero);
-}
-
 // Whether a path from the camera enters a body by a sample of its boundary.
 fn enters_body(bsdf: Bsdf, s: Surface, sample: BsdfSample) -> bool {
-    return bsdf.kind == SUBSURFACE && dot(s.wo, s.ns) > 0 && (sample.flags & BxdfFlags_TRANSMISSION) != 0;
+    let is_diffuse = (sample.flags & BxdfFlags_DIFFUSE) != 0;
+    let is_body = bsdf.kind == PRINCIPLED && is_diffuse && !is_black(openpbr_extinction(bsdf.surface));
+    let passes = dot(s.wo, s.ns) > 0 && (sample.flags & BxdfFlags_TRANSMISSION) != 0;
+    return passes && (is_body || bsdf.kind == BOUNDARY);
 }
 
-// Leads a path, whose ray has been refracted into a body, under its surface; false if it ends.
+// Leads a path, whose ray has entered a body, under its surface; false if it ends.
 fn go_under(path: ptr<function, Path>, s: Surface, bsdf: Bsdf, lambda: SampledWavelengths) -> bool {
-    let walks = walks_under(bsdf.record);
+    let is_principled = bsdf.kind == PRINCIPLED;
+    let walks = is_principled || walks_under(bsdf.record);
     // What chooses the hero, and the axis and the place of the probe and one of its points, or the
     // first flight of a walk and all that follows.
     var u: array<vec2f, 4>;
-    for (var i = 0u; i < select(4u, 3u, walks); i++) {
+    for (var i = select(1u, 0u, CHOOSES_HEROES); i < select(4u, 3u, walks); i++) {
         u[i] = next_numbers(i == 2 && !walks);
     }
+    under.heroes = heroes_under(*path, lambda, u[0].x);
     under.material = s.material;
-    under.record = bsdf.record;
-    under.sigma_t = bsdf.a;
-    under.albedo = bsdf.b;
-    under.heroes = heroes_by((*path).beta, lambda, u[0].x);
+    under.kind = bsdf.kind;
+    if (is_principled) {
+        under.surface = bsdf.surface;
+        under.sigma_t = openpbr_extinction(bsdf.surface);
+        under.albedo = openpbr_albedo(bsdf.surface);
+        under.g = openpbr_asymmetry(bsdf.surface);
+        under.eta = 1;
+    } else {
+        under.record = bsdf.record;
+        under.sigma_t = bsdf.a;
+        under.albedo = bsdf.b;
+        under.g = asymmetry_under(bsdf.record);
+        under.eta = bsdf.eta;
+    }
     if (walks) {
         under.state = WALKING;
         under.generator = generator(hash_of_pair(bitcast<vec2u>(vec2f(u[1].x, u[2].x))));
@@ -268,9 +273,7 @@ fn takes_exit(path: ptr<function, Path>, value: vec4f, density: vec4f) -> bool {
     if (!(density[under.heroes.hero] > 0) || is_black(value)) {
         return false;
     }
-    let eta = eta_under(under.record);
-    (*path).beta *= value * (eta * eta) / mean_of(under.heroes, density);
-    (*path).eta_scale /= eta * eta;
+    take_way(path, value, density, under.heroes, under.eta);
     return true;
 }
 
@@ -306,7 +309,7 @@ fn follow_walk(path: ptr<function, Path>, is_hit: bool, s: Surface) -> u32 {
         let passed = attenuation(under.sigma_t, distance);
         under.value *= passed / passed[hero];
         under.density *= passed / passed[hero];
-        let reflected = fr_dielectric(-abs(dot(ray.d, s.n)), eta_under(under.record));
+        let reflected = fr_dielectric(-abs(dot(ray.d, s.n)), under.eta);
         if (walk_number() >= min(reflected, 1)) {
             under.state = EMERGING;
             return select(IS_LOST, LEAVES, takes_exit(path, under.value, under.density));
@@ -331,7 +334,7 @@ fn follow_walk(path: ptr<function, Path>, is_hit: bool, s: Surface) -> u32 {
     for (var i = 0; i < 2; i++) {
         u[i] = walk_number();
     }
-    let phase = HenyeyGreenstein(number(under.record + 10));
+    let phase = HenyeyGreenstein(under.g);
     (*path).ray = Ray(under.p + ray.d * under.free, HenyeyGreenstein_sample_p(phase, -ray.d, u).v0, shutter_time);
     return select(IS_LOST, GOES_ON, begin_flight((*path).ray));
 }

@@ -9,6 +9,8 @@ struct Path {
     ray: Ray,
     near: Differentials,
     medium: u32,
+    // The medium outside of the body that the path is in.
+    outside: u32,
     throughput: Throughput,
     heroes: Heroes,
     depth: u32,
@@ -106,6 +108,20 @@ fn keep_first(path: ptr<function, Path>) {
     (*path).heroes = Heroes(vec4f(1, 0, 0, 0), 0);
 }
 
+// Whether a wavelength is chosen for each way under a surface: that of the path flies there, too.
+const CHOOSES_HEROES = false;
+
+fn heroes_under(path: Path, lambda: SampledWavelengths, u: f32) -> Heroes {
+    return path.heroes;
+}
+
+// Multiplies a path by its way under a surface of index of refraction `eta`.
+fn take_way(path: ptr<function, Path>, value: vec4f, density: vec4f, heroes: Heroes, eta: f32) {
+    let of_hero = density[heroes.hero];
+    (*path).throughput.beta *= value * (eta * eta) / of_hero;
+    (*path).throughput.r_u *= density / of_hero;
+}
+
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
     let probability = 3 * SampledSpectrum_max_component(carried(*path) * (*path).eta_scale);
@@ -121,6 +137,7 @@ fn survives(path: ptr<function, Path>) -> bool {
 
 fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
     var l = vec4f();
+    stay_above();
     var path: Path;
     path.ray = ray;
     path.near = near;
@@ -135,7 +152,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     while (shadow.is_on_its_way || goes_on) {
         let is_shadow = shadow.is_on_its_way;
         var part = path.ray;
-        var t_max = infinity();
+        var t_max = reach_of_path();
         var medium = path.medium;
         var throughput = path.throughput;
         if (is_shadow) {
@@ -182,6 +199,19 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             continue;
         }
         path.throughput = throughput;
+        if (HAS_SUBSURFACE && is_under()) {
+            let step = follow_under(&path, hit.found, s);
+            if (step != LEAVES) {
+                goes_on = step == GOES_ON;
+                continue;
+            }
+        }
+        // Whether the point is where the path leaves a body that it has entered at the vertex before.
+        let is_exit = HAS_SUBSURFACE && emerges();
+        if (is_exit) {
+            path.medium = path.outside;
+            medium = path.medium;
+        }
         l += flight.emitted;
         let in_medium = flight.end == SCATTERED;
         if (flight.end == ABSORBED || (in_medium && path.depth == world.max_depth)) {
@@ -195,6 +225,14 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             s.n = vec3f();
             s.ns = vec3f();
             s.wo = -part.d;
+        } else if (is_exit) {
+            if (!hit.found) {
+                break;
+            }
+            s.wo = s.ns;
+            textures = texture_context(s, path.near);
+            bsdf = exit_lobe(s);
+            flags = bsdf_flags(bsdf);
         } else {
             if (!hit.found) {
                 l += carried(path) * escaped(path, *lambda);
@@ -218,12 +256,13 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             if (SampledWavelengths_secondary_terminated(*lambda)) {
                 keep_first(&path);
             }
+            keep_boundary(&bsdf);
             if (has_setting(REGULARIZES) && path.rough_before) {
                 regularize(&bsdf);
             }
             flags = bsdf_flags(bsdf);
         }
-        path.depth++;
+        path.depth += select(1u, 0u, is_exit);
         var context = context_of(s);
         if (!in_medium) {
             context = light_context(s, flags);
@@ -266,6 +305,14 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (goes_on) {
             path.near = scattered_differentials(s, textures, path.near, sample);
             path.throughput.beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
+            if (HAS_SUBSURFACE && enters_body(bsdf, s, sample)) {
+                path.outside = medium;
+                path.medium = 0;
+                path.near = no_differentials();
+                path.ray = spawn(s, sample.wi);
+                goes_on = go_under(&path, s, bsdf, *lambda);
+                continue;
+            }
             // The density of a sample that is a walk is known as that of its direction alone.
             var pdf = sample.pdf;
             if (HAS_COATS && sample.pdf_is_proportional) {

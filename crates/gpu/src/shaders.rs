@@ -89,8 +89,25 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
+/// A path through media, and one in empty space.
+const PATH_IN_MEDIA: &str = concat!(
+    include_str!("../shaders/media.wgsl"),
+    include_str!("../shaders/path_hits.wgsl"),
+    include_str!("../shaders/vol_path.wgsl")
+);
+const PATH_IN_VACUUM: &str = concat!(
+    include_str!("../shaders/path_hits.wgsl"),
+    include_str!("../shaders/path.wgsl"),
+    include_str!("../shaders/path_loop.wgsl")
+);
+
+/// What a path does under surfaces.
+const UNDER: &str =
+    concat!(include_str!("../shaders/generator.wgsl"), include_str!("../shaders/under_surface.wgsl"));
+
 /// What a path does at its vertices, of scenes without bodies under whose surface it goes on.
 const PATH: &str = concat!(
+    include_str!("../shaders/heroes.wgsl"),
     include_str!("../shaders/under_none.wgsl"),
     include_str!("../shaders/path_hits.wgsl"),
     include_str!("../shaders/path.wgsl")
@@ -291,31 +308,11 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
         }
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
-        Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.media => {
-            concat!(
-                include_str!("../shaders/heroes.wgsl"),
-                include_str!("../shaders/media.wgsl"),
-                include_str!("../shaders/path_hits.wgsl"),
-                include_str!("../shaders/vol_path.wgsl")
-            )
-        }
-        Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) if parts.subsurface => {
-            concat!(
-                include_str!("../shaders/heroes.wgsl"),
-                include_str!("../shaders/generator.wgsl"),
-                include_str!("../shaders/under_surface.wgsl"),
-                include_str!("../shaders/path_hits.wgsl"),
-                include_str!("../shaders/path.wgsl"),
-                include_str!("../shaders/path_loop.wgsl")
-            )
-        }
         Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
-            concat!(
-                include_str!("../shaders/under_none.wgsl"),
-                include_str!("../shaders/path_hits.wgsl"),
-                include_str!("../shaders/path.wgsl"),
-                include_str!("../shaders/path_loop.wgsl")
-            )
+            let under = if parts.subsurface { UNDER } else { include_str!("../shaders/under_none.wgsl") };
+            let in_media = parts.media && !matches!(algorithm, Algorithm::Path(_));
+            let path = if in_media { PATH_IN_MEDIA } else { PATH_IN_VACUUM };
+            return [include_str!("../shaders/heroes.wgsl"), under, path].concat().into();
         }
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
         Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),

@@ -183,9 +183,10 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         instances: Default::default(),
         surfaces: Default::default(),
         largest_buffer,
-        follows_bodies: matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_))
-            && !has_media(scene)
-            && !view.options.force_diffuse,
+        follows_bodies: matches!(
+            algorithm,
+            Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_)
+        ) && !view.options.force_diffuse,
         begins_at_lights: algorithm.begins_at_lights(),
         parts: Parts::default(),
         refusals: Vec::new(),
@@ -291,7 +292,7 @@ struct Flattener<'a> {
     /// The offsets of surfaces that emit in instances, by geometry and primitive.
     surfaces: HashMap<(u32, u32), u32>,
     largest_buffer: usize,
-    /// Whether paths go on under surfaces.
+    /// Whether paths go on under the surface of bodies.
     follows_bodies: bool,
     /// Whether paths begin at lights.
     begins_at_lights: bool,

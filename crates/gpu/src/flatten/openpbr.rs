@@ -1,7 +1,9 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
-//! numbers, and 0; for each colour the place of its texture, or [`WHITE`]; the images of the
-//! normals of the coat and of the base where they differ, or 0; the values of all numbers; and for
-//! each number that has a texture, in the order of the textures, which it is, its range, and 0.
+//! numbers, and the place of the texture of the radius where paths go on under the surface; for each
+//! colour the place of its texture; the images of the normals of the coat and of the base where they
+//! differ, or 0; the values of all numbers; and for each number that has a texture, in the order of
+//! the textures, which it is, its range, and 0. A texture that is not seen has [`NO_TEXTURE`] for its
+//! place.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
 //! offsets of what is taken, of what is inside, and of means, whose rows are of four or eight
@@ -14,8 +16,8 @@ use scene::material::{OpenPbrMaterial, PlainOpenPbr};
 
 use super::Flattener;
 
-/// In place of the texture of a colour that is not seen.
-const WHITE: u32 = u32::MAX;
+/// In place of the number of a texture that is not seen.
+const NO_TEXTURE: u32 = u32::MAX;
 
 /// The number whose presence shows each colour, if there is one.
 const SHOWN_BY: [Option<&str>; OpenPbrDesc::COLORS.len()] = [
@@ -32,20 +34,28 @@ impl Flattener<'_> {
     pub(super) fn principled(&mut self, surface: &OpenPbrMaterial, span: Span) -> (u32, Vec<u32>) {
         self.parts.principled = true;
         let textures = self.scene.textures();
-        if surface.may_be_a_body(textures) {
-            self.refuse("light under the surface of `openpbr`", span);
+        let is_body = surface.may_be_a_body(textures);
+        if is_body && self.begins_at_lights {
+            self.refuse("light paths under the surface of `openpbr`", span);
         }
-        let PlainOpenPbr { constants, varying, colors, is_thin, coat_normals, table } = surface.plain();
+        let is_followed = is_body && self.follows_bodies;
+        self.parts.subsurface |= is_followed;
+        let PlainOpenPbr { constants, varying, colors, radius_scale, is_thin, coat_normals, table } =
+            surface.plain();
         let position = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
         let is_seen = |name: &str| {
             let Some(number) = position(name) else { return true };
             constants[number] > 0.0 || varying.iter().any(|(varies, _)| *varies == number)
         };
         let mut used: Vec<u32> = varying.iter().map(|(_, id)| self.number_texture(*id, span)).collect();
-        let mut words = vec![is_thin.into(), self.openpbr_table(table), varying.len() as u32, 0];
+        let radius = if is_followed { used.len() as u32 } else { NO_TEXTURE };
+        if is_followed {
+            used.push(self.spectrum_texture(radius_scale, span));
+        }
+        let mut words = vec![is_thin.into(), self.openpbr_table(table), varying.len() as u32, radius];
         for (color, shown_by) in colors.iter().zip(SHOWN_BY) {
             let is_seen = shown_by.is_none_or(is_seen);
-            words.push(if is_seen { used.len() as u32 } else { WHITE });
+            words.push(if is_seen { used.len() as u32 } else { NO_TEXTURE });
             if is_seen {
                 used.push(self.spectrum_texture(*color, span));
             }

@@ -6,7 +6,7 @@
 
 use description::Span;
 use scattering::{BssrdfTable, PlainBssrdfTable, SubsurfaceMethod};
-use scene::material::{Roughness, SubsurfaceInside, SubsurfaceMaterial};
+use scene::material::{SubsurfaceInside, SubsurfaceMaterial};
 
 use super::Flattener;
 
@@ -15,13 +15,10 @@ impl Flattener<'_> {
     pub(super) fn subsurface(&mut self, body: &SubsurfaceMaterial, span: Span) -> ([u32; 7], Vec<u32>) {
         self.parts.subsurface = true;
         self.parts.facets = true;
-        if !self.follows_bodies {
-            self.refuse("material `subsurface` by this algorithm or among media", span);
+        if self.begins_at_lights {
+            self.refuse("light paths under the surface of `subsurface`", span);
         }
         let walks = body.method == SubsurfaceMethod::RandomWalk;
-        if walks && !self.is_isotropic(&body.roughness) {
-            self.refuse("random walks under brushed boundaries", span);
-        }
         let (given, scale, spectra) = match body.inside {
             SubsurfaceInside::Coefficients { sigma_a, sigma_s, scale } => (0, scale, [sigma_a, sigma_s]),
             SubsurfaceInside::Reflectance { reflectance, mfp, scale } => (1, scale, [reflectance, mfp]),
@@ -31,12 +28,6 @@ impl Flattener<'_> {
         let table = self.bssrdf_table(&body.table, walks, given == 1);
         let [scale, eta, g] = [scale, body.table.eta(), body.table.g()].map(f32::to_bits);
         ([remap, table, walks.into(), given, scale, eta, g], textures)
-    }
-
-    /// Whether the roughness is the same in all directions wherever it is.
-    fn is_isotropic(&self, roughness: &Roughness) -> bool {
-        let constant = |id| self.scene.textures().constant(id);
-        roughness.u == roughness.v || constant(roughness.u).is_some_and(|u| constant(roughness.v) == Some(u))
     }
 
     /// The offset of a table, with the gains of walks, and what these return.

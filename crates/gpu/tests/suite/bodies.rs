@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use alhazen_gpu::Algorithm;
-use description::{LightTracingDesc, PathDesc};
+use description::{LightTracingDesc, PathDesc, SimplePathDesc};
 use film::Development;
 use image::PixelSource;
 use import::MemoryAssets;
@@ -12,7 +12,8 @@ use import::MemoryAssets;
 use crate::pictures::{Case, SAMPLES};
 
 /// Bodies by diffusion and by random walks, given by coefficients, by a substance and by what
-/// leaves, behind smooth and rough boundaries; before a curved wall that probes meet, too.
+/// leaves, behind smooth, rough and brushed boundaries; before a curved wall that probes meet, too;
+/// and principled ones, of which one has a coat and metal beside it.
 const BODIES: &str = r#"
 LookAt 0 -6 2.2  0 0 0.5  0 0 1
 Camera "perspective" "float fov" 36
@@ -22,6 +23,7 @@ LightSource "infinite" "rgb L" [ 0.5 0.6 0.8 ]
 LightSource "point" "point3 from" [ 2 -4 4 ] "float scale" 90
 Texture "squares" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8
     "rgb tex1" [ 0.7 0.6 0.5 ] "rgb tex2" [ 0.2 0.3 0.4 ]
+Texture "metal" "float" "checkerboard" "float uscale" 8 "float vscale" 8 "float tex1" 1 "float tex2" 0
 Material "diffuse" "texture reflectance" "squares"
 Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
 Translate -1.6 0 0.5
@@ -40,6 +42,18 @@ Translate -2 -1.1 0
 Material "subsurface" "string method" "random-walk" "rgb reflectance" [ 0.7 0.4 0.3 ] "rgb mfp" [ 0.1 0.1 0.1 ]
     "float roughness" 0.3
 Shape "sphere" "float radius" 0.4
+Translate 0.9 -0.1 -0.1
+Material "subsurface" "string method" "random-walk" "rgb reflectance" [ 0.4 0.7 0.3 ] "rgb mfp" [ 0.1 0.1 0.1 ]
+    "float uroughness" 0.4 "float vroughness" 0.05
+Shape "sphere" "float radius" 0.3
+Translate 0.8 0 0
+Material "openpbr" "float subsurface_weight" 1 "rgb subsurface_color" [ 0.8 0.5 0.3 ] "float subsurface_radius" 0.2
+Shape "sphere" "float radius" 0.3
+Translate -2.6 0 0
+Material "openpbr" "float subsurface_weight" 0.7 "rgb subsurface_color" [ 0.3 0.8 0.4 ] "float subsurface_radius" 0.1
+    "rgb subsurface_radius_scale" [ 1 0.3 0.1 ] "float subsurface_scatter_anisotropy" 0.4 "float coat_weight" 0.8
+    "rgb coat_color" [ 0.9 0.5 0.4 ] "texture base_metalness" "metal"
+Shape "sphere" "float radius" 0.3
 "#;
 
 /// A photograph through four elements and a square stop, out of focus, of squares that are filtered
@@ -67,8 +81,29 @@ fn bodies_have_the_picture_of_the_cpu() {
     let path = Algorithm::Path(PathDesc { max_depth: 2, ..PathDesc::default() });
     assert_eq!(case.compare("bodies", &path), None);
     let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();
-    let what = "material `subsurface` by this algorithm or among media";
-    assert_eq!(refusals.expect("a refusal")[0].what, what);
+    let refusals = refusals.expect("refusals").into_iter().map(|refusal| refusal.what);
+    let under = |material| format!("light paths under the surface of `{material}`");
+    assert_eq!(refusals.collect::<Vec<_>>(), ["subsurface", "openpbr"].map(under));
+}
+
+/// Paths that fly through fog to bodies, and leave them into it.
+#[test]
+fn bodies_in_fog_have_the_picture_of_the_cpu() {
+    let fog = r#"
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.02 0.03 0.05 ] "rgb sigma_s" [ 0.06 0.05 0.04 ]
+MediumInterface "" "fog"
+"#;
+    let inside = "WorldBegin\nMediumInterface \"fog\" \"fog\"";
+    let case = Case::of_text(&(fog.to_owned() + &BODIES.replace("WorldBegin", inside)));
+    let path = Algorithm::VolPath(PathDesc { max_depth: 2, ..PathDesc::default() });
+    assert_eq!(case.compare("bodies in fog", &path), None);
+}
+
+/// Algorithms that do not follow paths under surfaces take light to leave where it has entered.
+#[test]
+fn bodies_of_algorithms_without_paths_under_surfaces_have_the_picture_of_the_cpu() {
+    let simple = Algorithm::SimplePath(SimplePathDesc { max_depth: 3, ..Default::default() });
+    assert_eq!(Case::of_text(BODIES).compare("opaque bodies", &simple), None);
 }
 
 #[test]

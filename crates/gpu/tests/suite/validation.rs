@@ -161,6 +161,8 @@ fn kernels_are_valid() {
         add(&"lenses", shaders::pixels(&path, Parts { lenses: true, ..parts }));
         let bodies = Parts { subsurface: true, ..parts };
         add(&"bodies", shaders::pixels(&path, bodies));
+        add(&"bodies", shaders::pixels(&simple, bodies));
+        add(&"bodies among media", shaders::pixels(&vol_path, Parts { media: true, ..bodies }));
         add(&"bodies", shaders::surfaces(&path, bodies));
         add(&"forced diffuse", shaders::pixels(&simple, Parts { force_diffuse: true, ..parts }));
         add(&"chains", shaders::chains(parts));

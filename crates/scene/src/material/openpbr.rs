@@ -44,6 +44,8 @@ pub struct PlainOpenPbr<'a> {
     pub varying: Vec<(usize, FloatTextureId)>,
     /// The textures of [`OpenPbrDesc::COLORS`].
     pub colors: &'a [SpectrumTextureId; OpenPbrDesc::COLORS.len()],
+    /// The factors on the radius under its surface.
+    pub radius_scale: SpectrumTextureId,
     /// Whether it is a wall without an inside.
     pub is_thin: bool,
     /// The normals of its coat, if they are others than those of the base.
@@ -107,10 +109,11 @@ impl OpenPbrMaterial {
 
     /// What it is made of, for an engine that evaluates it elsewhere.
     pub fn plain(&self) -> PlainOpenPbr<'_> {
-        let Self { numbers, constants, varying, colors, is_thin, table, .. } = self;
+        let Self { numbers, constants, varying, colors, radius_scale, is_thin, table, .. } = self;
         let varying = varying.iter().map(|&i| (i, numbers[i])).collect();
         let coat_normals = self.coat_normals.as_ref();
-        PlainOpenPbr { constants, varying, colors, is_thin: *is_thin, coat_normals, table }
+        let (radius_scale, is_thin) = (*radius_scale, *is_thin);
+        PlainOpenPbr { constants, varying, colors, radius_scale, is_thin, coat_normals, table }
     }
 
     /// Whether light may be scattered under the surface, to leave elsewhere.
