@@ -12,8 +12,7 @@ use import::MemoryAssets;
 use crate::pictures::{Case, SAMPLES};
 
 /// Bodies by diffusion and by random walks, given by coefficients, by a substance and by what
-/// leaves, behind smooth, rough and brushed boundaries; before a curved wall that probes meet, too;
-/// and principled ones, of which one has a coat and metal beside it.
+/// leaves, behind smooth, rough and brushed boundaries; before a curved wall that probes meet, too.
 const BODIES: &str = r#"
 LookAt 0 -6 2.2  0 0 0.5  0 0 1
 Camera "perspective" "float fov" 36
@@ -46,6 +45,10 @@ Translate 0.9 -0.1 -0.1
 Material "subsurface" "string method" "random-walk" "rgb reflectance" [ 0.4 0.7 0.3 ] "rgb mfp" [ 0.1 0.1 0.1 ]
     "float uroughness" 0.4 "float vroughness" 0.05
 Shape "sphere" "float radius" 0.3
+"#;
+
+/// Principled bodies beside them, of which one has a coat and metal beside it.
+const PRINCIPLED_BODIES: &str = r#"
 Translate 0.8 0 0
 Material "openpbr" "float subsurface_weight" 1 "rgb subsurface_color" [ 0.8 0.5 0.3 ] "float subsurface_radius" 0.2
 Shape "sphere" "float radius" 0.3
@@ -77,7 +80,7 @@ Shape "sphere" "float radius" 0.6
 
 #[test]
 fn bodies_have_the_picture_of_the_cpu() {
-    let case = Case::of_text(BODIES);
+    let case = Case::of_text(&(BODIES.to_owned() + PRINCIPLED_BODIES));
     let path = Algorithm::Path(PathDesc { max_depth: 2, ..PathDesc::default() });
     assert_eq!(case.compare("bodies", &path), None);
     let refusals = case.flatten(&Algorithm::LightTracing(LightTracingDesc::default())).err();

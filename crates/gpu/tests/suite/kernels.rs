@@ -45,15 +45,21 @@ pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts
         hair: true,
         ..common(parts)
     };
+    let with_bodies =
+        |parts| Parts { images: true, principled: true, subsurface: true, ..common(parts) };
     let suits = |with: &dyn Fn(Parts) -> Parts| with(needed) == with(Parts::default());
     match algorithm {
-        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => Parts { media: true, ..common(needed) },
+        Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => {
+            Parts { media: true, subsurface: true, ..common(needed) }
+        }
         Algorithm::AmbientOcclusion(..) => Parts { rare_samplers: true, ..common(needed) },
         Algorithm::Path(_) | Algorithm::RayCasting => {
             if suits(&with_textures) && schedule == Schedule::Megakernel {
                 with_textures(needed)
             } else if suits(&with_motion) {
                 with_motion(needed)
+            } else if suits(&with_bodies) {
+                with_bodies(needed)
             } else {
                 needed
             }
@@ -61,8 +67,9 @@ pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts
         Algorithm::Bdpt(_) | Algorithm::LightTracing(_) | Algorithm::Sppm(..) => {
             Parts { placed_lights: true, ..common(needed) }
         }
-        Algorithm::Whitted(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) | Algorithm::Mlt(..) => {
-            common(needed)
+        Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
+            Parts { subsurface: needed.media, ..common(needed) }
         }
+        Algorithm::Whitted(_) | Algorithm::Mlt(..) => common(needed),
     }
 }
