@@ -11,6 +11,7 @@ use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::View;
 
+use crate::kernels::common;
 use crate::pictures::{Case, SAMPLES};
 
 /// The kernels of frames.
@@ -31,7 +32,8 @@ pub fn sharing(
     shared: Option<Weights>,
 ) -> Realtime {
     let ray_queries = kernels.device().has_ray_queries();
-    let flat = case.flattened(algorithm, ray_queries).unwrap_or_else(|refusals| panic!("{refusals:?}"));
+    let mut flat = case.flattened(algorithm, ray_queries).unwrap_or_else(|refusals| panic!("{refusals:?}"));
+    flat.set_parts(common(flat.parts()));
     let mut realtime =
         Realtime::new(kernels.clone(), &flat, algorithm, shared).expect("a scene on the device");
     realtime.aim(&case.view, case.film().pixel_bounds()).expect("a camera");

@@ -16,10 +16,9 @@ pub fn kernels(algorithm: &Algorithm, flat: &Flat) -> Option<Arc<Kernels>> {
     known.entry(shaders::pixels(algorithm, flat.parts())).or_insert_with(open).clone()
 }
 
-/// The parts of the kernels of a picture: those that its scene needs, and others, so that many
-/// scenes share few kernels, and parts are tested beside others.
-pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts {
-    let common = |parts| Parts {
+/// These parts, and others that many scenes need.
+pub fn common(parts: Parts) -> Parts {
+    Parts {
         programs: true,
         bumps: true,
         point_lights: true,
@@ -28,7 +27,12 @@ pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts
         round_lights: true,
         facets: true,
         ..parts
-    };
+    }
+}
+
+/// The parts of the kernels of a picture: those that its scene needs, and others, so that many
+/// scenes share few kernels, and parts are tested beside others.
+pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts {
     let with_textures = |parts| Parts {
         holes: true,
         light_holes: true,
@@ -45,8 +49,15 @@ pub fn shared(algorithm: &Algorithm, schedule: Schedule, needed: Parts) -> Parts
         hair: true,
         ..common(parts)
     };
-    let with_bodies =
-        |parts| Parts { images: true, principled: true, subsurface: true, ..common(parts) };
+    let with_bodies = |parts| Parts {
+        programs: true,
+        images: true,
+        point_lights: true,
+        facets: true,
+        principled: true,
+        subsurface: true,
+        ..parts
+    };
     let suits = |with: &dyn Fn(Parts) -> Parts| with(needed) == with(Parts::default());
     match algorithm {
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => {
