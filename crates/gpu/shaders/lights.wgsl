@@ -81,7 +81,7 @@ fn light_position(at: u32) -> vec3f {
     if (word(at) == GONIOMETRIC_LIGHT || word(at) == PROJECTION_LIGHT) {
         return outward.translation;
     }
-    return times(outward.linear, p) + outward.translation;
+    return times_point(outward, p);
 }
 
 // The direction of a light that is kept at a place of the tables.

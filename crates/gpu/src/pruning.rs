@@ -95,10 +95,7 @@ impl Pruning<'_> {
             }
             other => other,
         };
-        let ends = matches!(
-            statement,
-            Statement::Return { .. } | Statement::Break | Statement::Continue | Statement::Kill
-        );
+        let ends = ends(&statement);
         pruned.push(statement, span);
         ends
     }
@@ -138,6 +135,15 @@ impl Pruning<'_> {
     }
 }
 
+/// Whether nothing may follow a statement in its block.
+fn ends(statement: &Statement) -> bool {
+    match statement {
+        Statement::Block(block) => block.last().is_some_and(ends),
+        Statement::Return { .. } | Statement::Break | Statement::Continue | Statement::Kill => true,
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -156,7 +162,7 @@ mod tests {
         fn called_last(x: u32) -> u32 { return x + 2; }
         fn early(x: u32) -> u32 {
             if (!HAS_NOT || called_never(x)) {
-                return called_last(x);
+                { return called_last(x); }
             }
             return called_after(x);
         }
@@ -188,7 +194,7 @@ mod tests {
         // What follows a return is left out with it.
         let early = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some("early"));
         let body = &early.expect("a function").1.body;
-        assert!(matches!(body.last(), Some(Statement::Return { .. })), "{body:?}");
+        assert!(body.last().is_some_and(ends), "{body:?}");
         assert!(body.iter().all(|statement| !matches!(statement, Statement::If { .. })), "{body:?}");
     }
 }

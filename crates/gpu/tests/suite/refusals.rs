@@ -50,3 +50,36 @@ fn what_kernels_do_not_draw_is_refused_with_its_place() {
         assert!(text[at..].starts_with(place), "{what}: {}", &text[at..]);
     }
 }
+
+/// Worlds that kernels have no room for: too many instances within instances, too deep a tree, and
+/// instances without bounds.
+#[test]
+fn worlds_without_room_are_refused_with_their_place() {
+    let object = |name: &str, rest: &str| format!("ObjectBegin \"{name}\"\n{rest}\nObjectEnd\n");
+    let row = |name: &str, count| format!("ObjectInstance \"{name}\"\n").repeat(count);
+    let begin = "Camera \"perspective\"\nFilm \"rgb\"\nWorldBegin\n";
+    let nested = object("ball", "Shape \"sphere\"") + &object("row", &row("ball", 1024)) + &row("row", 1025);
+    let open = object("floor", "Shape \"plane\"") + &row("floor", 1);
+    // Each sphere is as far away as all before it together are large.
+    let sphere = |i: i32| {
+        let size = 1.3f64.powi(i);
+        format!(
+            "AttributeBegin\nTranslate {} 0 0\nShape \"sphere\" \"float radius\" {size}\nAttributeEnd\n",
+            10.0 * size
+        )
+    };
+    let deep: String = (0..400).map(|i| sphere(i - 150)).collect();
+    let cases = [
+        (nested, "as many instances within instances", Some("ObjectInstance")),
+        (open, "instances of infinite planes", Some("Shape \"plane\"")),
+        (deep, "as many primitives", None),
+    ];
+    for (rest, what, place) in cases {
+        let text = begin.to_owned() + &rest;
+        let refusals = Case::of_text(&text).flatten(&Algorithm::RayCasting).err().unwrap_or_default();
+        let [refusal] = &refusals[..] else { panic!("{what}: {refusals:?}") };
+        assert_eq!(refusal.what, what);
+        let at = refusal.span.start as usize;
+        assert!(place.is_none_or(|place| text[at..].starts_with(place)), "{what}: {}", &text[at..]);
+    }
+}
