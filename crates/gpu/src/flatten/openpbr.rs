@@ -1,9 +1,9 @@
 //! Principled surfaces: whether it is a sheet, the offset of its table, the number of textures of
-//! numbers, and the place of the texture of the radius where paths go on under the surface; for each
-//! colour the place of its texture; the images of the normals of the coat and of the base where they
-//! differ, or 0; the values of all numbers; and for each number that has a texture, in the order of
-//! the textures, which it is, its range, and 0. A texture that is not seen has [`NO_TEXTURE`] for its
-//! place.
+//! numbers, and the place of the texture of the radius where paths go on under the surface; for
+//! each colour the place of its texture; the images of the normals of the coat and of the base
+//! where they differ, or 0; the values of all numbers; and for each number that has a texture, in
+//! the order of the textures, which it is, its range, and 0. A texture that is not seen has
+//! [`NO_TEXTURE`] for its place.
 //!
 //! A table has the numbers of axes, azimuths and films, the range of their thickness, and the
 //! offsets of what is taken, of what is inside, and of means, whose rows are of four or eight
