@@ -206,7 +206,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 continue;
             }
         }
-        // Whether the point is where the path leaves a body that it has entered at the vertex before.
+        // Whether the path leaves here the body that it has entered at the vertex before.
         let is_exit = HAS_SUBSURFACE && emerges();
         if (is_exit) {
             path.medium = path.outside;
