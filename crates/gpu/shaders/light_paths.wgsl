@@ -191,7 +191,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
 // The density of a direction to an infinitely distant light; of one direction, 1.
 fn far_density(at: u32, wi: vec3f) -> f32 {
     if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
-        return sky_density(at, sky_position(at, wi), false);
+        return sky_density(at, sky_position(at, wi), wi, false);
     }
     return select(UNIFORM_DIRECTION, 1, word(at) == DISTANT_LIGHT);
 }

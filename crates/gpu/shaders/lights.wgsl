@@ -262,7 +262,7 @@ fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     var seen = Sky(emission(at, lambda), 0);
     if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
         let st = sky_position(at, d);
-        seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, true));
+        seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, d, true));
     }
     if (HAS_PORTALS && word(at) == PORTAL_LIGHT) {
         let through = portal_seen(at, o, d, lambda);
@@ -271,24 +271,39 @@ fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     return seen;
 }
 
+// The rows of the matrix into the space of an image of the sphere.
+fn into_sky(at: u32) -> Rows {
+    if (light_moves(at)) {
+        return inverse(out_of_light(at).linear);
+    }
+    return Rows(vector(at + 8), vector(at + 12), vector(at + 16));
+}
+
 // The position in an image of the sphere that is seen along a direction.
 fn sky_position(at: u32, d: vec3f) -> vec2f {
-    var inward = Rows(vector(at + 8), vector(at + 12), vector(at + 16));
-    if (light_moves(at)) {
-        inward = inverse(out_of_light(at).linear);
-    }
-    let w = Vec3_normalize(times(inward, d));
+    let w = Vec3_normalize(times(into_sky(at), d));
     if (word(at + 6) == 0) {
         return equal_area_sphere_to_square(w);
     }
     return vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
 }
 
-// The density per solid angle with which the direction to a position is sampled, completely or not.
-fn sky_density(at: u32, st: vec2f, allow_incomplete: bool) -> f32 {
+// The density per solid angle with which the direction `w` to a position is sampled, completely or
+// not.
+fn sky_density(at: u32, st: vec2f, w: vec3f, allow_incomplete: bool) -> f32 {
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
     let density = density_of(word(at + select(7u, 33u, allow_incomplete)), st);
-    return select(density / solid_angle, 0, solid_angle == 0);
+    return select(density / solid_angle * solid_angle_factor(into_sky(at), w), 0, solid_angle == 0);
+}
+
+fn determinant(m: Rows) -> f32 {
+    return dot(m.x, cross(m.y, m.z));
+}
+
+// The factor on a density per solid angle that the inverse of a matrix takes to the direction `w`.
+fn solid_angle_factor(inward: Rows, w: vec3f) -> f32 {
+    let distance = length(times(inward, w));
+    return abs(determinant(inward)) / (distance * distance * distance);
 }
 
 // Solid angle per area of an image of the sphere, as a part of 4π.
@@ -336,6 +351,6 @@ fn sample_sky(
     let solid_angle = 4 * 3.1415927 * solid_angle_density(at, st);
     (*sample).wi = Vec3_normalize(times(outward, local));
     (*sample).l = sky_image(at, st, lambda);
-    (*sample).pdf = drawn.z / solid_angle;
+    (*sample).pdf = drawn.z / solid_angle * solid_angle_factor(into_sky(at), (*sample).wi);
     (*sample).valid = drawn.z != 0 && solid_angle != 0;
 }

@@ -23,10 +23,6 @@ fn way_to_surface(at: u32) -> Placement {
     return Placement(Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
 }
 
-fn determinant(m: Rows) -> f32 {
-    return dot(m.x, cross(m.y, m.z));
-}
-
 // A reference point as the surface sees it; in media it has no normals.
 fn context_inside(inward: Placement, context: ShapeSampleContext) -> ShapeSampleContext {
     let p = times_point(inward, context.p.p);
@@ -42,12 +38,6 @@ fn context_inside(inward: Placement, context: ShapeSampleContext) -> ShapeSample
 fn leave_instance(inward: Placement, point: ptr<function, ShapeSample>) {
     (*point).p = placed_point(inverse(inward.linear), inward.translation, (*point).p);
     (*point).n = Vec3_normalize(transposed(inward.linear, (*point).n));
-}
-
-// What the density per solid angle around `w` is multiplied by on the way out.
-fn solid_angle_factor(inward: Placement, w: vec3f) -> f32 {
-    let distance = length(times(inward.linear, w));
-    return abs(determinant(inward.linear)) / (distance * distance * distance);
 }
 
 // A point of the surface of a light by area, with its density.
@@ -79,6 +69,12 @@ fn alpha_of_light(at: u32) -> u32 {
         return 0;
     }
     return word(more + 2);
+}
+
+// Whether rays may meet light of a sphere behind its holes: where its inside emits.
+fn shines_through_holes(at: u32, record: u32) -> bool {
+    let has_holes = alpha_of_light(at) != 0 || (word(at + 3) & 2) != 0;
+    return has_holes && (is_two_sided(at) || number(record + 11) < 0);
 }
 
 // Whether a light does not emit at a point of its surface, by a hash of the point.

@@ -18,7 +18,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
         point = FlatShape_sample_from(flat_light(record), reference, u).v0;
     } else {
         let cone = cone_of(record, reference);
-        if (cone.sine > 0) {
+        if (cone.sine > 0 && !shines_through_holes(at, record)) {
             point = sample_cone(record, cone, u);
         } else {
             point = point_by_area(record, u);
@@ -35,7 +35,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
     }
     sample.wi = Vec3_normalize(to_light);
     if (is_placed(at)) {
-        point.pdf *= solid_angle_factor(inward, sample.wi);
+        point.pdf *= solid_angle_factor(inward.linear, sample.wi);
     }
     if (!(point.pdf > 0 && point.pdf < infinity()) || is_cut_out_of_light(at, point.p.p, point.n, point.uv)) {
         return sample;
@@ -213,7 +213,8 @@ fn pdf_of_surface(light: u32, context: ShapeSampleContext, s: Surface, uv: vec2f
 
 // The same, for a point of the surface and its normal.
 fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv: vec2f) -> f32 {
-    var at = light_record(light);
+    let emitter = light_record(light);
+    var at = emitter;
     var reference = context;
     var point = p;
     var normal = n;
@@ -223,14 +224,14 @@ fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv:
         reference = context_inside(inward, context);
         point = times_point(inward, p);
         normal = Vec3_normalize(transposed(inverse(inward.linear), n));
-        factor = solid_angle_factor(inward, Vec3_normalize(p - context.p.p));
+        factor = solid_angle_factor(inward.linear, Vec3_normalize(p - context.p.p));
         at = surface_record(at);
     }
     if (is_flat(at)) {
         return FlatShape_pdf_from(flat_light(at), reference, uv) * factor;
     }
     let cone = cone_of(at, reference);
-    if (cone.sine > 0) {
+    if (cone.sine > 0 && !shines_through_holes(emitter, at)) {
         return factor / (6.2831855 * cone.one_minus_cos);
     }
     let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);

@@ -11,6 +11,7 @@ mod engines;
 mod furnaces;
 mod gltf;
 mod gltf_materials;
+mod irradiance;
 mod malformed;
 mod minray;
 mod mitsuba;

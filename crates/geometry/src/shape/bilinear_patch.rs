@@ -151,6 +151,10 @@ impl BilinearPatch {
         self.image.as_deref()
     }
 
+    pub(super) fn is_flat(&self) -> bool {
+        self.flat.is_some()
+    }
+
     pub(super) fn bounds(&self) -> Option<Bounds3> {
         Some(Bounds3::around(self.p))
     }

@@ -9,7 +9,9 @@
 //! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on
 //!   other shapes; a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which
 //!   vertices may assign freely.
-//! - Where a direction from a point meets a shape twice, its density is that of the nearest hit.
+//! - Where a direction from a point meets a shape twice, [`Shape::pdf_from`] is the density of the
+//!   nearest hit, and [`Shape::sample_from`] may leave out the other. A shape that rays pass
+//!   through is sampled by area instead.
 
 mod bilinear_patch;
 mod cone;
@@ -142,6 +144,22 @@ impl Shape {
             Self::MovingTriangle(shape) => shape.intersect(ray, t_max),
         };
         hit.filter(|hit| hit.t > after)
+    }
+
+    /// Whether no ray meets it twice, or, if the outside alone counts, its outside not after its
+    /// inside.
+    pub fn is_hit_once(&self, is_outside_alone: bool) -> bool {
+        match self {
+            Self::Disk(_) | Self::Plane(_) | Self::Triangle(_) | Self::MovingTriangle(_) => true,
+            Self::BilinearPatch(shape) => shape.is_flat(),
+            Self::Sphere(shape) => is_outside_alone && shape.is_seen_outside_first(),
+            Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Paraboloid(_)
+            | Self::Hyperboloid(_)
+            | Self::Implicit(_)
+            | Self::Solid(_) => false,
+        }
     }
 
     /// The surface at a hit of `ray`.

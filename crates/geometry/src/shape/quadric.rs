@@ -48,6 +48,11 @@ impl Quadric {
         PlainShape::Revolved { kind, render_from_object, flips: self.flips, numbers }
     }
 
+    /// Whether its outside is that of −dpdu × dpdv.
+    pub fn flips(&self) -> bool {
+        self.flips
+    }
+
     /// Reverses its orientation.
     pub fn turn_round(&mut self) {
         self.flips = !self.flips;

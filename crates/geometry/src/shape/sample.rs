@@ -50,7 +50,7 @@ impl<R: Real> ShapeSampleContext<R> {
     /// dA/dω = d²/|cos θ| of an area at `p` with unit normal `n`; with a normal of another length,
     /// divided by that.
     #[inline(always)]
-    pub(crate) fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
+    pub fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
         let toward = p - self.p.p;
         let distance2 = toward.length_squared();
         distance2 * distance2.sqrt() / n.dot(toward).abs()
@@ -73,7 +73,7 @@ impl<R: Real> ShapeSampleContext<R> {
 impl ShapeSampleContext {
     /// Converts a sample by area to one by solid angle; `None` where it is seen edge-on, or is the
     /// reference point itself.
-    pub(super) fn by_solid_angle(&self, sample: ShapeSample) -> Option<ShapeSample> {
+    pub fn by_solid_angle(&self, sample: ShapeSample) -> Option<ShapeSample> {
         let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
         (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
     }

@@ -69,6 +69,11 @@ impl Sphere {
         Self { quadric, radius, z: [-radius, radius], theta: [PI, 0.0], phi_max: TAU, ball, area }
     }
 
+    /// Whether it is whole in render space, too, with its outside away from its centre.
+    pub(super) fn is_seen_outside_first(&self) -> bool {
+        self.ball.is_some() && !self.quadric.flips()
+    }
+
     pub(super) fn plain(&self) -> PlainShape {
         self.quadric.plain(RevolvedKind::Sphere, [self.radius, self.z[0], self.z[1], self.phi_max])
     }

@@ -4,7 +4,7 @@ use film::{FirstEvent, Parts, Splatter};
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
 use scene::Scene;
 use scene::camera::{CameraWiSample, FilmPositions};
-use scene::light::LightId;
+use scene::light::{LightId, LightPoint};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Interaction, LightVertex, Merges, Vertex, Walk, hero_only};
@@ -114,7 +114,7 @@ impl Bidirectional<'_> {
         l: SampledSpectrum,
         light: LightId,
         before: Option<&Vertex>,
-        point: super::light_end::LightPoint,
+        point: LightPoint,
     ) -> Found {
         let weight = before.map_or(1.0, |before| {
             let (context, wi) = (before.light_context(), walk.ray.ray.d);

@@ -6,15 +6,11 @@
 //! light at a point is chosen with a delta per area, which is d² per solid angle; deltas cancel in
 //! all ratios, and count as 1.
 
-use math::{Normal3, Point3, Ray, Vector3};
-use scene::light::{LightId, LightSampleContext};
+use math::{Normal3, Ray, Vector3};
+use scene::light::{LightId, LightPoint, LightSampleContext};
 
 use super::Bidirectional;
 use super::partial::LightEnd;
-
-/// A point on a light and its normal there, zero where it has none; `None` if the light is
-/// infinitely far away.
-pub(crate) type LightPoint = Option<(Point3, Normal3)>;
 
 impl Bidirectional<'_> {
     /// The end at a light in the unit direction `wi` from a surface, which next-event estimation
@@ -56,7 +52,7 @@ impl Bidirectional<'_> {
         let pdf = match point {
             Some((p, Normal3::ZERO)) => context.p.p.distance_squared(p),
             None if source.is_delta() => 1.0,
-            _ => source.pdf_li(context, wi, false),
+            _ => source.pdf_li(context, wi, point, false),
         };
         self.lights.seen_from.pmf(context, light) * pdf
     }

@@ -123,7 +123,7 @@ impl Path<'_> {
         let source = paths.scene.light(light);
         if s == 1 {
             let pmf = paths.lights.seen_from.pmf(&context, light);
-            return per_area(pmf * source.pdf_li(&context, wi, false), first.0, p, n);
+            return per_area(pmf * source.pdf_li(&context, wi, Some((p, n)), false), first.0, p, n);
         }
         let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi, context.time);
         let mut density = f64::from(paths.lights.emitting.pmf(light) * pdf_position)

@@ -16,11 +16,10 @@ use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector
 use sampling::Sampler;
 use scattering::{Body, BsdfSample, Directions, TransportMode};
 use scene::camera::CameraRayDifferential;
-use scene::light::LightId;
+use scene::light::{LightId, LightPoint};
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::light_end::LightPoint;
 use super::under_surface::LightWay;
 use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex};
 use crate::transport::media::{FlightEnd, Heroes};

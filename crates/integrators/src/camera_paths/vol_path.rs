@@ -17,10 +17,11 @@
 
 use description::PathDesc;
 use film::FirstEvent;
+use geometry::SurfacePoint;
 use math::{Point3, RayDifferential};
 use sampling::Sampler;
 use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, HenyeyGreenstein, TransportMode};
-use scene::light::{LightId, LightSampleContext};
+use scene::light::{LightPoint, LightRef, LightSampleContext};
 use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -127,14 +128,20 @@ impl VolPath {
         &self.in_vacuum.settings
     }
 
-    /// The weighted radiance of a light that the ray of a path meets.
-    fn met(&self, scene: &Scene, path: &PathInMedia, light: LightId, l: SampledSpectrum) -> SampledSpectrum {
+    /// The weighted radiance `l` of a light that the ray of a path hits at `point`.
+    fn met(
+        &self,
+        path: &PathInMedia,
+        light: LightRef,
+        point: LightPoint,
+        l: SampledSpectrum,
+    ) -> SampledSpectrum {
         let l = path.throughput.estimate(l, &path.heroes);
         match &path.origin {
             Some(context) if self.sample_lights => {
                 let Throughput { r_u, r_l, .. } = path.throughput;
-                let pdf = self.in_vacuum.direct.lights().pmf(context, light)
-                    * scene.light(light).pdf_li(context, path.ray.ray.d, true);
+                let pdf = self.in_vacuum.direct.lights().pmf(context, light.id())
+                    * light.pdf_li(context, path.ray.ray.d, point, true);
                 l * power_heuristic(path.heroes.mean(r_u), path.heroes.mean(r_l) * pdf)
             }
             _ => l,
@@ -151,7 +158,8 @@ impl VolPath {
         let scene = tracer.scene;
         let lights = scene.infinite_lights().iter();
         let met = lights.map(|&id| {
-            let l = self.met(scene, path, id, scene.light(id).le(&path.ray.ray, lambda));
+            let light = scene.light(id);
+            let l = self.met(path, light, None, light.le(&path.ray.ray, lambda));
             tracer.take_part(Some(id), &path.first, path.depth, l);
             l
         });
@@ -167,11 +175,12 @@ impl VolPath {
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
         let Some(light) = surface.area_light else { return SampledSpectrum::ZERO };
-        let l = tracer.scene.emitted(surface, surface.surface.wo, lambda);
+        let SurfacePoint { p, n, wo, .. } = surface.surface;
+        let l = tracer.scene.emitted(surface, wo, lambda);
         if l.is_black() {
             return l;
         }
-        let l = self.met(tracer.scene, path, light, l);
+        let l = self.met(path, tracer.scene.light(light), Some((p.p, n)), l);
         tracer.take_part(Some(light), &path.first, path.depth, l);
         l
     }

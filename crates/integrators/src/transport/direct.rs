@@ -10,13 +10,14 @@
 use std::sync::Arc;
 
 use description::LightSamplerDesc;
+use geometry::SurfacePoint;
 use lanes::Real;
 use math::{
     Frame, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec2, Vec3, Vector3, offset_ray_origin,
 };
 use sampling::{Sampler, warp};
 use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, Scatter, TransportMode, each_bxdf};
-use scene::light::{Light, LightId, LightLiSample, LightRef, LightSampleContext};
+use scene::light::{Light, LightId, LightLiSample, LightPoint, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction};
@@ -66,12 +67,12 @@ impl DirectLighting {
         }
     }
 
-    /// The MIS weight of light from `light` that a ray along `wi` hits; 1 without an `origin`,
+    /// The MIS weight of light from `light` that a ray along `wi` hits at `point`; 1 without an `origin`,
     /// where no light sample could have found it.
-    fn weight(&self, scene: &Scene, origin: Option<&Origin>, light: LightId, wi: Vector3) -> f32 {
+    fn weight(&self, light: LightRef, origin: Option<&Origin>, wi: Vector3, point: LightPoint) -> f32 {
         let Some(Origin { context, pdf }) = origin else { return 1.0 };
-        let pmf = self.lights.pmf(context, light);
-        power_heuristic(*pdf, pmf * scene.light(light).pdf_li(context, wi, true))
+        let pmf = self.lights.pmf(context, light.id());
+        power_heuristic(*pdf, pmf * light.pdf_li(context, wi, point, true))
     }
 
     /// The weighted radiance along a ray that leaves the scene.
@@ -95,7 +96,8 @@ impl DirectLighting {
     ) -> impl Iterator<Item = (LightId, SampledSpectrum)> {
         let lights = scene.infinite_lights().iter();
         lights.map(move |&id| {
-            (id, scene.light(id).le(&ray.ray, lambda) * self.weight(scene, origin, id, ray.ray.d))
+            let light = scene.light(id);
+            (id, light.le(&ray.ray, lambda) * self.weight(light, origin, ray.ray.d, None))
         })
     }
 
@@ -108,9 +110,12 @@ impl DirectLighting {
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
         let Some(light) = surface.area_light else { return SampledSpectrum::ZERO };
-        let wo = surface.surface.wo;
+        let SurfacePoint { p, n, wo, .. } = surface.surface;
         let l = scene.emitted(surface, wo, lambda);
-        if l.is_black() { l } else { l * self.weight(scene, origin, light, -wo) }
+        if l.is_black() {
+            return l;
+        }
+        l * self.weight(scene.light(light), origin, -wo, Some((p.p, n)))
     }
 
     /// Next-event estimation: direct light that a surface scatters to `wo`; `None` if none arrives.

@@ -5,12 +5,16 @@
 //! geometry, the instances through which it is seen, and the emission. Power: Φ = π·A·L, twice that
 //! when both sides emit. Where an alpha texture cuts the surface out, it does not emit; a surface
 //! with the constant alpha 0 is an invisible light, which rays never hit but light sampling still
-//! finds. Emitted rays are uniform in area (patches may follow an image) and cosine-distributed, on
+//! finds. Rays pass through holes and may meet a round surface a second time: where that emits, the
+//! surface is sampled by area, and the density of a direction is that of the point which the ray has
+//! hit.
+//! Emitted rays are uniform in area (patches may follow an image) and cosine-distributed, on
 //! either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
 
 use super::emitter::{Emitter, motion_bounds};
 use super::{
-    EmissionId, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext,
+    EmissionId, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightPoint,
+    LightSampleContext,
 };
 use crate::texture::{FloatTextureId, TextureContext};
 use geometry::{GeometryId, InstancePath, ShapeSample, World};
@@ -95,6 +99,12 @@ impl AreaLight {
         mean_radiance * self.scale(part) * (PI * sides * self.area(part.world(), part.primitive))
     }
 
+    /// Whether rays may meet light of the surface behind its holes.
+    fn shines_through_holes(&self, part: &LightPart, emitter: &Emitter) -> bool {
+        let is_one_sided = !part.emission(self.emission).two_sided;
+        (self.alpha.is_some() || self.invisible) && !emitter.is_hit_once(is_one_sided)
+    }
+
     /// The stochastic alpha test of a point, decided by a hash of it.
     fn passes_alpha_test(&self, part: &LightPart, s: &ShapeSample) -> bool {
         let Some(alpha) = self.alpha.filter(|_| !self.invisible) else { return true };
@@ -144,7 +154,11 @@ impl LightModel for AreaLight {
         _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
         let s = self.with_emitter(part.world(), part.primitive, context.time, |emitter| {
-            emitter.sample_from(context, u)
+            if self.shines_through_holes(part, emitter) {
+                context.by_solid_angle(emitter.sample(u)?)
+            } else {
+                emitter.sample_from(context, u)
+            }
         })?;
         let to_light = s.p.p - context.p.p;
         if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.passes_alpha_test(part, &s) {
@@ -160,11 +174,16 @@ impl LightModel for AreaLight {
         part: &LightPart,
         context: &LightSampleContext,
         wi: Vector3,
+        point: LightPoint,
         _allow_incomplete: bool,
     ) -> f32 {
-        self.with_emitter(part.world(), part.primitive, context.time, |emitter| {
-            Some(emitter.pdf_from(context, wi))
+        self.with_emitter(part.world(), part.primitive, context.time, |emitter| match point {
+            Some((p, n)) if self.shines_through_holes(part, emitter) => {
+                Some(emitter.pdf_area(p, n) * context.area_per_solid_angle(p, n))
+            }
+            _ => Some(emitter.pdf_from(context, wi)),
         })
+        .filter(|pdf| pdf.is_finite())
         .unwrap_or(0.0)
     }
 

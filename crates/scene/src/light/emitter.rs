@@ -7,6 +7,7 @@
 //! and translation both factors are 1.
 
 use geometry::{InstancePath, Shape, ShapeSample, World};
+use lanes::Real;
 use math::{
     Bounds3, DirectionCone, MACHINE_EPSILON, Normal3, Point3, Point3Error, Transform, Vec2, Vec3, Vector3,
 };
@@ -133,6 +134,11 @@ impl<'a> Emitter<'a> {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
+    /// See [`Shape::is_hit_once`].
+    pub fn is_hit_once(&self, is_outside_alone: bool) -> bool {
+        self.shape.is_hit_once(is_outside_alone)
+    }
+
     /// A cone that bounds all its normals.
     pub fn normal_bounds(&self) -> DirectionCone {
         let cone = self.shape.normal_bounds();
@@ -188,12 +194,14 @@ fn area_factor(transform: &Transform, n: Normal3) -> f32 {
 }
 
 /// |det M⁻¹|/|M⁻¹ω|³.
-pub(super) fn solid_angle_factor(inverse: &Transform, w: Vector3) -> f32 {
-    determinant(inverse).abs() / inverse.vector(w).length().powi(3)
+#[inline(always)]
+pub(super) fn solid_angle_factor<R: Real>(inverse: &Transform, w: Vector3<R>) -> R {
+    let length = inverse.vector_lanes(w).length();
+    R::splat(determinant(inverse).abs()) / (length * length * length)
 }
 
 /// Whether the transform scales all lengths by the same factor.
-fn is_similarity(transform: &Transform) -> bool {
+pub(super) fn is_similarity(transform: &Transform) -> bool {
     let axes = axes(transform);
     let squared = axes[0].length_squared();
     let tolerance = 1e-5 * squared;

@@ -11,9 +11,17 @@
 //! distribution, and start uniformly on the disk that is perpendicular to them and covers the
 //! scene.
 //!
-//! Directions to a moving environment are transformed at the shutter time.
+//! A transform M other than a similarity stretches solid angles: a density around the direction ω of
+//! render space has the factor |det M⁻¹|/|M⁻¹ω|³, and the weight of a pixel, its solid angle, the
+//! reciprocal of that.
+//!
+//! Directions to a moving environment are transformed at the shutter time; its pixels have their
+//! weights at the start of motion.
 
-use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
+use super::emitter::{is_similarity, solid_angle_factor};
+use super::{
+    LightLeSample, LightLiSample, LightModel, LightPart, LightPoint, LightSampleContext, SceneSphere,
+};
 use crate::texture::SpectrumType;
 use image::{Image, Projection};
 use lanes::{Each, Real};
@@ -38,8 +46,29 @@ pub struct ImageInfiniteLight {
     pub scale: f32,
     /// The bounding sphere of the scene.
     pub scene: SceneSphere,
+    /// Whether the transform is ever other than a similarity.
+    is_stretched: bool,
     distribution: PiecewiseConstant2d,
     compensated: PiecewiseConstant2d,
+}
+
+/// Solid angles of an image's pixels in render space, as parts of that of all in equal areas.
+struct PixelWeights<'a> {
+    image: &'a Image,
+    projection: Projection,
+    /// The transform from the projection to render space, where it is no similarity.
+    stretch: Option<&'a Transform>,
+}
+
+impl PixelWeights<'_> {
+    fn at(&self, x: u32, y: u32) -> f32 {
+        let [width, height] = [self.image.width(), self.image.height()];
+        let weight = self.projection.row_solid_angle(y, height);
+        let Some(render_from_light) = self.stretch else { return weight };
+        let st = Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+        let w = render_from_light.vector(self.projection.direction(st)).normalize();
+        weight / solid_angle_factor(&render_from_light.inverse(), w)
+    }
 }
 
 impl ImageInfiniteLight {
@@ -55,31 +84,40 @@ impl ImageInfiniteLight {
         scale: f32,
         scene: SceneSphere,
     ) -> Self {
+        let is_stretched = [f32::MIN, f32::MAX].iter().any(|&t| !is_similarity(&render_from_light.at(t)));
+        let stretch = is_stretched.then(|| render_from_light.start());
+        let pixel_weights = PixelWeights { image: &image, projection, stretch };
         let (width, height) = (image.width(), image.height());
+        let pixels = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let mut density = Vec::with_capacity(width as usize * height as usize);
         let (mut sum, mut weights) = (0.0, 0.0);
-        for y in 0..height {
-            let weight = projection.row_solid_angle(y, height);
-            for x in 0..width {
-                let value = Rgb::from(image.rgb(x, y)).clamp_zero().average() * weight;
-                sum += f64::from(value);
-                weights += f64::from(weight);
-                density.push(value);
-            }
+        for (x, y) in pixels() {
+            let weight = pixel_weights.at(x, y);
+            let value = Rgb::from(image.rgb(x, y)).clamp_zero().average() * weight;
+            sum += f64::from(value);
+            weights += f64::from(weight);
+            density.push(value);
         }
         let distribution = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
         let mean = (sum / weights) as f32;
-        let rows = || (0..height).map(|y| projection.row_solid_angle(y, height));
-        for (row, weight) in density.chunks_exact_mut(width as usize).zip(rows()) {
-            row.iter_mut().for_each(|d| *d = (*d - mean * weight).max(0.0));
+        for (d, (x, y)) in density.iter_mut().zip(pixels()) {
+            *d = (*d - mean * pixel_weights.at(x, y)).max(0.0);
         }
         if density.iter().all(|&d| d == 0.0) {
-            for (row, weight) in density.chunks_exact_mut(width as usize).zip(rows()) {
-                row.fill(weight);
-            }
+            density = pixels().map(|(x, y)| pixel_weights.at(x, y)).collect();
         }
         let compensated = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
-        Self { render_from_light, image, projection, color_space, scale, scene, distribution, compensated }
+        Self {
+            render_from_light,
+            image,
+            projection,
+            color_space,
+            scale,
+            scene,
+            is_stretched,
+            distribution,
+            compensated,
+        }
     }
 
     /// The distribution over positions in the image by which directions are sampled; with
@@ -150,7 +188,17 @@ impl ImageInfiniteLight {
         let solid_angle = R::splat(4.0 * PI) * self.projection.solid_angle_density(st);
         let is_chosen = !(density.eq(R::zero()) | solid_angle.eq(R::zero()));
         let wi = render_from_light.vector_lanes(self.projection.direction(st)).normalize();
-        (self.lookup(st, lambda), wi, density / solid_angle, is_chosen)
+        let pdf = self.stretched(density / solid_angle, wi, render_from_light);
+        (self.lookup(st, lambda), wi, pdf, is_chosen)
+    }
+
+    /// A density per solid angle of the projection as one around the direction `w` of render space.
+    #[inline(always)]
+    fn stretched<R: Real>(&self, pdf: R, w: Vector3<R>, render_from_light: &Transform) -> R {
+        if !self.is_stretched {
+            return pdf;
+        }
+        pdf * solid_angle_factor(&render_from_light.inverse(), w)
     }
 
     fn sample_one(
@@ -170,7 +218,7 @@ impl ImageInfiniteLight {
         let st = self.position(wi, render_from_light);
         let solid_angle = R::splat(4.0 * PI) * self.projection.solid_angle_density(st);
         let pdf = self.distribution(allow_incomplete).pdf(st) / solid_angle;
-        R::select(solid_angle.eq(R::zero()), R::zero(), pdf)
+        R::select(solid_angle.eq(R::zero()), R::zero(), self.stretched(pdf, wi, render_from_light))
     }
 
     fn pdf_one(&self, wi: Vector3, time: f32, allow_incomplete: bool) -> f32 {
@@ -190,10 +238,11 @@ impl LightModel for ImageInfiniteLight {
     fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
         let mut sum = SampledSpectrum::ZERO;
         let (width, height) = (self.image.width(), self.image.height());
+        let stretch = self.is_stretched.then(|| self.render_from_light.start());
+        let weights = PixelWeights { image: &self.image, projection: self.projection, stretch };
         for y in 0..height {
-            let weight = self.projection.row_solid_angle(y, height);
             for x in 0..width {
-                sum += self.spectrum(self.image.rgb(x, y), lambda) * weight;
+                sum += self.spectrum(self.image.rgb(x, y), lambda) * weights.at(x, y);
             }
         }
         sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)
@@ -238,6 +287,7 @@ impl LightModel for ImageInfiniteLight {
         _part: &LightPart,
         context: &LightSampleContext,
         wi: Vector3,
+        _point: LightPoint,
         allow_incomplete: bool,
     ) -> f32 {
         self.pdf_one(wi, context.time, allow_incomplete)

@@ -151,13 +151,14 @@ pub trait LightModel {
     ) -> Option<LightLiSample>;
 
     /// Density per solid angle with which [`sample_li`](Self::sample_li) chooses the unit direction
-    /// `wi`; 0 for delta lights.
+    /// `wi`, along which a ray has hit the light at `point`; 0 for delta lights.
     #[doc(alias = "PDF_Li")]
     fn pdf_li(
         &self,
         _part: &LightPart,
         _context: &LightSampleContext,
         _wi: Vector3,
+        _point: LightPoint,
         _allow_incomplete: bool,
     ) -> f32 {
         0.0
@@ -217,6 +218,10 @@ pub trait LightModel {
         None
     }
 }
+
+/// A point of a light and its normal there, zero where it has none; `None` if the light is
+/// infinitely far away.
+pub type LightPoint = Option<(Point3, Normal3)>;
 
 /// A sample of incident light, before its visibility is tested.
 #[derive(Clone, Copy, Debug)]

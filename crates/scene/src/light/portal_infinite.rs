@@ -19,7 +19,8 @@
 
 use super::screen::Screen;
 use super::{
-    Emission, EmissionImage, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext,
+    Emission, EmissionImage, LightLeSample, LightLiSample, LightModel, LightPart, LightPoint,
+    LightSampleContext,
 };
 use image::Projection;
 use math::{Bounds2, Frame, Point2, Point3, Ray, Transform, Vec2, Vec3, Vector3};
@@ -295,6 +296,7 @@ impl LightModel for PortalInfiniteLight {
         _part: &LightPart,
         context: &LightSampleContext,
         wi: Vector3,
+        _point: LightPoint,
         _allow_incomplete: bool,
     ) -> f32 {
         let passes = self.portal.passes(context.p.p, wi);

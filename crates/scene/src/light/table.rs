@@ -5,7 +5,7 @@
 
 use super::{
     AreaEmission, EmissionId, Light, LightBounds, LightId, LightLeSample, LightLiSample, LightModel,
-    LightSampleContext, each_light,
+    LightPoint, LightSampleContext, each_light,
 };
 use crate::medium::{MediumId, MediumInterface};
 use crate::texture::Textures;
@@ -232,8 +232,14 @@ impl<'a> LightRef<'a> {
     }
 
     /// See [`LightModel::pdf_li`].
-    pub fn pdf_li(&self, context: &LightSampleContext, wi: Vector3, allow_incomplete: bool) -> f32 {
-        each_light!(self.light, light => light.pdf_li(&self.part, context, wi, allow_incomplete))
+    pub fn pdf_li(
+        &self,
+        context: &LightSampleContext,
+        wi: Vector3,
+        point: LightPoint,
+        allow_incomplete: bool,
+    ) -> f32 {
+        each_light!(self.light, light => light.pdf_li(&self.part, context, wi, point, allow_incomplete))
     }
 
     /// See [`LightModel::sample_le`].

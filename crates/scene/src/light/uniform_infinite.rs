@@ -5,7 +5,10 @@
 //! do. Emitted rays are uniform in direction, and start uniformly on the disk that is perpendicular
 //! to them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
-use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
+use super::{
+    Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightPoint, LightSampleContext,
+    SceneSphere,
+};
 use lanes::Real;
 use math::{Point2, Ray, Vec3, Vector3};
 use sampling::warp;
@@ -74,6 +77,7 @@ impl LightModel for UniformInfiniteLight {
         _part: &LightPart,
         _context: &LightSampleContext,
         _wi: Vector3,
+        _point: LightPoint,
         allow_incomplete: bool,
     ) -> f32 {
         Self::pdf(allow_incomplete)

@@ -22,7 +22,7 @@ fn samples_have_their_density() {
             // Directions without radiance are not samples.
             let density = |w: [f32; 3]| {
                 let w = Vec3::from(w).normalize();
-                let pdf = light.pdf_li(from, w, false) as f64;
+                let pdf = light.pdf_li(from, w, None, false) as f64;
                 if pdf > 0.0 && arriving(&case.scene, from, w) > 0.0 { pdf } else { 0.0 }
             };
             let sample = |u| Some(seen_sample(&case.scene, light, from, u, false)?.wi.to_array());
@@ -55,14 +55,14 @@ fn samples_of_environments_have_their_density() {
                 Some(projection.position(light_from_render.vector(sample.wi)).to_array())
             };
             if case.name == "sky" && incomplete {
-                assert!(sample([0.5; 2]).is_none() && light.pdf_li(&from, Vec3::Z, true) == 0.0);
+                assert!(sample([0.5; 2]).is_none() && light.pdf_li(&from, Vec3::Z, None, true) == 0.0);
                 continue;
             }
             // A cell of the square for each pixel: within it the density is constant.
             let density = |p: [f32; 2]| {
                 let w = light_from_render.inverse().vector(projection.direction(p.into()));
                 let solid_angle = 4.0 * PI as f64 * projection.solid_angle_density(p.into()) as f64;
-                solid_angle * light.pdf_li(&from, w.normalize(), incomplete) as f64
+                solid_angle * light.pdf_li(&from, w.normalize(), None, incomplete) as f64
             };
             Chi2 { bins, samples: 50_000, tests: 2 * cases.len(), ..Chi2::default() }
                 .rectangle([[0.0, 1.0]; 2], sample, density)
@@ -84,7 +84,7 @@ fn samples_agree_with_pdf_and_radiance() {
                         continue;
                     };
                     assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{}", case.name);
-                    let pdf = light.pdf_li(&from, sample.wi, incomplete);
+                    let pdf = light.pdf_li(&from, sample.wi, None, incomplete);
                     let arriving = arriving(&case.scene, &from, sample.wi);
                     // At an edge, rounding decides whether the direction hits.
                     if pdf == 0.0 || arriving == 0.0 {
@@ -108,7 +108,7 @@ fn only_delta_lights_cannot_be_hit() {
     }
     for case in delta_lights() {
         assert!(case.light().is_delta() && !case.light().is_infinite(), "{}", case.name);
-        assert_eq!(case.light().pdf_li(&references()[0], Vec3::Z, false), 0.0, "{}", case.name);
+        assert_eq!(case.light().pdf_li(&references()[0], Vec3::Z, None, false), 0.0, "{}", case.name);
     }
 }
 
@@ -185,7 +185,8 @@ fn latitude_longitude_and_octahedral_maps_agree() {
 
 #[test]
 fn mis_compensated_sampling_is_unbiased() {
-    let cases = infinite_lights();
+    let mut cases = infinite_lights();
+    cases.extend(stretched_environments());
     let (n, from) = (Vec3::new(0.1, 0.3, 1.0).normalize(), references()[0]);
     let mut random = Random::new(3);
     for case in &cases {
@@ -197,7 +198,7 @@ fn mis_compensated_sampling_is_unbiased() {
                 let by_light =
                     sample.map_or(0.0, |s| s.l[0] * n.dot(s.wi).max(0.0) / (s.pdf + uniform)) as f64;
                 let w = uniform_direction(&mut random);
-                let density = uniform + light.pdf_li(&from, w, true);
+                let density = uniform + light.pdf_li(&from, w, None, true);
                 by_light + arriving(&case.scene, &from, w) * f64::from(n.dot(w).max(0.0) / density)
             })
             .collect();

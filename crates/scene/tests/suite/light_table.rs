@@ -57,7 +57,7 @@ fn hits_of_instances_map_to_the_sampled_light() {
             let o = Vec3::new(x, y - 0.1 * x.signum(), 9.0);
             let id = hit(&scene, &ray(o, -Vec3::Z)).and_then(|s| s.area_light).expect("a light");
             assert!(ids.insert(id), "a light of its own at ({x}, {y})");
-            assert!(scene.light(id).pdf_li(&from(o), -Vec3::Z, false) > 0.0);
+            assert!(scene.light(id).pdf_li(&from(o), -Vec3::Z, None, false) > 0.0);
             for u in [[0.2, 0.3], [0.8, 0.6]] {
                 let sample = scene.sample_light(id, &from(o), u.into(), &lambda(), false).expect("light");
                 assert_eq!(hit(&scene, &ray(o, sample.wi)).and_then(|s| s.area_light), Some(id));

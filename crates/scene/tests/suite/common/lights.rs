@@ -7,7 +7,7 @@ use description::{
     AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey,
     ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
-use math::{DMat4, DVec3, Vec3};
+use math::{DMat4, DVec3, DVec4, Vec3};
 
 /// A scene of one light.
 pub struct Case {
@@ -275,9 +275,32 @@ pub fn infinite_lights() -> Vec<Case> {
     cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
 }
 
+/// Environments whose transforms are no similarities.
+pub fn stretched_environments() -> Vec<Case> {
+    let colours = |x, y| if (x, y) == (5, 2) { [4.0, 3.5, 3.0] } else { colours(x, y) };
+    let placed = |size, start: DMat4, end: DMat4| {
+        let mut desc = image_sky_of(size, None, colours);
+        for (_, light) in desc.lights.iter_mut() {
+            light.world_from_light.start = start;
+            light.world_from_light.end = end;
+        }
+        desc
+    };
+    let stretch = placement() * DMat4::from_scale(DVec3::new(1.0, 2.0, 0.5)) * DMat4::from_rotation_y(0.9);
+    let shear = placement() * DMat4::from_cols(DVec4::X, DVec4::new(0.7, -1.0, 0.0, 0.0), DVec4::Z, DVec4::W);
+    let cases = [
+        ("stretched image sky", placed([8, 8], stretch, stretch)),
+        ("stretched panorama", placed([16, 8], stretch, stretch)),
+        ("sheared panorama", placed([16, 8], shear, shear)),
+        ("panorama that is being stretched", placed([16, 8], placement(), stretch)),
+    ];
+    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+}
+
 pub fn hittable_lights() -> Vec<Case> {
     let mut lights = area_lights();
     lights.extend(infinite_lights());
+    lights.extend(stretched_environments());
     lights.extend(portal_lights());
     lights
 }
