@@ -19,6 +19,9 @@ pub struct ShapeDesc {
     pub world_from_object: TransformDesc,
     /// Flip its normals.
     pub reverse_orientation: bool,
+    /// Whether the camera sees its front alone, and all behind it through its back. Other rays meet
+    /// both sides.
+    pub single_sided: bool,
     /// Its material; the format's default (grey, diffuse) if absent.
     pub material: Option<Handle<MaterialDesc>>,
     /// Its emission.
@@ -35,6 +38,7 @@ impl From<ShapeKind> for ShapeDesc {
             kind,
             world_from_object: TransformDesc::default(),
             reverse_orientation: false,
+            single_sided: false,
             material: None,
             area_light: None,
             alpha: None,

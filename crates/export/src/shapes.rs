@@ -54,6 +54,10 @@ pub(crate) fn shape(
     .target("shape");
     write(&mut statement, kind, desc, names, files);
     statement.optional_float_parameter("alpha", shape.alpha.as_ref(), names);
+    statement.flag("singlesided", shape.single_sided, false);
+    if shape.single_sided {
+        extensions.insert("single-sided shapes".into());
+    }
     statement
 }
 

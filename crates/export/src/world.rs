@@ -31,6 +31,7 @@ impl<'a> Attributes<'a> {
             kind: _,
             world_from_object: TransformDesc { start, end, times: _ },
             reverse_orientation,
+            single_sided: _,
             material,
             area_light,
             alpha: _,

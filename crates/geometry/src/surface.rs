@@ -31,6 +31,8 @@ pub struct SurfacePoint {
     pub p: Point3Error,
     /// Unit geometric normal.
     pub n: Normal3,
+    /// Whether `n` was flipped to the side of interpolated normals, and is that of the back face.
+    pub is_flipped: bool,
     /// Texture coordinates.
     pub uv: Vec2,
     /// ∂p/∂u.
@@ -60,13 +62,21 @@ impl SurfacePoint {
         ray: &Ray,
     ) -> Self {
         let shading = Shading { n, dpdu, dpdv, dndu, dndv };
-        Self { p, n, uv, dpdu, dpdv, dndu, dndv, shading, wo: (-ray.d).normalize_or_zero(), time: ray.time }
+        let wo = (-ray.d).normalize_or_zero();
+        Self { p, n, is_flipped: false, uv, dpdu, dpdv, dndu, dndv, shading, wo, time: ray.time }
     }
 
     /// Sets the shading geometry, and flips `n` to the side of its normal.
     pub(crate) fn set_shading(&mut self, shading: Shading) {
-        self.n = face_forward(self.n, shading.n);
+        let n = face_forward(self.n, shading.n);
+        (self.is_flipped, self.n) = (n != self.n, n);
         self.shading = shading;
+    }
+
+    /// The geometric normal of the front face, which does not depend on interpolated normals.
+    #[inline]
+    pub fn front(&self) -> Normal3 {
+        if self.is_flipped { -self.n } else { self.n }
     }
 
     /// A ray along `d` with its origin clear of this surface.
@@ -86,6 +96,7 @@ impl SurfacePoint {
         Self {
             p: placement.point(self.p.p.as_dvec3(), (self.p.error + return_loss).as_dvec3()),
             n,
+            is_flipped: self.is_flipped,
             uv: self.uv,
             dpdu: vector(self.dpdu),
             dpdv: vector(self.dpdv),

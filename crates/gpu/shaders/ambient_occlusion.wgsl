@@ -7,7 +7,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     var next = ray;
     for (var i = 0u; i < 2; i++) {
         let is_shadow = i == 1;
-        let hit = traced(next.o, next.d, select(infinity(), world.max_distance, is_shadow), is_shadow);
+        let hit = traced(next, select(infinity(), world.max_distance, is_shadow), is_shadow);
         if (is_shadow) {
             return select(l, vec4f(), hit.found);
         }

@@ -74,7 +74,12 @@ fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
 }
 
 fn placed_ray(camera: PlacedCamera, o: vec3f, d: vec3f) -> Ray {
-    return Ray(times(camera.rotation, o) + camera.translation, times(camera.rotation, d), 0);
+    return Ray_new(times(camera.rotation, o) + camera.translation, times(camera.rotation, d), 0);
+}
+
+// The camera ray along a ray of any length.
+fn from_camera(ray: Ray) -> Ray {
+    return Ray(ray.o, Vec3_normalize(ray.d), shutter_time, CameraEnd_Origin);
 }
 
 fn set_shutter_time(u: f32) {
@@ -115,7 +120,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     }
     let ray = rays_of_film[0];
     if (!has_neighbours) {
-        return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), no_differentials(), share);
+        return CameraRay(from_camera(ray), no_differentials(), share);
     }
     let rx = rays_of_film[1];
     let ry = rays_of_film[2];
@@ -126,7 +131,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
         ray.o + (rx.o - ray.o) * scale, d + (rx.d * factor - d) * scale,
         ray.o + (ry.o - ray.o) * scale, d + (ry.d * factor - d) * scale, true,
     );
-    return CameraRay(Ray(ray.o, Vec3_normalize(ray.d), shutter_time), near, share);
+    return CameraRay(from_camera(ray), near, share);
 }
 
 // A sample of a pixel: the camera ray, its wavelengths, and its weight in the pixel.

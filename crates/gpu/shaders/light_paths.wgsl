@@ -146,7 +146,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
         let sphere = sphere_of_scene();
         let disk = vec3f(sample_uniform_disk_concentric(u_position), 1);
         let o = sphere.xyz + Frame_from_local(Frame_from_z(seen.wi), disk) * sphere.w;
-        e.ray = Ray(o, -seen.wi, 0);
+        e.ray = Ray_new(o, -seen.wi, 0);
         e.origin.is_distant = true;
         e.valid = e.valid && seen.valid;
         pdf = seen.pdf / (3.1415927 * sphere.w * sphere.w);
@@ -161,7 +161,7 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
         }
         pdf = point_direction_density(at, w);
         share = point_share(at, w, lambda);
-        e.ray = Ray(e.origin.p, w, 0);
+        e.ray = Ray_new(e.origin.p, w, 0);
     } else if (HAS_SURFACE_LIGHTS) {
         let point = point_on_light(at, u_position);
         e.valid = e.valid && !is_cut_out_of_light(at, point.p.p, point.n, point.uv);

@@ -14,10 +14,12 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             if (select(!goes_on, is_black(direct.l), is_shadow)) {
                 continue;
             }
-            let o = select(path.ray.o, direct.shadow.ray.o, is_shadow);
-            let d = select(path.ray.d, direct.shadow.ray.d, is_shadow);
+            var ray = path.ray;
+            if (is_shadow) {
+                ray = direct.shadow.ray;
+            }
             passes_interfaces = is_shadow && !direct.is_delta;
-            hit = traced(o, d, select(reach_of_path(), direct.shadow.t_max, is_shadow), is_shadow);
+            hit = traced(ray, select(reach_of_path(), direct.shadow.t_max, is_shadow), is_shadow);
             if (is_shadow && !hit.found) {
                 l += direct.l;
             }

@@ -7,6 +7,21 @@ struct Surface {
     @location(1) @interpolate(perspective, centroid) n: vec3f,
     @location(2) @interpolate(perspective, centroid) reflectance: vec4f,
     @location(3) @interpolate(perspective, centroid) transmittance: vec3f,
+    // Of single-sided surfaces, the sign of the area in the picture of triangles whose front is
+    // seen; 0 of others.
+    @location(4) @interpolate(flat, either) front: f32,
+}
+
+// The sign of the area in the picture of a triangle whose corners run counter-clockwise as the
+// camera sees them; 0 of parallel views.
+fn orientation_of_picture() -> f32 {
+    let rows = transpose(eye.clip_from_render);
+    return -sign(dot(cross(rows[0].xyz, rows[1].xyz), rows[3].xyz));
+}
+
+// Whether the camera sees the back of a single-sided surface, not a mirror.
+fn turns_its_back(surface: Surface, is_positive: bool) -> bool {
+    return surface.front * select(-1.0, 1.0, is_positive) < 0.0 && all(eye.cut == vec4f());
 }
 
 @vertex
@@ -31,12 +46,14 @@ fn surface_vertex(
     // Square roots need fewer bits.
     let shares = vec4f(reflectance.rgb * reflectance.rgb, reflectance.a);
     let through = transmittance.rgb * transmittance.rgb;
-    return Surface(eye.clip_from_render * vec4f(p, 1.0), p, normalize(n), shares, through);
+    // Whether its instance and the picture turn it over.
+    let turn = sign(dot(cross(x.xyz, y.xyz), z.xyz)) * orientation_of_picture();
+    return Surface(eye.clip_from_render * vec4f(p, 1.0), p, normalize(n), shares, through, turn * normal.w);
 }
 
 @fragment
-fn surface_fragment(surface: Surface) -> @location(0) vec4f {
-    if dot(eye.cut.xyz, surface.p) + eye.cut.w < 0.0 {
+fn surface_fragment(surface: Surface, @builtin(front_facing) is_positive: bool) -> @location(0) vec4f {
+    if dot(eye.cut.xyz, surface.p) + eye.cut.w < 0.0 || turns_its_back(surface, is_positive) {
         discard;
     }
     let way = surface.p - eye.position.xyz;

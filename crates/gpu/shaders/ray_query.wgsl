@@ -38,8 +38,8 @@ fn inner_ray(o: vec3f, d: vec3f, item: u32) -> InnerRay {
 fn met_triangle(ray: InnerRay, index: u32, found: RayIntersection) -> Nearest {
     let seen = sheared_triangle(sheared(ray.o, ray.d), index);
     let determinant = seen.e.x + seen.e.y + seen.e.z;
-    let is_cut_out = triangles[3 * index + 2].w == 1;
-    var met = Nearest(found.t, found.barycentrics, index, true, ray.instance, is_cut_out);
+    let is_marked = triangles[3 * index + 2].w == 1;
+    var met = Nearest(found.t, found.barycentrics, index, true, ray.instance, is_marked);
     if (determinant == 0) {
         return met;
     }
@@ -57,7 +57,11 @@ fn met_triangle(ray: InnerRay, index: u32, found: RayIntersection) -> Nearest {
 // The nearest hit at 0 < t < `t_max`; if `is_any`, whichever is found first.
 fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var best = Nearest(t_max, vec2f(), NO_HIT, false, NO_HIT, false);
-    let flags = select(RAY_FLAG_NONE, RAY_FLAG_TERMINATE_ON_FIRST_HIT, is_any);
+    var flags = select(RAY_FLAG_NONE, RAY_FLAG_TERMINATE_ON_FIRST_HIT, is_any);
+    if (accepts_all()) {
+        // No triangle is a candidate.
+        flags |= RAY_FLAG_FORCE_OPAQUE;
+    }
     // Shapes without bounds, which are not in the structure, come first.
     let first_open = (world.unbounded & ~(LEAF | ITEMS)) >> COUNT_BITS;
     var open = world.unbounded & ((1u << COUNT_BITS) - 1);
@@ -126,13 +130,13 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
         loop {
             if (shape != NO_HIT) {
                 hit = best;
-                hit.is_cut_out = false;
+                hit.is_marked = false;
                 intersect_shape(ray.o, ray.d, after, shape, ray.instance, &hit);
             }
             if (!(hit.t < best.t)) {
                 break;
             }
-            if (!hit.is_cut_out || accepts(whole(hit), o, d)) {
+            if (!hit.is_marked || accepts(whole(hit), o, d)) {
                 best = hit;
                 if (!is_begun) {
                     break;

@@ -86,24 +86,29 @@ fn hashed(a: vec3f, b: vec3f, word: u32) -> f32 {
 var<private> camera_hit: Hit;
 var<private> has_camera_hit: bool;
 
+// Where the camera is on the ray that is traced.
+var<private> end_at_camera: u32;
+
 // The first ray of a path, or any other.
-fn traced(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
+fn traced(ray: Ray, t_max: f32, is_any: bool) -> Hit {
     rays++;
     if (has_camera_hit) {
         has_camera_hit = false;
         return camera_hit;
     }
-    return trace(o, d, t_max, is_any);
+    end_at_camera = ray.camera;
+    return trace(ray.o, ray.d, t_max, is_any);
 }
 
 // The nearest hit of a ray.
 fn nearest(ray: Ray) -> Hit {
-    return traced(ray.o, ray.d, infinity(), false);
+    return traced(ray, infinity(), false);
 }
 
 // Whether anything is at 0 < t < `t_max`.
 fn occluded(ray: Ray, t_max: f32) -> bool {
     rays++;
+    end_at_camera = ray.camera;
     return trace(ray.o, ray.d, t_max, true).found;
 }
 

@@ -15,7 +15,7 @@ const TUBE = 8u;
 const RIBBON = 9u;
 
 // The bits of the last word of a shape.
-const CUT_OUT = 2u;
+const MARKED = 2u;
 
 // Takes the hit on a shape if it is the nearest so far of those beyond `after`.
 fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, best: ptr<function, Nearest>) {
@@ -44,7 +44,7 @@ fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, be
         }
     }
     if (t > after) {
-        *best = Nearest(t, uv, index, false, instance, (ids.w & CUT_OUT) != 0);
+        *best = Nearest(t, uv, index, false, instance, (ids.w & MARKED) != 0);
     }
 }
 

@@ -19,9 +19,11 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (!is_shadow && !goes_on) {
             break;
         }
-        let o = select(next.o, direct.shadow.ray.o, is_shadow);
-        let d = select(next.d, direct.shadow.ray.d, is_shadow);
-        let hit = traced(o, d, select(infinity(), direct.shadow.t_max, is_shadow), is_shadow);
+        var ray_now = next;
+        if (is_shadow) {
+            ray_now = direct.shadow.ray;
+        }
+        let hit = traced(ray_now, select(infinity(), direct.shadow.t_max, is_shadow), is_shadow);
         if (is_shadow) {
             l += select(direct.l, vec4f(), hit.found);
             direct.l = vec4f();

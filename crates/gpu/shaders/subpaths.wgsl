@@ -15,6 +15,7 @@ struct Partial {
 struct Vertex {
     p: Point3Error,
     n: vec3f,
+    front: f32,
     wo: vec3f,
     bsdf: Bsdf,
     beta: vec4f,
@@ -218,11 +219,15 @@ fn connection_to_camera(v: Vertex, u: vec2f) -> Connection {
         return c;
     }
     c.wi = lens.wi;
+    if (v.front * dot(v.n, c.wi) < 0) {
+        return c;
+    }
     c.factor = vec4f(lens.we);
     let way = lens.p - v.p.p;
     let density = select(lens.seen.pdf_direction / dot(way, way), lens.seen.pdf_position, is_parallel());
     c.back = density * cos_theta(v, c.wi) / count_of_light_paths();
     c.ray = Ray_between(v.p, v.n, Point3Error(lens.p, vec3f()), lens.seen.n, 0);
+    c.ray.camera = CameraEnd_Target;
     c.t_max = 0.9999;
     c.film = lens.seen.film;
     c.valid = true;
@@ -328,7 +333,7 @@ fn arrive(walk: ptr<function, Subpath>, s: ptr<function, Surface>, t: f32) -> Ar
     let context = light_context(*s, flags);
     let hero_only = SampledWavelengths_secondary_terminated(lambda);
     let beta = (*walk).beta;
-    var v = Vertex((*s).p, (*s).n, (*s).wo, bsdf, beta, hero_only, Partial(), (*walk).depth);
+    var v = Vertex((*s).p, (*s).n, (*s).front, (*s).wo, bsdf, beta, hero_only, Partial(), (*walk).depth);
     if (has_weights()) {
         v.partial = partial_at(*walk, t, v, context);
     }

@@ -7,6 +7,8 @@ struct Surface {
     p: Point3Error,
     // The geometric normal, on the side of the shading normal.
     n: vec3f,
+    // On which side of it the front of a single-sided surface is, 1 or -1; 0 of others.
+    front: f32,
     uv: vec2f,
     dpdu: vec3f,
     dpdv: vec3f,
@@ -56,6 +58,7 @@ fn surface_at(hit: Hit, ray: Ray) -> Surface {
     if (hit.instance != NO_HIT) {
         place_surface(&s, Rows(row[0].xyz, row[1].xyz, row[2].xyz), vec3f(row[0].w, row[1].w, row[2].w));
     }
+    s.front *= f32(HAS_SINGLE_SIDED && word(geometry + 5) == 1);
     s.wo = Vec3_normalize(-ray.d);
     s.material = word(geometry);
     s.light = word(geometry + 1);
@@ -123,6 +126,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     let error = gamma(5) * (abs(corner) + abs(du * b.y) + abs(dv * b.z));
     s.p = Point3Error(corner + du * b.y + dv * b.z, error);
     s.n = Vec3_normalize(cross(du, dv)) * select(1.0, -1.0, flips);
+    s.front = 1;
     var uv = array(vec2f(), vec2f(1, 0), vec2f(1, 1));
     var next = attributes + 1;
     var flags = 0u;
@@ -149,7 +153,8 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
         let n = at_corners(normals);
         let ns = Vec3_normalize_masked(mixed(n, b));
         s.ns = select(s.n, ns.v0, ns.v1);
-        s.n = face_forward(s.n, s.ns);
+        s.front = select(1.0, -1.0, dot(s.n, s.ns) < 0);
+        s.n *= s.front;
         let inverse = 1 / area(uv[1] - uv[0], uv[2] - uv[0]);
         let nu = n[1] - n[0];
         let nv = n[2] - n[0];
@@ -243,6 +248,7 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         s.dpdu = times(outward, s.dpdu);
         s.dpdv = times(outward, s.dpdv);
     }
+    s.front = 1;
     s.ns = s.n;
     s.ss = s.dpdu;
     s.ts = s.dpdv;
@@ -352,14 +358,52 @@ fn alpha_at(hit: Hit, s: Surface) -> f32 {
 // Whether interfaces do not stop the ray that is traced.
 var<private> passes_interfaces: bool;
 
-// Whether a hit on a surface that is cut out counts, by a hash of the ray and the distance.
+// Whether all hits of the ray that is traced count.
+fn accepts_all() -> bool {
+    return !HAS_HOLES && (!HAS_SINGLE_SIDED || end_at_camera == CameraEnd_Neither);
+}
+
+// Whether a single-sided surface turns its back to the camera at an end of the ray.
+fn turns_its_back(hit: Hit, o: vec3f, d: vec3f) -> bool {
+    let geometry = world.geometries + 8 * hit.geometry;
+    if (end_at_camera == CameraEnd_Neither || word(geometry + 5) == 0) {
+        return false;
+    }
+    var inner_o = o;
+    var inner_d = d;
+    if (hit.instance != NO_HIT) {
+        let row = instance_rows(hit.instance);
+        inner_o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
+        inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
+    }
+    var front: vec3f;
+    if (hit.is_triangle) {
+        let corner = bitcast<vec3f>(triangles[3 * hit.place].xyz);
+        let du = bitcast<vec3f>(triangles[3 * hit.place + 1].xyz) - corner;
+        let dv = bitcast<vec3f>(triangles[3 * hit.place + 2].xyz) - corner;
+        front = cross(du, dv) * select(1.0, -1.0, word(geometry + 3) == 1);
+    } else {
+        front = shape_point(hit, inner_o, inner_d).n;
+    }
+    let along = dot(front, inner_d);
+    return select(along < 0, along > 0, end_at_camera == CameraEnd_Origin);
+}
+
+// Whether a hit on a surface that is cut out or single-sided counts: where it is cut out, by a hash
+// of the ray and the distance.
 fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
+    if (HAS_SINGLE_SIDED && turns_its_back(hit, o, d)) {
+        return false;
+    }
     if (!HAS_HOLES) {
         return true;
     }
     if (HAS_INTERFACES && is_interface(word(world.geometries + 8 * hit.geometry))) {
         return !passes_interfaces;
     }
-    let alpha = alpha_at(hit, surface_at(hit, Ray(o, d, 0)));
+    if (word(world.geometries + 8 * hit.geometry + 4) == 0) {
+        return true;
+    }
+    let alpha = alpha_at(hit, surface_at(hit, Ray_new(o, d, 0)));
     return alpha >= 1 || (alpha > 0 && hashed(o, d, bitcast<u32>(hit.t)) < alpha);
 }

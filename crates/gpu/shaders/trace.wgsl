@@ -150,7 +150,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             let are_items = (reference & ITEMS) == ITEMS;
             if (!are_items || items[5 * first + 4].x != INSTANCE) {
                 var hit = best;
-                hit.is_cut_out = false;
+                hit.is_marked = false;
                 if (are_items) {
                     intersect_shape(inner_o, inner_d, after, first, instance, &hit);
                 } else {
@@ -158,7 +158,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                 }
                 after = 0;
                 next = vec2u(select(LEAF, rest, count > 1), 0);
-                if (!hit.is_cut_out || accepts(whole(hit), o, d)) {
+                if (!hit.is_marked || accepts(whole(hit), o, d)) {
                     best = hit;
                     if (is_any && best.place != NO_HIT) {
                         break;

@@ -217,7 +217,7 @@ fn go_under(path: ptr<function, Path>, s: Surface, bsdf: Bsdf, lambda: SampledWa
     let half = sqrt(max(radii.y * radii.y - radii.x * radii.x, 0));
     let turn = sin_cos(6.2831855 * u[2].y);
     let start = across[0] * (radii.x * turn.v1) + across[1] * (radii.x * turn.v0) - along * half;
-    (*path).ray = Ray(s.p.p + start, along, shutter_time);
+    (*path).ray = Ray_new(s.p.p + start, along, shutter_time);
     under.end = (*path).ray.o + along * (2 * half);
     under.reach = 2 * half;
     return under.reach > 0;
@@ -335,6 +335,6 @@ fn follow_walk(path: ptr<function, Path>, is_hit: bool, s: Surface) -> u32 {
         u[i] = walk_number();
     }
     let phase = HenyeyGreenstein(under.g);
-    (*path).ray = Ray(under.p + ray.d * under.free, HenyeyGreenstein_sample_p(phase, -ray.d, u).v0, shutter_time);
+    (*path).ray = Ray_new(under.p + ray.d * under.free, HenyeyGreenstein_sample_p(phase, -ray.d, u).v0, shutter_time);
     return select(IS_LOST, GOES_ON, begin_flight((*path).ray));
 }

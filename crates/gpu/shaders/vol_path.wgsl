@@ -161,8 +161,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             medium = shadow.medium;
             throughput = shadow.passage;
         }
-        rays++;
-        let hit = trace(part.o, part.d, t_max, false);
+        let hit = traced(part, t_max, false);
         let geometry = hit.geometry;
         let is_open = hit.found && is_interface(word(world.geometries + 8 * geometry));
         if (is_shadow && hit.found && !is_open) {
@@ -182,7 +181,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 begin_collisions(first, get_1d());
             }
             let end = select(t_max, hit.t, hit.found) * scale;
-            let unit = Ray(part.o, part.d / scale, part.time);
+            let unit = Ray_new(part.o, part.d / scale, part.time);
             flight = fly(medium, unit, end, is_shadow, path.heroes, *lambda, &throughput);
         }
         if (is_shadow) {

@@ -139,6 +139,8 @@ pub struct Parts {
     pub bumps: bool,
     /// Surfaces with an alpha.
     pub holes: bool,
+    /// Surfaces whose backs the camera does not see.
+    pub single_sided: bool,
     /// Textures of images.
     pub images: bool,
     /// Lights at points.
@@ -328,6 +330,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         programs,
         bumps,
         holes,
+        single_sided,
         images,
         point_lights,
         sky_images,
@@ -364,7 +367,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
         const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\
         const HAS_MEASURED = {measured};\nconst HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
         const HAS_SUBSURFACE = {subsurface};\nconst HAS_ZSOBOL = {zsobol};\n\
-        const HAS_RARE_SAMPLERS = {rare_samplers};\n"
+        const HAS_RARE_SAMPLERS = {rare_samplers};\nconst HAS_SINGLE_SIDED = {single_sided};\n"
     );
     let surfaces = if principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")

@@ -30,7 +30,7 @@ pub use interval::Interval;
 pub use lanes::{exp, ln, sin_cos};
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, wrap_equal_area_square};
 pub use quadratic::solve_quadratic;
-pub use ray::{Differentials, Ray, RayDifferential};
+pub use ray::{CameraEnd, Differentials, Ray, RayDifferential};
 pub use spherical::*;
 pub use transform::{Transform, affine_ray};
 pub use vector::{Vec2, Vec3};

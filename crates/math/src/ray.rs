@@ -3,6 +3,19 @@
 use crate::{Normal3, Point3, Point3Error, Vector3, offset_ray_origin};
 use lanes::Real;
 
+/// The end of a ray at which the camera is. The camera does not see the back faces of single-sided
+/// surfaces, so that these rays pass through them; other rays meet both sides of all surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CameraEnd {
+    /// The camera is at neither end. So it is for rays that go on beyond an interface between media.
+    #[default]
+    Neither,
+    /// A camera ray.
+    Origin,
+    /// A ray from a point of the scene towards the camera.
+    Target,
+}
+
 /// A ray. The direction need not have unit length; t is in lengths of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray<R = f32> {
@@ -12,6 +25,8 @@ pub struct Ray<R = f32> {
     pub d: Vector3<R>,
     /// Shutter time.
     pub time: R,
+    /// Where the camera is.
+    pub camera: CameraEnd,
 }
 
 impl Ray {
@@ -24,7 +39,7 @@ impl<R: Real> Ray<R> {
     /// A ray from `o` along `d`.
     #[inline(always)]
     pub fn new(o: Point3<R>, d: Vector3<R>, time: R) -> Self {
-        Self { o, d, time }
+        Self { o, d, time, camera: CameraEnd::Neither }
     }
 
     /// The point o + t·d.

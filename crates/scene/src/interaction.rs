@@ -10,7 +10,7 @@ use crate::medium::{MediumId, MediumInterface};
 use crate::texture::TextureContext;
 use crate::view::View;
 use geometry::SurfacePoint;
-use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3};
+use math::{Differentials, Normal3, Point3, Ray, RayDifferential, Vec3, Vector3};
 use scattering::BsdfSample;
 
 /// A point on a surface of the scene.
@@ -22,6 +22,9 @@ pub struct SurfaceInteraction {
     pub material: MaterialId,
     /// The media on its two sides, if they differ.
     pub media: Option<MediumInterface>,
+    /// The normal of the front face of a single-sided surface; zero where the camera sees both
+    /// sides.
+    pub front: Normal3,
     /// The area light of the surface, if it emits.
     pub area_light: Option<LightId>,
     /// The footprint of the pixel; zero until [`SurfaceInteraction::compute_footprint`].

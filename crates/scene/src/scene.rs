@@ -19,7 +19,7 @@ use description::{LightSamplerDesc, Span};
 use geometry::{
     Filter, Geometry, GeometryId, Hit, HitColumns, RayColumns, RayStats, SphereSet, SurfacePoint, World,
 };
-use math::{DMat4, Differentials, Point2, Ray, RayDifferential, Vec2, Vector3};
+use math::{CameraEnd, DMat4, Differentials, Normal3, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, BsdfSample, Bxdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -33,6 +33,8 @@ pub struct GeometryEntry {
     pub material: MaterialId,
     /// Alpha texture, which cuts the surface out; `None` is opaque.
     pub alpha: Option<FloatTextureId>,
+    /// Whether rays with the camera at an end pass through its back.
+    pub single_sided: bool,
     /// The light of its first primitive, if it emits; those of the other primitives follow. It is
     /// an offset from the first light of the group that holds the geometry: the id is its sum with
     /// the [`InstanceEntry::first_light`] of all instances on the path to the geometry.
@@ -203,7 +205,7 @@ impl Scene {
 
     /// The nearest hit at 0 < t < `t_max`.
     pub fn hit(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<Hit> {
-        self.world.intersect(ray, t_max, &self.visible(), stats)
+        self.world.intersect(ray, t_max, &self.visible(ray.camera), stats)
     }
 
     /// Whether one of 64 × 64 camera rays, spread over a view of the given resolution, hits a
@@ -223,6 +225,7 @@ impl Scene {
     pub fn interaction(&self, hit: &Hit, surface: SurfacePoint) -> SurfaceInteraction {
         let entry = &self.entries[hit.geometry.0 as usize];
         SurfaceInteraction {
+            front: if entry.single_sided { surface.front() } else { Normal3::ZERO },
             surface,
             material: entry.material,
             media: entry.media.filter(MediumInterface::is_transition),
@@ -257,12 +260,12 @@ impl Scene {
 
     /// Whether an occluding surface lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
-        self.world.occluded(ray, t_max, &self.stopping(interfaces), stats)
+        self.world.occluded(ray, t_max, &self.stopping(interfaces, ray.camera), stats)
     }
 
     /// [`hit`](Self::hit) for each ray.
     pub fn hit_batch(&self, rays: RayColumns, hits: &mut HitColumns, stats: &mut RayStats) {
-        self.world.intersect_batch(rays, &self.visible(), hits, stats);
+        self.world.intersect_batch(rays, &self.visible(rays.camera), hits, stats);
     }
 
     /// [`occluded`](Self::occluded) for each ray.
@@ -276,17 +279,26 @@ impl Scene {
         occluded: &mut [bool],
         stats: &mut RayStats,
     ) {
-        self.world.occluded_batch(rays, &self.stopping(interfaces), occluded, stats);
+        self.world.occluded_batch(rays, &self.stopping(interfaces, rays.camera), occluded, stats);
     }
 
     /// The hits that are visible.
-    fn visible(&self) -> Surfaces<'_> {
-        self.stopping(Interfaces::Stop)
+    fn visible(&self, camera: CameraEnd) -> Surfaces<'_> {
+        self.stopping(Interfaces::Stop, camera)
     }
 
     /// The hits that stop shadow rays.
-    fn stopping(&self, interfaces: Interfaces) -> Surfaces<'_> {
-        Surfaces { scene: self, interfaces }
+    fn stopping(&self, interfaces: Interfaces, camera: CameraEnd) -> Surfaces<'_> {
+        Surfaces { scene: self, interfaces, camera }
+    }
+
+    /// Whether a single-sided surface turns its back to the camera at an end of the ray.
+    fn turns_its_back(&self, hit: &Hit, ray: &Ray) -> bool {
+        if ray.camera == CameraEnd::Neither || !self.entries[hit.geometry.0 as usize].single_sided {
+            return false;
+        }
+        let along = self.world.surface(ray, hit).front().dot(ray.d);
+        if ray.camera == CameraEnd::Origin { along > 0.0 } else { along < 0.0 }
     }
 
     /// Whether the point or direction of a light sample is visible from a surface.
@@ -444,17 +456,19 @@ impl Scene {
     }
 }
 
-/// The hits on surfaces that are not cut out by alpha, and on interfaces where these stop rays.
+/// The hits on surfaces that are not cut out by alpha, on interfaces where these stop rays, and, of
+/// rays with the camera at an end, on the sides that it sees.
 struct Surfaces<'a> {
     scene: &'a Scene,
     interfaces: Interfaces,
+    camera: CameraEnd,
 }
 
 impl Filter for Surfaces<'_> {
     #[inline(always)]
     fn accepts(&self, hit: &Hit, ray: &Ray) -> bool {
         let passes = self.interfaces == Interfaces::Pass && self.scene.is_interface(hit, ray);
-        !passes && self.scene.passes_alpha_test(hit, ray)
+        !passes && !self.scene.turns_its_back(hit, ray) && self.scene.passes_alpha_test(hit, ray)
     }
 
     fn concerns(&self, geometry: GeometryId) -> bool {
@@ -462,6 +476,6 @@ impl Filter for Surfaces<'_> {
         let material = &self.scene.materials[entry.material.0 as usize].material;
         let may_pass =
             self.interfaces == Interfaces::Pass && matches!(material, Material::Interface | Material::Mix(_));
-        may_pass || entry.alpha.is_some()
+        may_pass || entry.alpha.is_some() || (entry.single_sided && self.camera != CameraEnd::Neither)
     }
 }

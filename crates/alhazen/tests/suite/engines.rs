@@ -63,8 +63,8 @@ LightSource "point" "point3 from" [ 0 2 3 ] "rgb I" [ 2 2 2 ]
 "#;
 
 /// Surfaces that are not shaded in lanes, or that more than one ray leaves: interfaces, mixes with
-/// them, alpha, panes and blocks of glass, dispersion, mirrors, instances. Textures are not
-/// filtered, so that each point has one of two values.
+/// them, alpha, backs that the camera does not see, panes and blocks of glass, dispersion, mirrors,
+/// instances. Textures are not filtered, so that each point has one of two values.
 const SURFACES: &str = r#"
 Option "disabletexturefiltering" true
 LookAt 0 1.5 5 0 0.8 0 0 1 0
@@ -92,6 +92,8 @@ NamedMaterial "holes"
 Shape "bilinearmesh" "point3 P" [ -2 0 -1.5  0 0 -1.5  -2 2 -1.5  0 2 -1.5 ]
 NamedMaterial "clay"
 Shape "bilinearmesh" "point3 P" [ 0 0 -2  2 0 -2  0 2 -2  2 2 -2 ] "texture alpha" "squares"
+Shape "bilinearmesh" "point3 P" [ 0.5 0.5 2  0.5 1.2 2  1.2 0.5 2  1.2 1.2 2 ] "bool singlesided" true
+Shape "trianglemesh" "point3 P" [ -1.2 0.5 2  -0.5 0.5 2  -0.5 1.2 2 ] "integer indices" [ 0 2 1 ] "bool singlesided" true
 Material "thindielectric"
 Shape "bilinearmesh" "point3 P" [ 0.8 0 1  1.8 0 1  0.8 1 1  1.8 1 1 ]
 Material "dielectric" "spectrum eta" "glass-F11"

@@ -103,6 +103,85 @@ fn emission_is_its_strength_in_candela_per_square_metre() {
     close(seen(&[unlit], "", front), [0.5, 0.25, 1.0]);
 }
 
+/// A surface that reflects nothing.
+fn black(is_double_sided: bool) -> String {
+    format!(
+        r#"{{
+        "pbrMetallicRoughness": {{"metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1]}},
+        "extensions": {{"KHR_materials_specular": {{"specularFactor": 0}}}}, "doubleSided": {is_double_sided}
+    }}"#
+    )
+}
+
+const LAMP: &str = r#"{
+    "emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+    "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}
+}"#;
+
+#[test]
+fn the_camera_sees_through_the_backs_of_single_sided_surfaces() {
+    // Before a lamp, by how the surface is turned and mirrored.
+    for (placed, shows_front) in [
+        (r#""scale": [1, 1, 1]"#, true),
+        (r#""rotation": [0, 1, 0, 0]"#, false),
+        // Mirrored surfaces turn their front to where the mirror has it.
+        (r#""scale": [-1, 1, 1]"#, true),
+        (r#""scale": [1, 1, -1]"#, false),
+        (r#""scale": [-1, 1, 1], "rotation": [0, 1, 0, 0]"#, false),
+    ] {
+        let nodes = format!(
+            r#"{{"name": "at", "mesh": 0}}, {{"name": "at", "mesh": 1, "translation": [0, 0, 1], {placed}}}"#
+        );
+        let found = seen(&[LAMP, &black(false)], "", &nodes);
+        close(found, [if shows_front { 0.0 } else { 2.0 }; 3]);
+        close(seen(&[LAMP, &black(true)], "", &nodes), [0.0; 3]);
+    }
+    // What emits on its front is as invisible from behind.
+    let nodes = r#"{"name": "at", "mesh": 0}, {"name": "at", "mesh": 0, "translation": [0, 0, 1],
+        "rotation": [0, 1, 0, 0]}"#;
+    close(seen(&[LAMP], "", nodes), [2.0; 3]);
+}
+
+#[test]
+fn a_camera_in_a_closed_box_sees_what_is_outside_of_it() {
+    // A box around the camera at z = 5, whose outside is its front, above a lit surface.
+    let turns = [[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]].into_iter().chain(
+        [[0.5_f32.sqrt(), 0.0], [-0.5_f32.sqrt(), 0.0], [0.0, 0.5_f32.sqrt()], [0.0, -0.5_f32.sqrt()]]
+            .map(|[x, y]| [x, y, 0.0, 0.5_f32.sqrt()]),
+    );
+    let faces = turns.map(|[x, y, z, w]| {
+        // Where the turn takes +z.
+        let n = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
+        let [a, b, c] = [n[0], n[1], 5.0 + n[2]];
+        format!(
+            r#", {{"name": "at", "mesh": 1, "translation": [{a}, {b}, {c}], "rotation": [{x}, {y}, {z}, {w}]}}"#
+        )
+    });
+    let lit = r#"{"name": "at", "mesh": 0}, {"name": "at", "translation": [0, 0, 2],
+        "extensions": {"KHR_lights_punctual": {"light": 0}}}"#;
+    let nodes = lit.to_owned() + &faces.collect::<String>();
+    let point = r#"{"type": "point", "intensity": 10}"#;
+    close(seen(&[WHITE, &black(false)], point, &nodes), [10.0 / 4.0 / PI; 3]);
+    close(seen(&[WHITE, &black(true)], point, &nodes), [0.0; 3]);
+}
+
+#[test]
+fn what_the_camera_does_not_see_casts_shadows() {
+    let nodes = |turn: &str| {
+        format!(
+            r#"{{"name": "at", "mesh": 0}}, {{"name": "at", "extensions": {{"KHR_lights_punctual": {{"light": 0}}}}}},
+            {{"name": "at", "mesh": 1, "translation": [0, 0, 1] {turn}}}"#
+        )
+    };
+    let sun = r#"{"type": "directional", "intensity": 3}"#;
+    let turned = nodes(r#", "rotation": [0, 1, 0, 0]"#);
+    close(seen(&[WHITE, &black(false)], sun, &turned), [0.0; 3]);
+    // The sun is seen by the surface again where the other one is beside it.
+    let aside = turned.replace("[0, 0, 1]", "[5, 0, 1]");
+    close(seen(&[WHITE, &black(false)], sun, &aside), [3.0 / PI; 3]);
+    close(seen(&[WHITE, &black(false)], sun, &nodes("")), [0.0; 3]);
+}
+
 #[test]
 fn volumes_absorb_by_beers_law() {
     let lamp = r#"{

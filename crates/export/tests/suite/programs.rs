@@ -46,6 +46,17 @@ fn constants_are_kept() {
 }
 
 #[test]
+fn single_sided_shapes_are_an_extension() {
+    let mut desc = SceneDesc::default();
+    desc.shapes.push(sphere());
+    desc.shapes.push(ShapeDesc { single_sided: true, ..sphere() });
+    let (exported, again) = round_trip(&desc);
+    assert_eq!(difference(&desc, &again), None, "{}", exported.text);
+    assert_eq!(again.shapes.iter().map(|(_, shape)| shape.single_sided).collect::<Vec<_>>(), [false, true]);
+    assert_eq!(exported.extensions, ["single-sided shapes"]);
+}
+
+#[test]
 fn images_are_kept_with_their_codes_and_values() {
     let codes: Vec<u8> = (0..=255).collect();
     let mut desc = SceneDesc::default();

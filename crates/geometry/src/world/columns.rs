@@ -5,7 +5,7 @@ use super::hit::Hit;
 use super::instance::InstancePath;
 use crate::bvh::{Packet, WIDTH};
 use lanes::{Int, MAX_LANES, Mask, Real};
-use math::{Ray, Vec2, Vec3, Vector3};
+use math::{CameraEnd, Ray, Vec2, Vec3, Vector3};
 
 /// Rays of a batch: a column for each of their numbers. Columns may be longer than needed.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,8 @@ pub struct RayColumns<'a> {
     pub time: &'a [f32],
     /// Ends; `None` where no ray has any.
     pub t_max: Option<&'a [f32]>,
+    /// Where the camera is on all of them.
+    pub camera: CameraEnd,
 }
 
 impl<'a> RayColumns<'a> {
@@ -32,6 +34,7 @@ impl<'a> RayColumns<'a> {
             d: self.d.map(from),
             time: from(self.time),
             t_max: self.t_max.map(from),
+            camera: self.camera,
         }
     }
 
@@ -52,7 +55,7 @@ impl<'a> RayColumns<'a> {
     pub fn ray(&self, place: usize) -> Ray {
         let vector =
             |columns: &[&[f32]; 3]| Vec3::new(columns[0][place], columns[1][place], columns[2][place]);
-        Ray::new(vector(&self.o), vector(&self.d), self.time[place])
+        Ray { o: vector(&self.o), d: vector(&self.d), time: self.time[place], camera: self.camera }
     }
 
     /// Its end.
@@ -171,6 +174,7 @@ impl RayBuffer {
             d: [dx, dy, dz],
             time: &self.time,
             t_max: Some(&self.t_max),
+            camera: CameraEnd::Neither,
         }
     }
 }

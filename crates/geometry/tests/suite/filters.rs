@@ -47,8 +47,8 @@ fn rejected_hits_do_not_hide_others() {
         let mut twice = 0;
         for _ in 0..400 {
             let (from, to) = (direction(rng) * 6.0, point_in(rng, 0.8));
-            let ray = Ray { o: from, d: (to - from) * 2.0, time: 0.0 };
-            let back = Ray { o: ray.o + ray.d, d: -ray.d, time: 0.0 };
+            let ray = Ray::new(from, (to - from) * 2.0, 0.0);
+            let back = Ray::new(ray.o + ray.d, -ray.d, 0.0);
             let there = hits(&world, &ray, 1.0);
             let mut again: Vec<f32> = hits(&world, &back, 1.0).into_iter().map(|t| 1.0 - t).collect();
             again.reverse();

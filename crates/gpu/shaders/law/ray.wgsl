@@ -1,16 +1,21 @@
 // Translated from crates/math/src/ray.rs
 // by `cargo xtask wgsl`, which translates it again.
 
+const CameraEnd_Neither = 0u;
+const CameraEnd_Origin = 1u;
+const CameraEnd_Target = 2u;
+
 // A ray. The direction need not have unit length; t is in lengths of the direction.
 struct Ray {
     o: vec3f,
     d: vec3f,
     time: f32,
+    camera: u32,
 }
 
 // A ray from `o` along `d`.
 fn Ray_new(o: vec3f, d: vec3f, time: f32) -> Ray {
-    return Ray(o, d, time);
+    return Ray(o, d, time, CameraEnd_Neither);
 }
 
 // The point o + t·d.

@@ -79,7 +79,7 @@ fn receiver_of(r: Reservoir, near: Differentials, lambda: ptr<function, SampledW
     hit.is_triangle = r.kind == TRIANGLE_RECEIVER;
     hit.instance = r.instance;
     hit.found = true;
-    var s = surface_at(hit, Ray(r.o, r.d, 0));
+    var s = surface_at(hit, Ray_new(r.o, r.d, 0));
     // The walks in coats are the same whenever a sample is evaluated.
     place.dimension = 0;
     found.bsdf = bsdf_at(&s, texture_context(s, near), lambda);

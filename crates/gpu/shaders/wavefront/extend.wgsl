@@ -17,6 +17,9 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
     if (path != NO_PATH) {
         let o = numbers(RAY_O, path);
         shutter_time = o.w;
+        if (HAS_SINGLE_SIDED) {
+            end_at_camera = row(NS, path).w;
+        }
         let hit = trace(o.xyz, numbers(RAY_D, path).xyz, infinity(), false);
         let bits = select(0u, FOUND, hit.found) | select(0u, IS_TRIANGLE, hit.is_triangle);
         keep(HIT, path, vec4u(bitcast<u32>(hit.t), bitcast<vec2u>(hit.uv), hit.geometry));

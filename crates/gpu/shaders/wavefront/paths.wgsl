@@ -9,7 +9,7 @@ const LAMBDA_PDF = 1u;
 const BETA = 2u;
 const RAY_O = 3u;
 const RAY_D = 4u;
-// The vertex that the ray starts at; with the normal, the sample.
+// The vertex that the ray starts at; with the normals, the sample and where the camera is.
 const P = 5u;
 const P_ERROR = 6u;
 const N = 7u;
@@ -119,7 +119,7 @@ fn keep_path(index: u32, sample: u32, path: Path, lambda: SampledWavelengths, l:
     keep_numbers(P, index, vec4f(path.origin.p.p, path.eta_scale));
     keep(P_ERROR, index, vec4u(bitcast<vec3u>(path.origin.p.error), place.dimension));
     keep(N, index, vec4u(bitcast<vec3u>(path.origin.n), sample));
-    keep_numbers(NS, index, vec4f(path.origin.ns, 0));
+    keep(NS, index, vec4u(bitcast<vec3u>(path.origin.ns), path.ray.camera));
     if (path.near.are_known) {
         keep_numbers(NEAR, index, vec4f(path.near.rx_origin, 0));
         keep_numbers(NEAR + 1, index, vec4f(path.near.rx_direction, 0));
@@ -146,7 +146,7 @@ fn kept_path(index: u32, sample: u32) -> Path {
     path.beta = numbers(BETA, index);
     let o = numbers(RAY_O, index);
     let d = numbers(RAY_D, index);
-    path.ray = Ray(o.xyz, d.xyz, o.w);
+    path.ray = Ray_new(o.xyz, d.xyz, o.w);
     shutter_time = o.w;
     path.pdf = d.w;
     let p = numbers(P, index);

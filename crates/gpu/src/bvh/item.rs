@@ -10,7 +10,7 @@
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
 //! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
-//! turned over, 2 where it is cut out. That of an instance has, after the kind, the index of its
+//! turned over, 2 where it is marked. That of an instance has, after the kind, the index of its
 //! first key, the number of its motions, which is 0 at rest, and the first light of its shapes. Two
 //! keys are a motion; an instance within others has several, the outermost first. Keys follow all
 //! that rays hit in the group.
@@ -135,11 +135,11 @@ pub fn shape(
     world: &World,
     geometry: GeometryId,
     primitive: u32,
-    is_cut_out: bool,
+    is_marked: bool,
 ) -> Result<[Words; QUADRUPLES], BvhError> {
     let shape = world.geometry(geometry).plain(primitive);
-    let cut_out = u32::from(is_cut_out) << 1;
-    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips) | cut_out];
+    let marked = u32::from(is_marked) << 1;
+    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips) | marked];
     match shape.ok_or(BvhError::Shape(geometry))? {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let words = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];

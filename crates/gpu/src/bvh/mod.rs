@@ -45,7 +45,7 @@ pub struct Bvh {
     /// Six quadruples for each node.
     pub nodes: Vec<Words>,
     /// Three quadruples for each triangle: a corner each, with the geometry, the primitive and
-    /// whether it is cut out.
+    /// whether it is marked.
     pub triangles: Vec<Words>,
     /// Five quadruples for each instance or shape.
     pub items: Vec<Words>,
@@ -90,13 +90,13 @@ pub enum BvhError {
 
 impl Bvh {
     /// The buffers of a world of meshes, single shapes, sets of spheres, and instances of groups of
-    /// them. Hits on geometries that are cut out count if the kernel's `accepts` says so.
-    pub fn new(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
+    /// them. Hits on geometries that are marked count if the kernel's `accepts` says so.
+    pub fn new(world: &World, is_marked: &dyn Fn(GeometryId) -> bool) -> Result<Self, BvhError> {
         let mut bvh = Self::default();
         let mut groups = vec![Group::EMPTY; world.groups()];
         // The instances of the top group refer to all others.
         for group in (0..world.groups() as u32).rev().map(GroupId) {
-            groups[group.0 as usize] = bvh.add_group(world, group, &groups, is_cut_out)?;
+            groups[group.0 as usize] = bvh.add_group(world, group, &groups, is_marked)?;
         }
         let Group { roots, unbounded, size, stack, .. } = groups[0];
         bvh.top = Top { roots, unbounded, size };
@@ -110,7 +110,7 @@ impl Bvh {
         world: &World,
         group: GroupId,
         groups: &[Group],
-        is_cut_out: &dyn Fn(GeometryId) -> bool,
+        is_marked: &dyn Fn(GeometryId) -> bool,
     ) -> Result<Group, BvhError> {
         let (tree, mut triangles) = world.triangle_tree(group);
         let first = self.triangles.len() / 3;
@@ -119,7 +119,7 @@ impl Bvh {
         let tree = Binary::new(&tree, &mut triangles, |it| Some(Bounds3::around(it.corners)));
         let root = writer.root(&tree).ok_or(BvhError::TooLarge)?;
         let (of_triangles, mut bounds) = (writer.stack, tree.bounds());
-        self.add_triangles(triangles, is_cut_out);
+        self.add_triangles(triangles, is_marked);
         let (tree, all, unbounded) = world.item_tree(group);
         let instances: Vec<InstanceId> = all.iter().filter_map(instance).collect();
         let (tree, mut items) = if is_flat(world, group, &instances, groups) {
@@ -152,14 +152,14 @@ impl Bvh {
             return Err(BvhError::Unbounded(*geometry));
         }
         items.extend(unbounded.into_iter().map(Item::from));
-        self.add_items(world, items, groups, is_cut_out)?;
+        self.add_items(world, items, groups, is_marked)?;
         let size = largest_coordinate(&bounds);
         Ok(Group { roots: [root, item_root], unbounded: open, size, bounds, instances, stack })
     }
 
-    fn add_triangles(&mut self, triangles: Vec<PlainTriangle>, is_cut_out: &dyn Fn(GeometryId) -> bool) {
+    fn add_triangles(&mut self, triangles: Vec<PlainTriangle>, is_marked: &dyn Fn(GeometryId) -> bool) {
         for triangle in triangles {
-            let ids = [triangle.geometry.0, triangle.primitive, is_cut_out(triangle.geometry).into()];
+            let ids = [triangle.geometry.0, triangle.primitive, is_marked(triangle.geometry).into()];
             let corners = triangle.corners.iter().zip(ids);
             self.triangles.extend(corners.map(|(p, id)| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), id]));
         }
@@ -171,14 +171,14 @@ impl Bvh {
         world: &World,
         items: Vec<Item>,
         groups: &[Group],
-        is_cut_out: &dyn Fn(GeometryId) -> bool,
+        is_marked: &dyn Fn(GeometryId) -> bool,
     ) -> Result<(), BvhError> {
         let mut keys = Vec::new();
         let first_key = self.items.len() / item::QUADRUPLES + items.len();
         for item in items {
             let words = match item {
                 Item::Shape(geometry, primitive) => {
-                    item::shape(world, geometry, primitive, is_cut_out(geometry))?
+                    item::shape(world, geometry, primitive, is_marked(geometry))?
                 }
                 Item::Instance(path) => {
                     let at = (first_key + keys.len()) as u32;

@@ -34,7 +34,7 @@ pub struct Plan {
 #[derive(Clone, Debug, Default)]
 pub struct Body {
     pub triangles: Range<usize>,
-    /// Whether all its triangles are without holes.
+    /// Whether none of its triangles is marked.
     pub is_opaque: bool,
     pub boxes: Range<usize>,
 }
@@ -52,14 +52,14 @@ pub struct Place {
 impl Bvh {
     /// The buffers of a world for ray queries. None where these do not trace it, because instances
     /// move or there is too much of it, or where nothing does.
-    pub fn for_ray_queries(world: &World, is_cut_out: &dyn Fn(GeometryId) -> bool) -> Option<Self> {
+    pub fn for_ray_queries(world: &World, is_marked: &dyn Fn(GeometryId) -> bool) -> Option<Self> {
         let (mut bvh, mut plan) = (Self::default(), Plan::default());
         let mut groups = vec![Group::EMPTY; world.groups()];
         plan.bodies = vec![Body::default(); world.groups()];
         for group in (0..world.groups() as u32).rev().map(GroupId) {
             let index = group.0 as usize;
             (groups[index], plan.bodies[index]) =
-                bvh.add_body(world, group, &groups, is_cut_out, &mut plan.boxes)?;
+                bvh.add_body(world, group, &groups, is_marked, &mut plan.boxes)?;
         }
         let identity = Place { group: 0, rows: rows(&DMat4::IDENTITY), item: OUTSIDE };
         let placed = bvh.instances.iter().filter_map(|(path, item)| {
@@ -87,15 +87,15 @@ impl Bvh {
         world: &World,
         group: GroupId,
         groups: &[Group],
-        is_cut_out: &dyn Fn(GeometryId) -> bool,
+        is_marked: &dyn Fn(GeometryId) -> bool,
         boxes: &mut Vec<[f32; 6]>,
     ) -> Option<(Group, Body)> {
         let (_, triangles) = world.triangle_tree(group);
         let first_triangle = self.triangles.len() / 3;
         let around = triangles.iter().map(|triangle| Bounds3::around(triangle.corners));
         let mut bounds = around.fold(Bounds3::EMPTY, Bounds3::union);
-        let is_opaque = !triangles.iter().any(|triangle| is_cut_out(triangle.geometry));
-        self.add_triangles(triangles, is_cut_out);
+        let is_opaque = !triangles.iter().any(|triangle| is_marked(triangle.geometry));
+        self.add_triangles(triangles, is_marked);
         let (_, mut all, unbounded) = world.item_tree(group);
         let instances = all.iter().filter_map(super::instance).collect();
         all.extend(world.sphere_tree(group).1);
@@ -118,7 +118,7 @@ impl Bvh {
         if group != GroupId::TOP && items.len() > bounded {
             return None;
         }
-        self.add_items(world, items, groups, is_cut_out).ok()?;
+        self.add_items(world, items, groups, is_marked).ok()?;
         let roots = [first_triangle as u32, first as u32];
         let size = largest_coordinate(&bounds);
         let placed = Group { roots, unbounded, size, bounds, instances, stack: 0 };

@@ -1,6 +1,6 @@
 //! Geometries: eight words for each, its material, its first light plus one or 0, the offset of its
 //! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, the texture
-//! of its alpha or 0, and zeros.
+//! of its alpha or 0, 1 where it is single-sided, and zeros.
 //!
 //! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
 //! triangle what it has at its three corners, in this order, without gaps to save memory. Those of
@@ -35,7 +35,18 @@ impl Flattener<'_> {
             let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
             self.parts.holes |= entry.alpha.is_some();
             let light = entry.first_light.map_or(0, |light| light + 1);
-            rows.extend([entry.material.0, light, attributes, flips.into(), alpha, 0, 0, 0]);
+            let single_sided = entry.single_sided;
+            self.parts.single_sided |= single_sided;
+            rows.extend([
+                entry.material.0,
+                light,
+                attributes,
+                flips.into(),
+                alpha,
+                single_sided.into(),
+                0,
+                0,
+            ]);
         }
         self.slab.add(rows)
     }

@@ -340,14 +340,14 @@ impl Flattener<'_> {
         let has_open_interfaces = matches!(algorithm, Algorithm::Path(_));
         let is_open = |entry: &GeometryEntry| has_open_interfaces && is_interface(self.scene, entry);
         self.parts.holes |= self.scene.geometries().iter().any(is_open);
-        let is_cut_out = |id: GeometryId| {
+        let is_marked = |id: GeometryId| {
             let entry = &self.scene.geometries()[id.0 as usize];
-            entry.alpha.is_some() || is_open(entry)
+            entry.alpha.is_some() || entry.single_sided || is_open(entry)
         };
         let world = self.scene.world();
-        let for_queries = if ray_queries { Bvh::for_ray_queries(world, &is_cut_out) } else { None };
+        let for_queries = if ray_queries { Bvh::for_ray_queries(world, &is_marked) } else { None };
         self.parts.ray_queries = for_queries.is_some();
-        let error = match for_queries.map_or_else(|| Bvh::new(world, &is_cut_out), Ok) {
+        let error = match for_queries.map_or_else(|| Bvh::new(world, &is_marked), Ok) {
             Ok(mut bvh) => {
                 self.place_lights(&mut bvh);
                 self.parts.motion = bvh.has_motion;

@@ -16,7 +16,8 @@ use super::placements::geometries_of_groups;
 #[derive(Clone, Copy, Debug, bytemuck::NoUninit)]
 pub struct Vertex {
     position: [f32; 3],
-    /// The normal in 1/32767.
+    /// The normal in 1/32767. The last number is on single-sided surfaces 1 where corners run
+    /// counter-clockwise as the front is seen, and -1 where they run clockwise.
     normal: [i16; 4],
     /// Square roots of the shares in ten bits each, and in two bits how they are meant.
     reflectance: u32,
@@ -37,6 +38,11 @@ impl Vertex {
             reflectance: bits(paint.reflectance) | (paint.shading as u32) << 30,
             transmittance: bits(paint.transmittance),
         }
+    }
+
+    /// Makes it a vertex of a single-sided surface, whose corners run this way round.
+    fn single_sided(&mut self, runs_clockwise: bool) {
+        self.normal[3] = if runs_clockwise { -i16::MAX } else { i16::MAX };
     }
 
     /// Where it is.
@@ -158,6 +164,10 @@ impl Models {
             let uv = [Vec2::ZERO, Vec2::X, Vec2::Y][corner];
             Vertex::new(p, n, &if varies { painter.at(id, triangle, uv) } else { one })
         }));
+        if painter.scene.geometries()[id.0 as usize].single_sided {
+            let clockwise = mesh.triangle(0).flips;
+            self.vertices[first as usize..].iter_mut().for_each(|vertex| vertex.single_sided(clockwise));
+        }
     }
 
     /// Adds a curved shape as a grid over its parameters.
@@ -187,9 +197,21 @@ impl Models {
             let paint = if varies { painter.at(id, primitive, uv) } else { one };
             self.vertices.push(Vertex::new(surface.p.p, surface.shading.n, &paint));
         }
-        for i in 0..columns * rows {
+        let cell = |i: u32| {
             let a = first + i / columns * (columns + 1) + i % columns;
-            let [b, c, d] = [a + 1, a + columns + 1, a + columns + 2];
+            [a, a + 1, a + columns + 1, a + columns + 2]
+        };
+        if painter.scene.geometries()[id.0 as usize].single_sided {
+            // Cells in the middle are not at a pole.
+            let middle = rows / 2 * columns + columns / 2;
+            let [a, b, c, _] = cell(middle).map(|i| self.vertices[i as usize].position());
+            let uv = Vec2::new((columns / 2) as f32 / columns as f32, (rows / 2) as f32 / rows as f32);
+            let front = shape.surface_at(uv, time).map_or(Vec3::ZERO, |surface| surface.front());
+            let clockwise = (b - a).cross(c - a).dot(front) < 0.0;
+            self.vertices[first as usize..].iter_mut().for_each(|vertex| vertex.single_sided(clockwise));
+        }
+        for i in 0..columns * rows {
+            let [a, b, c, d] = cell(i);
             self.indices.extend([a, b, c]);
             if !is_triangle {
                 self.indices.extend([b, d, c]);

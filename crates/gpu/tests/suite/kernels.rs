@@ -26,6 +26,7 @@ pub fn common(parts: Parts) -> Parts {
         surface_lights: true,
         round_lights: true,
         facets: true,
+        single_sided: true,
         ..parts
     }
 }

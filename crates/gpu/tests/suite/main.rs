@@ -22,6 +22,7 @@ mod portals;
 mod raster;
 mod ray_queries;
 mod refusals;
+mod single_sided;
 mod texts;
 mod textures;
 mod trace;

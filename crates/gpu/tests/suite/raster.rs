@@ -221,3 +221,37 @@ fn cameras_that_are_not_perspective_are_refused() {
     let case = Case::new(&format!("Camera \"spherical\"\n{SKY}Shape \"sphere\""));
     assert!(matches!(case.draw(&device), Err(DrawError::Camera)));
 }
+
+#[test]
+fn a_rasteriser_leaves_out_what_the_camera_does_not_see() {
+    let Some(device) = device() else { return };
+    let grey = "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n";
+    let wall = |indices: &str| {
+        format!(
+            "Shape \"trianglemesh\" \"point3 P\" [ -9 4 -9  9 4 -9  9 4 9  -9 4 9 ] \"integer indices\" [ {indices} ]
+             \"bool singlesided\" true\n"
+        )
+    };
+    // Corners run counter-clockwise about the front: towards the camera, or away from it.
+    let (front, back) = (wall("0 1 2  0 2 3"), wall("0 2 1  0 3 2"));
+    let ball = "Translate 0 0 2 Shape \"sphere\" \"float radius\" 9 \"bool singlesided\" true";
+    let instance = |shape: &str| {
+        format!("ObjectBegin \"wall\"\n{shape}ObjectEnd\nScale -1 1 1 ObjectInstance \"wall\"\n")
+    };
+    for (shape, is_seen) in [
+        (front.clone(), true),
+        (back.clone(), false),
+        (instance(&front), true),
+        (instance(&back), false),
+        (format!("ReverseOrientation {front}"), false),
+        (format!("Scale 1 1 -1 {front}"), true),
+        (format!("ReverseOrientation {ball}"), true),
+        (ball.to_owned(), false),
+    ] {
+        let case = Case::new(&format!("{HEAD}{SKY}{grey}{shape}"));
+        let wanted = if is_seen { 0.5 } else { 1.0 };
+        let image = case.picture(&device);
+        assert_eq!(case.is_hit(Vec2::splat(20.0)), is_seen, "{shape}");
+        assert_close(image.rgb(20, 20), [wanted; 3], 0.01, &shape);
+    }
+}

@@ -13,6 +13,7 @@ use testkit::Random;
 /// those that `trace.wgsl` needs.
 pub const KERNEL: &str = "
     fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool { return true; }
+    fn accepts_all() -> bool { return true; }
     const HAS_CURVES = true;
     fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     const HAS_MOTION = false;

@@ -83,8 +83,8 @@ impl Builder<'_> {
             placed = MaterialDesc::from(MaterialKind::Mix { materials, amount });
             placed.name.clone_from(&material.name);
         }
-        let material = self.desc.materials.push(placed);
-        Surface { material, area_light, alpha, media, coordinates, tangent_rotation }
+        let (single_sided, material) = (!material.is_two_sided, self.desc.materials.push(placed));
+        Surface { material, area_light, alpha, media, single_sided, coordinates, tangent_rotation }
     }
 }
 

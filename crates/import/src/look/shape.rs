@@ -71,6 +71,7 @@ impl Look {
                     area_light: surface.area_light.filter(|_| part < 2),
                     alpha: surface.alpha.clone(),
                     medium_interface: surface.media,
+                    single_sided: surface.single_sided,
                     ..ShapeDesc::from(ShapeKind::Triangles(mesh))
                 }
             })

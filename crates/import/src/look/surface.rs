@@ -12,6 +12,8 @@ pub(crate) struct Surface {
     pub area_light: Option<Handle<AreaLightDesc>>,
     pub alpha: Option<FloatParameter>,
     pub media: Option<MediumInterface>,
+    /// Whether the camera sees its front alone.
+    pub single_sided: bool,
     /// The coordinates that meshes have.
     pub coordinates: Coordinates,
     /// By how much tangents are turned, counter-clockwise.

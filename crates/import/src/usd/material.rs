@@ -126,6 +126,7 @@ pub(super) fn diffuse(reflectance: SpectrumParameter, desc: &mut SceneDesc) -> S
         area_light: None,
         alpha: None,
         media: None,
+        single_sided: false,
         coordinates: NO_MAP,
         tangent_rotation: 0.0,
     }
@@ -191,6 +192,7 @@ impl Builder<'_, '_> {
                 area_light,
                 alpha: alpha.clone(),
                 media: None,
+                single_sided: false,
                 coordinates,
                 tangent_rotation: 0.0,
             }

@@ -1,7 +1,7 @@
 //! Connects subpaths to complete paths: one function for each kind of strategy.
 
 use film::{FirstEvent, Parts, Splatter};
-use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
+use math::{Bounds2, CameraEnd, Normal3, Point2, Point3Error, Ray};
 use scene::Scene;
 use scene::camera::{CameraWiSample, FilmPositions};
 use scene::light::{LightId, LightPoint};
@@ -205,11 +205,14 @@ impl Bidirectional<'_> {
         let CameraWiSample { we, wi, pdf, film, p, n } = sample;
         let places = camera.film_positions(film);
         places.within(reach).next()?;
+        if vertex.front.dot(wi) < 0.0 {
+            return None;
+        }
         let l = vertex.scattered(wi) * (we / pdf);
         if l.is_black() {
             return None;
         }
-        let way = vertex.ray_to(Point3Error::exact(p), n);
+        let way = Ray { camera: CameraEnd::Target, ..vertex.ray_to(Point3Error::exact(p), n) };
         let l = l * self.passage(vertex, (&way, Ray::SHADOW_END), &l, lambda, tracer)?;
         let (pdf_position, pdf_direction) = camera.pdf_we(&Ray::new(p, -wi, vertex.time));
         let pdf_area =

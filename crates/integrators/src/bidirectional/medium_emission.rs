@@ -153,7 +153,7 @@ fn exterior(scene: &Scene, view: &View) -> Option<MediumId> {
     let sample = CameraSample { film: Vec2::ZERO, lens: Vec2::splat(0.5), time: 0.5, filter_weight: 1.0 };
     let mut medium = view.medium;
     let Some(camera_ray) = view.camera.generate_ray(&sample) else { return medium };
-    let mut ray = Ray { d: AWAY, ..camera_ray.ray };
+    let mut ray = Ray::new(camera_ray.ray.o, AWAY, camera_ray.ray.time);
     for _ in 0..MAX_SURFACES {
         let Some((surface, _)) = scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()) else {
             break;

@@ -29,6 +29,8 @@ pub(crate) struct Vertex<'a> {
     pub medium: Option<MediumId>,
     /// The media on the two sides of the surface, if they differ.
     pub media: Option<MediumInterface>,
+    /// The normal of the front face, if the camera sees the surface from there alone; else zero.
+    pub front: Normal3,
     /// The probability with which a ray hits the surface there; in a medium, that of a collision
     /// over the length of the merging ball, 4r/3.
     pub alpha: f32,

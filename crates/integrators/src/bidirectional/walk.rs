@@ -255,7 +255,8 @@ impl<'a> Walk<'a> {
                 bsdf.bxdf.keep_boundary();
                 bsdf.regularize(self.paths.regularize && self.rough_before);
                 let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
-                self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media)
+                let vertex = self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media);
+                Vertex { front: surface.front, ..vertex }
             }
             Interaction::Medium(MediumInteraction { p, sigma_s, phase }) => {
                 let (p, n, wo) = (Point3Error::exact(*p), Normal3::ZERO, -self.ray.ray.d);
@@ -268,7 +269,7 @@ impl<'a> Walk<'a> {
                 let law = (Law::Surface(*bsdf), SampledSpectrum::ONE);
                 let vertex = self.vertex((s.p, s.n, s.wo), law.0, law.1, surface.media);
                 // Its partial weights are zero, as if the subpath began there.
-                return Some(Vertex { is_exit: true, ..vertex });
+                return Some(Vertex { front: surface.front, is_exit: true, ..vertex });
             }
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
@@ -302,6 +303,7 @@ impl<'a> Walk<'a> {
             law,
             medium: self.medium,
             media,
+            front: Normal3::ZERO,
             alpha: self.alpha,
             presence,
             beta: self.beta,

@@ -2,6 +2,7 @@
 
 use film::FilmTile;
 use geometry::{Hit, HitColumns, PointColumns, RayStats};
+use math::CameraEnd;
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
@@ -87,6 +88,7 @@ impl<'a> Batch<'a> {
         instruction_set.dispatch_large(Begin { pass: *pass, paths, segments, besides });
         queues.waiting.clear();
         if with_weights {
+            queues.next.camera = segments.camera;
             // Rays that the camera's lens blocks are not traced.
             for row in 0..paths.len() {
                 if paths.camera_weight[row] > 0.0 {
@@ -318,6 +320,7 @@ impl<'a> Batch<'a> {
     pub(super) fn go_on(&mut self) {
         let BatchColumns { segments, queues, .. } = &mut *self.columns;
         segments.rows.clear();
+        segments.camera = CameraEnd::Neither;
         std::mem::swap(segments, &mut queues.next);
     }
 

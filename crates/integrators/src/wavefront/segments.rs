@@ -7,7 +7,7 @@
 use film::FirstEvent;
 use geometry::{PatchPoints, RayColumns};
 use lanes::{Int, MAX_LANES, Mask, Real};
-use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
+use math::{CameraEnd, Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
 use scene::{Footprint, View};
@@ -24,6 +24,8 @@ use crate::transport::path_state::{Origin, PathState};
 pub(super) struct Segments {
     /// The row of each path.
     pub rows: Vec<u32>,
+    /// Where the camera is on all rays: only those of the first wave begin there.
+    pub camera: CameraEnd,
     /// Shutter time, the same for all rays of a path.
     pub time: Column,
     /// Origin of the ray to the next vertex.
@@ -71,6 +73,7 @@ impl Segments {
     pub fn start(&mut self, count: usize, besides: Besides) {
         let len = count + MAX_LANES;
         self.rows.clear();
+        self.camera = CameraEnd::Neither;
         [&mut self.time, &mut self.eta_scale, &mut self.pdf].into_iter().for_each(|column| grow(column, len));
         [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(len));
         self.vertex.iter_mut().for_each(|columns| columns.grow(len));
@@ -87,6 +90,7 @@ impl Segments {
     /// scattered.
     pub fn start_from_camera(&mut self, count: usize, besides: Besides, medium: Option<MediumId>) {
         self.start(count, besides);
+        self.camera = CameraEnd::Origin;
         self.rows.extend(0..count as u32);
         self.beta.fill(count + MAX_LANES, 1.0);
         fill(&mut self.eta_scale, count + MAX_LANES, 1.0);
@@ -104,14 +108,14 @@ impl Segments {
     /// The rays.
     pub fn rays(&self) -> RayColumns<'_> {
         let (o, d) = (self.origin.slices(), self.direction.slices());
-        RayColumns { len: self.rows.len(), o, d, time: &self.time, t_max: None }
+        RayColumns { len: self.rows.len(), o, d, time: &self.time, t_max: None, camera: self.camera }
     }
 
     /// The ray of a path.
     #[inline]
     pub fn ray(&self, turn: usize) -> Ray {
         let [o, d] = [&self.origin, &self.direction].map(|columns| Vec3::from_array(columns.row(turn)));
-        Ray::new(o, d, self.time[turn])
+        Ray { camera: self.camera, ..Ray::new(o, d, self.time[turn]) }
     }
 
     /// A path.

@@ -35,7 +35,8 @@ mod transform;
 
 use lanes::{Each, MAX_LANES, Real};
 use math::{
-    Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Transform, Vec2, Vec3, Vector3, lerp,
+    CameraEnd, Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Transform, Vec2, Vec3, Vector3,
+    lerp,
 };
 
 pub use compile::compile;
@@ -161,7 +162,7 @@ impl Camera {
     pub fn ray<R: Real>(&self, sample: &CameraSample<R>) -> (Ray<R>, R) {
         let (o, d, weight) = self.projection.ray(sample.film, sample.lens);
         let ray = self.transform.ray(&Ray::new(o, d, self.sample_time(sample.time)));
-        (Ray { d: ray.d.normalize(), ..ray }, weight)
+        (Ray { d: ray.d.normalize(), camera: CameraEnd::Origin, ..ray }, weight)
     }
 
     /// The ray of a sample; `None` where no light reaches that point of the film.
@@ -198,7 +199,7 @@ impl Camera {
             ry_origin: ry.o,
             ry_direction: ry.d * factor,
         };
-        (Ray { d: ray.d * factor, ..ray }, differentials, weight)
+        (Ray { d: ray.d * factor, camera: CameraEnd::Origin, ..ray }, differentials, weight)
     }
 
     /// The approximate footprint of a pixel on the tangent plane of a surface at `p` with normal

@@ -14,6 +14,7 @@ pub(super) fn are_strands(a: &ShapeDesc, b: &ShapeDesc) -> bool {
         && curve.split_depth == other.split_depth
         && a.world_from_object == b.world_from_object
         && a.reverse_orientation == b.reverse_orientation
+        && a.single_sided == b.single_sided
         && a.material == b.material
         && a.area_light == b.area_light
         && a.alpha == b.alpha

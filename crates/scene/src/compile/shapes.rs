@@ -79,7 +79,8 @@ impl Compiler<'_> {
             let id = self.world.add_geometry(group, geometry);
             let span = shape.origin.span;
             let first_light = emitter.and_then(|emitter| self.add_emitter(group, id, emitter, span));
-            self.entries.push(GeometryEntry { material, alpha, first_light, media, span });
+            let single_sided = shape.single_sided;
+            self.entries.push(GeometryEntry { material, alpha, single_sided, first_light, media, span });
         }
     }
 

@@ -13,6 +13,7 @@ mod light_totals;
 mod materials;
 mod media;
 mod motion;
+mod single_sided;
 mod solids;
 mod spheres;
 mod views;

@@ -69,7 +69,7 @@ macro_rules! floor {
     };
 }
 
-pub const SCENES: [Scene; 20] = [
+pub const SCENES: [Scene; 21] = [
     Scene {
         name: "a diffuse box",
         max_depth: 4,
@@ -81,6 +81,32 @@ pub const SCENES: [Scene; 20] = [
             ceiling_lamp!(),
             r#"Material "diffuse" "rgb reflectance" [0.5 0.5 0.7]
             Translate 0.3 0.3 -0.6 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "backs that the camera does not see",
+        max_depth: 3,
+        path_samples: 64,
+        is_hidden_from_light: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [9 8 8] Translate 0.8 0.5 2.5 ReverseOrientation
+            Shape "disk" "float radius" 0.4 AttributeEnd
+            AttributeBegin AreaLightSource "diffuse" "rgb L" [3 5 8] Translate -0.6 -2 0.9
+            Shape "sphere" "float radius" 0.2 AttributeEnd
+            AttributeBegin AreaLightSource "diffuse" "rgb L" [6 2 1] "bool twosided" true
+            Shape "bilinearmesh" "point3 P" [0.2 0.4 0.1  0.2 0.4 0.9  1 0.4 0.1  1 0.4 0.9] "bool singlesided" true
+            AttributeEnd
+            Material "diffuse" "rgb reflectance" [0.4 0.6 0.7]
+            Shape "bilinearmesh" "point3 P" [-2 -1.2 0  -2 -1.2 1.8  2 -1.2 0  2 -1.2 1.8] "bool singlesided" true
+            ObjectBegin "roof"
+                Shape "trianglemesh" "point3 P" [0.3 0 1  1.3 0 1  1.3 0.8 1.2] "integer indices" [0 2 1]
+                    "normal N" [0 0 1  0 0.1 1  0 0 1] "bool singlesided" true
+                Shape "trianglemesh" "point3 P" [0.3 -0.7 0.5  1.3 -0.7 0.5  1.3 -0.1 0.7] "integer indices" [0 1 2]
+                    "bool singlesided" true
+            ObjectEnd
+            Scale -1 1 1 ObjectInstance "roof""#
         ),
     },
     Scene {

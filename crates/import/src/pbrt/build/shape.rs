@@ -53,15 +53,16 @@ impl Builder<'_> {
     pub(super) fn shape(&mut self, shape: ShapeStatement) -> Option<Stated<ShapeDesc>> {
         let (read, origin) = self.read(shape.statement, |reader| {
             let kind = kind(reader)?;
-            Some((kind, reader.optional_float_parameter("alpha")))
+            Some((kind, reader.optional_float_parameter("alpha"), reader.boolean("singlesided", false)))
         });
         let material = self.material_reference(&shape.material);
         let medium_interface = self.medium_interface(shape.medium_interface.as_ref());
-        let (kind, alpha) = read?;
+        let (kind, alpha, single_sided) = read?;
         let desc = ShapeDesc {
             kind,
             world_from_object: shape.world_from_object,
             reverse_orientation: shape.reverse_orientation,
+            single_sided,
             material,
             area_light: shape.area_light.map(Handle::new),
             alpha,

@@ -409,3 +409,22 @@ fn what_is_out_of_range_is_refused_at_its_place() {
         assert!(errors[0].starts_with(pointer), "{errors:?}");
     }
 }
+
+#[test]
+fn surfaces_are_single_sided_unless_their_material_says_otherwise() {
+    for (material, wanted) in [
+        (json!({}), true),
+        (json!({"doubleSided": false, "alphaMode": "BLEND"}), true),
+        (json!({"doubleSided": true}), false),
+        (json!({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}), true),
+        (json!({"doubleSided": true, "extensions": {"KHR_materials_unlit": {}}}), false),
+    ] {
+        let desc = File::quad(material.clone()).scene();
+        let (_, shape) = desc.shapes.iter().next().unwrap();
+        assert_eq!(shape.single_sided, wanted, "{material}");
+    }
+    // A primitive without a material has the default one.
+    let mut file = File::quad(json!({"doubleSided": true}));
+    file.json["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("material");
+    assert!(file.scene().shapes.iter().next().unwrap().1.single_sided);
+}
