@@ -8,6 +8,7 @@
 
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
 
 use alhazen::{available_threads, most_threads};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -77,7 +78,18 @@ pub fn with_pool<T>(threads: Option<usize>, work: impl FnOnce(&ThreadPool) -> T)
         let problem = format!("threads is from 1 to {most} on this machine of {cores} cores, not {threads}");
         return Err(PyValueError::new_err(problem));
     }
-    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK);
-    let done = pool.build_scoped(|thread| thread.run(), work);
-    done.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))
+    let mut started = Vec::new();
+    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).spawn_handler(|thread| {
+        started.push(thread::Builder::new().stack_size(STACK).spawn(|| thread.run())?);
+        Ok(())
+    });
+    let pool =
+        pool.build().map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))?;
+    let done = work(&pool);
+    drop(pool);
+    for thread in started {
+        // A panic of one is one of the work.
+        let _ = thread.join();
+    }
+    Ok(done)
 }

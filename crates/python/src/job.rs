@@ -157,8 +157,9 @@ impl Job {
     /// Renders a picture.
     ///
     /// time: seconds after which no pass is begun. noise: the relative error at which it ends. With
-    /// one of these and no spp of compile(), the number of passes has no limit. threads: their number, by default one for each core. progress: called with a Progress after
-    /// passes. preview: called with an Image now and then, at last with the result.
+    /// one of these and no spp of compile(), the number of passes has no limit. threads: their
+    /// number, by default one for each core. progress: called with a Progress after passes.
+    /// preview: called with an Image now and then, at last with the result.
     ///
     /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
     #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
@@ -200,9 +201,12 @@ impl Job {
     ///
     /// alternate: whether its passes alternate between two films, from which the noise of the
     /// picture is estimated. limited: whether time or noise ends the render of all parts, so that
-    /// without spp of compile() the number of passes has no limit. threads, progress, preview: as those of render().
+    /// without spp of compile() the number of passes has no limit. threads, progress, preview: as
+    /// those of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
-    #[pyo3(signature = (index, count, *, alternate=false, limited=false, threads=None, progress=None, preview=None))]
+    #[pyo3(signature = (
+        index, count, *, alternate=false, limited=false, threads=None, progress=None, preview=None
+    ))]
     fn render_shard(
         &self,
         py: Python,
