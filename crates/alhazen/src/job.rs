@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
+use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use image::{Image, ImageError};
 use import::{AssetSource, Imported};
@@ -11,6 +11,7 @@ use integrators::{Control, Limits, PassError, Session, SessionState, Stop};
 use math::DMat4;
 use scene::{Scene, View};
 
+use crate::arrangement::Arrangement;
 use crate::sketch::Sketch;
 use crate::{Header, OverrideError, Overrides};
 
@@ -21,8 +22,7 @@ pub struct Job {
     header: Header,
     sketch: Option<Sketch>,
     planned: u32,
-    /// Whether samples depend on the number that is planned.
-    is_arranged: bool,
+    arrangement: Arrangement,
     /// What it is rendered by.
     #[cfg(feature = "gpu")]
     settings: SceneDesc,
@@ -94,14 +94,14 @@ impl Job {
         let header = Header::of(desc, &scene, &film);
         let sketch = Sketch::new(desc, &film);
         let planned = built.integrator.passes();
-        let is_arranged = is_arranged(desc, scene.needs_footprints(&view));
+        let arrangement = Arrangement::new(desc, scene.needs_footprints(&view));
         let session = Session::new(scene, view, built.integrator, SessionState::new(film));
         let job = Self {
             session,
             header,
             sketch,
             planned,
-            is_arranged,
+            arrangement,
             #[cfg(feature = "gpu")]
             settings: desc.without_geometry(),
         };
@@ -177,24 +177,32 @@ impl Job {
         self.planned
     }
 
-    /// Whether the first samples of a pixel depend on the number that is planned: with samplers
-    /// that distribute a fixed number of samples, with algorithms that use such a sampler for paths
-    /// from the lights, and with textures, whose filter narrows as samples increase. A render
-    /// continued beyond its plan then differs from one that was planned for more samples, but is as
-    /// valid.
-    pub fn is_arranged(&self) -> bool {
-        self.is_arranged
+    /// Whether samples differ from those of a render that is planned for this number of them: with
+    /// samplers that arrange a number of samples, with algorithms that use such a sampler for paths
+    /// from the lights, where pixels that differ take more samples, and with textures, whose filter
+    /// narrows as samples increase. The picture then is another one, but as valid.
+    pub fn is_arranged_otherwise(&self, samples: u32) -> bool {
+        samples != self.planned && self.arrangement.differs_for(samples)
     }
-}
 
-fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
-    use SamplerKind::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
-    match desc.integrator.value {
-        IntegratorDesc::Bdpt(_) | IntegratorDesc::Vcm(_) => true,
-        _ => match desc.sampler.kind {
-            Independent { .. } | Halton { .. } | Sobol { .. } => needs_footprints,
-            Stratified { .. } | PaddedSobol { .. } | ZSobol { .. } | Pmj02Bn { .. } => true,
-        },
+    /// A warning if the render has ended above the noise that was to end it.
+    pub fn missed_noise(&self, limits: &Limits, stop: Stop) -> Option<Diagnostic> {
+        let limit = limits.noise?;
+        let state = self.session.state();
+        let end = match stop {
+            Stop::Noise => return None,
+            Stop::Time => "when the time was up",
+            Stop::Passes => "after all passes",
+        };
+        let message = match state.noise() {
+            Some(noise) if noise <= limit => return None,
+            Some(noise) => format!("the noise is {noise:.4} {end}, above the limit of {limit}"),
+            None => {
+                let passes = state.done.count();
+                format!("the noise is unknown {end}, for {passes} are too few to estimate it")
+            }
+        };
+        Some(Diagnostic::warning("noise-not-reached", message, Span::NONE))
     }
 }
 

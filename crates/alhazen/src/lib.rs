@@ -21,6 +21,7 @@ pub use scattering;
 pub use scene;
 pub use spectrum;
 
+mod arrangement;
 mod clock;
 pub mod compare;
 #[cfg(feature = "gpu")]

@@ -112,6 +112,12 @@ impl Overrides {
         Ok(())
     }
 
+    /// The number of passes of a render that has planned some, `u32::MAX` where it has no limit: where
+    /// time or noise ends the render, and no samples per pixel were asked for.
+    pub fn passes(&self, planned: u32, ends_otherwise: bool) -> u32 {
+        if ends_otherwise && self.samples_per_pixel.is_none() { u32::MAX } else { planned }
+    }
+
     /// The first of these errors of the changed scene that one of the changes has caused.
     pub fn blamed(&self, diagnostics: &[Diagnostic]) -> Option<OverrideError> {
         let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());

@@ -158,7 +158,7 @@ pub struct Task<'a> {
 impl Task<'_> {
     /// Renders, writes the results and reports.
     pub fn run(mut self, compiled: Compiled, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
-        let Compiled { imported, integrator, begin, imported_at, compiled_at } = compiled;
+        let Compiled { mut imported, integrator, begin, imported_at, compiled_at } = compiled;
         let is_talkative = self.verbosity.is_talkative();
         interrupt.begin_rendering(is_talkative);
         self.live.begin(&self.job.session);
@@ -223,8 +223,10 @@ impl Task<'_> {
         let beside = beside?;
         saved?;
         self.notes.extend(session.integrator().summary());
+        let ended_by = outcome.ok();
+        let missed = ended_by.and_then(|stop| self.job.missed_noise(&self.limits, stop));
         let summary = Summary {
-            ended_by: outcome.ok(),
+            ended_by,
             scene: self.scene,
             outputs: &self.outputs,
             beside: &beside,
@@ -242,10 +244,12 @@ impl Task<'_> {
             peak_memory: peak_memory(),
         };
         if self.verbosity.json {
+            imported.diagnostics.extend(missed);
             let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
             say(summary.to_json(warnings))?;
         } else if is_talkative {
             say(&summary)?;
+            diagnostics::print(missed.as_slice(), &imported.sources)?;
         } else if let Some(interruption) = summary.interruption() {
             warn(interruption)?;
         }

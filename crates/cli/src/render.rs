@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use alhazen::description::SceneDesc;
 use alhazen::import::Files;
 use alhazen::integrators::Limits;
-use alhazen::{Fingerprint, Job, RenderOrder, Shard};
+use alhazen::{Fingerprint, RenderOrder, Shard};
 
 use crate::args::Render;
 use crate::checkpoint::Checkpoint;
@@ -64,8 +64,10 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         compiled.add(warnings);
     }
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
-    let all = all_passes(&job, arguments);
-    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let (all, shard) = match arguments.shard {
+        Some(shard) => (job.planned(), shard),
+        None => (arguments.overrides().passes(job.planned(), limits.are_set()), Shard::WHOLE),
+    };
     let passes = shard.passes(all);
     if passes.is_empty() {
         let Shard { index, count } = shard;
@@ -93,13 +95,6 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     let scene = &arguments.scene;
     let task = Task { scene, job, passes, limits, outputs, display, checkpoint, live, notes, verbosity };
     task.run(compiled, &interrupt)
-}
-
-/// The number of passes of the whole render: unlimited where only time or noise ends it.
-fn all_passes(job: &Job, arguments: &Render) -> u32 {
-    let is_limited = arguments.limits.time.is_some() || arguments.limits.noise.is_some();
-    let is_planned = arguments.spp.is_some() || arguments.shard.is_some();
-    if is_limited && !is_planned { u32::MAX } else { job.planned() }
 }
 
 /// The default path of the picture: that of the scene's film, else the scene's name with the

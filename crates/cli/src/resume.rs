@@ -40,9 +40,8 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         ));
     }
     let (mut job, compiled) = prepared.compile()?;
-    let is_limited = |limits: Limits| limits.time.is_some() || limits.noise.is_some();
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
-    if arguments.spp.is_some() || is_limited(limits) {
+    if arguments.spp.is_some() || limits.are_set() {
         order.limits = limits;
     }
     let mut notes = Vec::new();
@@ -58,11 +57,11 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     let (state, films) = saved.into_state();
     let done = state.done.count();
     job.resume(state, films).map_err(|error| about_file(film, error))?;
-    if order.passes != u32::MAX && order.passes > job.planned() && job.is_arranged() {
+    if order.passes != u32::MAX && job.is_arranged_otherwise(order.passes) {
         notes.push((
             "samples",
             format!(
-                "arranged for {} per pixel; further ones are as valid, but differ from those of a render planned for {}",
+                "arranged for {} per pixel; they are as valid as those of a render planned for {}, but others",
                 job.planned(),
                 order.passes
             ),

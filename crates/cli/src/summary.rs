@@ -195,10 +195,7 @@ impl fmt::Display for Summary<'_> {
             write!(f, "\n  {name:<8} {note}")?;
         }
         if rejected.count > 0 {
-            let pixels: Vec<_> = rejected.pixels().map(|[x, y]| format!("{x},{y}")).collect();
-            let first = if pixels.len() as u64 == rejected.count { "at" } else { "among them at" };
-            write!(f, "\n  warning  {} samples were not finite and are left out, {first} ", rejected.count)?;
-            write!(f, "{}; `--pixel X,Y` renders one alone", pixels.join(" "))?;
+            write!(f, "\n  warning  {rejected}; `--pixel X,Y` renders one alone")?;
         }
         Ok(())
     }

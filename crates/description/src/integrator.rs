@@ -101,6 +101,11 @@ impl IntegratorDesc {
         )
     }
 
+    /// Whether the algorithm takes the numbers of paths from the lights from a sampler.
+    pub fn samples_light_paths(&self) -> bool {
+        matches!(self, Self::LightTracing(_) | Self::Bdpt(_) | Self::Vcm(_))
+    }
+
     /// Whether the algorithm estimates pixels one by one, with nothing else.
     pub fn estimates_pixels(&self) -> bool {
         match self {

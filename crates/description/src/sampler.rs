@@ -107,6 +107,21 @@ impl SamplerKind {
         }
     }
 
+    /// The samples per pixel for which they are arranged: sequences over the whole image, and filters
+    /// of textures with them, are for the next power of two, of which the samples are the first.
+    pub fn arranged_samples(&self) -> u32 {
+        let samples = self.samples_per_pixel().max(1);
+        match self {
+            Self::Sobol { .. } | Self::ZSobol { .. } | Self::Pmj02Bn { .. } => {
+                samples.checked_next_power_of_two().unwrap_or(1 << 31)
+            }
+            Self::Independent { .. }
+            | Self::Stratified { .. }
+            | Self::Halton { .. }
+            | Self::PaddedSobol { .. } => samples,
+        }
+    }
+
     /// Sets the samples per pixel; strata become as nearly square as the number allows.
     pub fn set_samples_per_pixel(&mut self, samples: u32) {
         match self {

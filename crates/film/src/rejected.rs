@@ -1,6 +1,7 @@
 //! Samples that a film refuses.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 /// The most pixels that [`Rejected`] lists.
 pub const MAX_REJECTED_PIXELS: usize = 16;
@@ -44,5 +45,14 @@ impl Rejected {
     /// Their pixels in reading order, at most [`MAX_REJECTED_PIXELS`].
     pub fn pixels(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
         self.pixels.iter().map(|&(y, x)| [x, y])
+    }
+}
+
+impl fmt::Display for Rejected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pixels: Vec<_> = self.pixels().map(|[x, y]| format!("{x},{y}")).collect();
+        let first = if pixels.len() as u64 == self.count { "at" } else { "among them at" };
+        let (count, pixels) = (self.count, pixels.join(" "));
+        write!(f, "{count} samples were not finite and are left out, {first} {pixels}")
     }
 }

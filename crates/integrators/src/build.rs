@@ -57,7 +57,7 @@ pub fn sampler(scene: &SceneDesc) -> Sampler {
 pub fn light_sampler(scene: &SceneDesc) -> Sampler {
     const LIGHTS: u32 = 0x6c69_6768;
     let seed = hash(&[seed(scene), LIGHTS]) as u32;
-    let samples = sampler(scene).samples_per_pixel();
+    let samples = scene.sampler.kind.arranged_samples();
     Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
 }
 

@@ -72,6 +72,13 @@ pub struct Limits {
     pub noise: Option<f64>,
 }
 
+impl Limits {
+    /// Whether there are any.
+    pub fn are_set(&self) -> bool {
+        self.time.is_some() || self.noise.is_some()
+    }
+}
+
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {

@@ -3,6 +3,7 @@
 use alhazen::image::metrics;
 use pyo3::prelude::*;
 
+use crate::calls::call;
 use crate::picture::{Picture, image_error};
 
 /// How far a picture is from a reference, over all pixels and colours.
@@ -35,7 +36,7 @@ impl Difference {
 #[pyfunction]
 pub fn compare(py: Python, reference: &Picture, image: &Picture) -> PyResult<Difference> {
     let (reference, test) = (reference.image(py)?, image.image(py)?);
-    let found = py.detach(|| metrics::compare(&reference, &test)).map_err(image_error)?;
+    let found = call(py, || metrics::compare(&reference, &test))?.map_err(image_error)?;
     Ok(Difference {
         mse: found.mse,
         rel_mse: found.rel_mse,

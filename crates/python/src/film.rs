@@ -12,6 +12,7 @@ use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
+use crate::calls::call;
 use crate::picture::{Picture, image_error, named};
 
 /// The film of a render or of some of its shards, with exact sums: merged in any order, shards give
@@ -45,7 +46,7 @@ impl Film {
         py: Python,
         use_it: impl FnOnce(&mut SavedRender) -> Result<T, FilmFileError> + Send,
     ) -> PyResult<T> {
-        let done = py.detach(|| {
+        let done = call(py, || {
             let Contents { file, saved } = &mut *self.contents();
             match saved {
                 Some(saved) => use_it(saved),
@@ -56,7 +57,7 @@ impl Film {
                 }
             }
         });
-        done.map_err(film_error)
+        done?.map_err(film_error)
     }
 }
 
@@ -69,27 +70,27 @@ impl Film {
     /// Reads a film file.
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
-        let saved = py.detach(|| {
+        let saved = call(py, || {
             let file = File::open(&path).map_err(|error| named(&path, &error))?;
             let limits = ReadLimits::for_file(file.metadata()?.len());
             SavedRender::read(BufReader::new(file), &limits)
         });
-        Ok(Self::new(saved.map_err(film_error)?))
+        Ok(Self::new(saved?.map_err(film_error)?))
     }
 
     /// A film of the bytes of a film file.
     #[staticmethod]
     fn from_bytes(py: Python, data: &[u8]) -> PyResult<Self> {
-        Ok(Self::new(py.detach(|| read(data)).map_err(film_error)?))
+        Ok(Self::new(call(py, || read(data))?.map_err(film_error)?))
     }
 
     /// The bytes of its film file.
     fn __bytes__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| match &*self.contents() {
+        let bytes = call(py, || match &*self.contents() {
             Contents { saved: Some(saved), .. } => saved.write(Vec::new()),
             Contents { file, .. } => Ok(file.clone()),
         });
-        Ok(PyBytes::new(py, &bytes.map_err(film_error)?))
+        Ok(PyBytes::new(py, &bytes?.map_err(film_error)?))
     }
 
     /// Writes its film file, which replaces one that is there only when it is whole.
@@ -120,6 +121,12 @@ impl Film {
     #[getter]
     fn passes(&self, py: Python) -> PyResult<u32> {
         self.with(py, |saved| Ok(saved.done().count()))
+    }
+
+    /// The number of passes of the whole render; None where only time or noise ends it.
+    #[getter]
+    fn planned(&self, py: Python) -> PyResult<Option<u32>> {
+        self.with(py, |saved| Ok(Some(saved.order().passes).filter(|&passes| passes != u32::MAX)))
     }
 
     /// The shards that it has, as (index, count).

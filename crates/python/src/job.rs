@@ -1,26 +1,28 @@
 //! Compiled scenes.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, TryLockError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use alhazen::integrators::Limits;
 use alhazen::{Overrides, RenderOrder, Shard};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
 
+use crate::calls::call;
 use crate::film::{Film, film_error};
 use crate::picture::{Picture, image_error};
-use crate::render::{Callbacks, drive};
+use crate::render::{Callbacks, Order, drive, free};
 use crate::scene::{Scene, lines, load, scene_error};
 use crate::value::Chosen;
+use crate::warning::{warn_of_render, warn_of_scene};
 
 /// A scene compiled for rendering with certain settings. What is rendered several times, whole or
 /// in shards, is compiled once.
 #[pyclass(frozen, module = "alhazen")]
 pub struct Job {
-    job: Mutex<alhazen::Job>,
+    job: Arc<Mutex<alhazen::Job>>,
     order: RenderOrder,
     #[pyo3(get)]
     /// What is rendered differently than described.
@@ -79,7 +81,7 @@ pub fn compile(
     overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
     let sources = &scene.imported.sources;
     let compiled =
-        py.detach(|| alhazen::Job::compile(desc)).map_err(|errors| match overrides.blamed(&errors) {
+        call(py, || alhazen::Job::compile(desc))?.map_err(|errors| match overrides.blamed(&errors) {
             Some(error) => PyValueError::new_err(error.to_string()),
             None => scene_error(&errors, sources),
         })?;
@@ -91,7 +93,9 @@ pub fn compile(
         shard: Shard::WHOLE,
         limits: Limits::default(),
     };
-    Ok(Job { job: Mutex::new(compiled.job), order, warnings: lines(&compiled.warnings, sources) })
+    let warnings = lines(&compiled.warnings, sources);
+    warn_of_scene(py, &warnings)?;
+    Ok(Job { job: Arc::new(Mutex::new(compiled.job)), order, warnings })
 }
 
 /// Takes settings over: a dictionary, settings of a part, or a sequence of these.
@@ -152,9 +156,10 @@ impl Job {
 
     /// Renders a picture.
     ///
-    /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
-    /// threads: their number, by default one for each core. progress: called with a Progress after
-    /// passes. preview: called with an Image now and then, at last with the result.
+    /// time: seconds after which no pass is begun. noise: the relative error at which it ends. With
+    /// one of these and no spp of compile(), the number of passes has no limit. threads: their
+    /// number, by default one for each core. progress: called with a Progress after passes.
+    /// preview: called with an Image now and then, at last with the result.
     ///
     /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
     #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
@@ -173,14 +178,18 @@ impl Job {
         let callbacks = Callbacks::new(py, progress, preview)?;
         let time = time.map(Duration::try_from_secs_f64).transpose();
         let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
-        let picture = self.with(py, |job| {
-            let passes = 0..self.order.passes;
-            job.restart(false).map_err(image_error)?;
-            drive(job, passes, &limits, threads, &callbacks, |job| {
-                Picture::collect(&job.header().development(job.session.state()))
-            })
+        let passes = self.order.overrides.passes(self.order.passes, limits.are_set());
+        let order = Order { passes: 0..passes, limits, alternates: false, threads };
+        let (picture, warnings) = drive(py, &self.job, order, &callbacks, move |job, stop| {
+            let state = job.session.state();
+            let picture = Picture::collect(&job.header().development(state)).map_err(image_error)?;
+            let missed = job.missed_noise(&limits, stop).map(|warning| warning.message);
+            let rejected = Some(state.rejected()).filter(|rejected| rejected.count > 0);
+            let warnings = missed.into_iter().chain(rejected.map(|rejected| rejected.to_string()));
+            Ok((picture, warnings.collect::<Vec<_>>()))
         })?;
         let picture = Py::new(py, Picture::new(py, picture)?)?;
+        warn_of_render(py, &warnings)?;
         if let Some(preview) = &callbacks.preview {
             preview.call1(py, (&picture,))?;
         }
@@ -191,15 +200,20 @@ impl Job {
     /// one whose picture has the same bits as that of render().
     ///
     /// alternate: whether its passes alternate between two films, from which the noise of the
-    /// picture is estimated. threads, progress, preview: as those of render().
+    /// picture is estimated. limited: whether time or noise ends the render of all parts, so that
+    /// without spp of compile() the number of passes has no limit. threads, progress, preview: as
+    /// those of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
-    #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
+    #[pyo3(signature = (
+        index, count, *, alternate=false, limited=false, threads=None, progress=None, preview=None
+    ))]
     fn render_shard(
         &self,
         py: Python,
         index: u32,
         count: u32,
         alternate: bool,
+        limited: bool,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
         preview: Option<Py<PyAny>>,
@@ -207,33 +221,33 @@ impl Job {
         if !(1..=count).contains(&index) {
             return Err(PyValueError::new_err(format!("there is no shard {index} of {count}")));
         }
-        let order = RenderOrder { shard: Shard { index, count }, ..self.order.clone() };
+        let order = RenderOrder { shard: Shard { index, count }, ..self.whole(limited) };
         let passes = order.shard.passes(order.passes);
         if passes.is_empty() {
             let problem =
                 format!("shard {index} of {count} is empty: there are only {} passes", order.passes);
             return Err(PyValueError::new_err(problem));
         }
-        let (limits, callbacks) = (Limits::default(), Callbacks::new(py, progress, preview)?);
-        let bytes = self.with(py, |job| {
-            job.restart(alternate).map_err(image_error)?;
-            drive(job, passes, &limits, threads, &callbacks, |job| {
-                Ok(order.write(&job.session, job.header(), Vec::new()))
-            })
+        let callbacks = Callbacks::new(py, progress, preview)?;
+        let what = Order { passes, limits: Limits::default(), alternates: alternate, threads };
+        let bytes = drive(py, &self.job, what, &callbacks, move |job, _| {
+            order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
         })?;
-        Ok(Film::of_file(bytes.map_err(film_error)?))
+        Ok(Film::of_file(bytes))
     }
 
     /// A film of this job without any pass. Only films of the same job merge with it.
     ///
-    /// alternate: as that of render_shard().
-    #[pyo3(signature = (*, alternate=false))]
-    fn blank_film(&self, py: Python, alternate: bool) -> PyResult<Film> {
-        let bytes = self.with(py, |job| {
+    /// alternate, limited: as those of render_shard().
+    #[pyo3(signature = (*, alternate=false, limited=false))]
+    fn blank_film(&self, py: Python, alternate: bool, limited: bool) -> PyResult<Film> {
+        let order = self.whole(limited);
+        let write = || {
+            let mut job = free(&self.job)?;
             job.restart(alternate).map_err(image_error)?;
-            self.order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
-        })?;
-        Ok(Film::of_file(bytes))
+            order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
+        };
+        Ok(Film::of_file(call(py, write)??))
     }
 
     fn __repr__(&self) -> String {
@@ -242,19 +256,10 @@ impl Job {
 }
 
 impl Job {
-    /// Uses the job without Python's lock. It renders once at a time.
-    fn with<T: Send>(
-        &self,
-        py: Python,
-        use_it: impl FnOnce(&mut alhazen::Job) -> PyResult<T> + Send,
-    ) -> PyResult<T> {
-        py.detach(|| match self.job.try_lock() {
-            Ok(mut job) => use_it(&mut job),
-            Err(TryLockError::WouldBlock) => {
-                Err(PyRuntimeError::new_err("the job is being rendered already"))
-            }
-            Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err("the job has failed before")),
-        })
+    /// The order of a render of which it makes parts.
+    fn whole(&self, is_limited: bool) -> RenderOrder {
+        let passes = self.order.overrides.passes(self.order.passes, is_limited);
+        RenderOrder { passes, ..self.order.clone() }
     }
 }
 

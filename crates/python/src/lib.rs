@@ -5,6 +5,7 @@
 //! copied.
 
 mod builder;
+mod calls;
 mod difference;
 mod film;
 mod job;
@@ -12,6 +13,7 @@ mod picture;
 mod render;
 mod scene;
 mod value;
+mod warning;
 
 use pyo3::prelude::*;
 
@@ -19,6 +21,8 @@ use pyo3::prelude::*;
 fn _alhazen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SceneError", module.py().get_type::<scene::SceneError>())?;
+    module.add("SceneWarning", module.py().get_type::<warning::SceneWarning>())?;
+    module.add("RenderWarning", module.py().get_type::<warning::RenderWarning>())?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<picture::Picture>()?;
     module.add_class::<builder::SceneBuilder>()?;

@@ -13,6 +13,8 @@ use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PySlice, PyTuple};
 
+use crate::calls::call;
+
 /// A picture: linear light, and layers beside it.
 ///
 /// numpy.asarray(picture) is height × width × 3 float32, red, green and blue, in the memory of the
@@ -131,7 +133,7 @@ impl Picture {
     /// Reads a picture from a file of any format that alhazen knows, such as .exr, .png or .hdr.
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
-        let collected = py.detach(|| Self::collect(&image::open(&path)?));
+        let collected = call(py, || Self::collect(&image::open(&path)?))?;
         Self::new(py, collected.map_err(|error| image_error(at(&path, error)))?)
     }
 
@@ -240,7 +242,7 @@ impl Picture {
         white_balance: Option<f32>,
     ) -> PyResult<()> {
         let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
-        let written = py.detach(|| write_picture(&image, &path, &display));
+        let written = call(py, || write_picture(&image, &path, &display))?;
         written.map_err(|error| image_error(at(&path, error)))
     }
 
@@ -255,7 +257,7 @@ impl Picture {
     ) -> PyResult<Bound<'py, PyBytes>> {
         let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
         let shown = InSrgb::new(&image, Format::Png, &display);
-        let bytes = py.detach(|| image::encode(&shown, Format::Png, &WriteOptions::default()));
+        let bytes = call(py, || image::encode(&shown, Format::Png, &WriteOptions::default()))?;
         Ok(PyBytes::new(py, &bytes.map_err(image_error)?))
     }
 
@@ -267,7 +269,7 @@ impl Picture {
     fn __reduce__<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let (make, image) = (slf.get_type().getattr("_from_file")?, slf.get().image(py)?);
         let options = WriteOptions { depth: SampleDepth::F32 };
-        let bytes = py.detach(|| image::encode(&image, Format::Exr, &options)).map_err(image_error)?;
+        let bytes = call(py, || image::encode(&image, Format::Exr, &options))?.map_err(image_error)?;
         let arguments = (PyBytes::new(py, &bytes), slf.get().channels.clone());
         PyTuple::new(py, [make, arguments.into_pyobject(py)?.into_any()])
     }
@@ -280,7 +282,7 @@ impl Picture {
             collected.reorder(channels);
             Ok(collected)
         };
-        Self::new(py, py.detach(read).map_err(image_error)?)
+        Self::new(py, call(py, read)?.map_err(image_error)?)
     }
 }
 

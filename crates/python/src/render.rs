@@ -4,18 +4,19 @@
 //! and takes the lock now and then to ask for signals and to call back.
 
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::thread;
 use std::time::Duration;
 
 use alhazen::image::ImageError;
-use alhazen::integrators::{Control, Limits, PassError, Session};
-use alhazen::{Job, PreviewSchedule, available_threads, most_threads, system_clock};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError, PyValueError};
+use alhazen::integrators::{Control, Limits, PassError, Session, Stop};
+use alhazen::{Job, PreviewSchedule, system_clock};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 
+use crate::calls::{Call, with_pool};
 use crate::picture::{Collected, Picture, image_error};
 
 /// The time between two looks at signals.
@@ -85,42 +86,40 @@ impl Callbacks {
     }
 }
 
-/// A pool of this number of threads, by default one for each core.
-fn pool(threads: Option<usize>) -> PyResult<rayon::ThreadPool> {
-    let (cores, most) = (available_threads(), most_threads());
-    if let Some(threads) = threads.filter(|threads| !(1..=most).contains(threads)) {
-        let problem = format!("threads is from 1 to {most} on this machine of {cores} cores, not {threads}");
-        return Err(PyValueError::new_err(problem));
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-    pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))
+/// What a job is to render, from an empty film on.
+pub struct Order {
+    /// The passes.
+    pub passes: Range<u32>,
+    /// What ends them.
+    pub limits: Limits,
+    /// Whether they alternate between two films.
+    pub alternates: bool,
+    /// The number of threads, by default one for each core.
+    pub threads: Option<usize>,
 }
 
-/// Renders passes of a job, which was restarted, on a thread of its own, calls back, and gives the
-/// result of the rendered job. Python's lock is not held.
-pub fn drive<T: Send>(
-    job: &mut Job,
-    passes: Range<u32>,
-    limits: &Limits,
-    threads: Option<usize>,
+/// Renders a job on a thread of its own, calls back, and gives the result of the rendered job.
+///
+/// The thread owns all that it uses: where a callback forks the process and returns in the new one,
+/// which lacks the thread, the call is left with an error.
+pub fn drive<T: Send + 'static>(
+    py: Python,
+    job: &Arc<Mutex<Job>>,
+    order: Order,
     callbacks: &Callbacks,
-    result: impl FnOnce(&Job) -> Result<T, ImageError> + Send,
+    result: impl FnOnce(&Job, Stop) -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
-    let pool = pool(threads)?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let control = Control::new(cancel.clone(), system_clock());
-    let (sender, receiver) = mpsc::channel();
-    let mut interruption = None;
-    let outcome = thread::scope(|scope| {
-        let worker = scope.spawn(|| {
-            let mut reporter = Reporter::new(sender, callbacks.preview.is_some());
-            let header = job.header().clone();
-            pool.install(|| {
-                let mut after_pass = |session: &Session| reporter.after_pass(session, &header);
-                job.session.run(passes, limits, &control, &mut after_pass)?;
-                Ok(result(job))
-            })
-        });
+    let call = Call::begin(py)?;
+    py.detach(|| {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let control = Control::new(cancel.clone(), system_clock());
+        let (sender, receiver) = mpsc::channel();
+        let reporter = Reporter::new(sender, callbacks.preview.is_some());
+        let job = Arc::clone(job);
+        let worker = thread::Builder::new().spawn(move || run(&job, order, &control, reporter, result));
+        let worker =
+            worker.map_err(|error| PyRuntimeError::new_err(format!("cannot start a thread: {error}")))?;
+        let mut interruption = None;
         loop {
             let event = receiver.recv_timeout(POLL);
             if let Err(RecvTimeoutError::Disconnected) = event {
@@ -129,7 +128,7 @@ pub fn drive<T: Send>(
             if interruption.is_some() {
                 continue;
             }
-            let result = Python::attach(|py| {
+            let told = Python::attach(|py| {
                 py.check_signals()?;
                 // Of passes that have ended meanwhile only the last one is told.
                 let mut last = None;
@@ -141,22 +140,60 @@ pub fn drive<T: Send>(
                 }
                 last.map_or(Ok(()), |progress| callbacks.call(py, Event::Pass(progress)))
             });
-            if let Err(error) = result {
+            if let Err(error) = call.check() {
+                // There is no such thread in this process.
+                std::mem::forget(worker);
+                return Err(told.err().unwrap_or(error));
+            }
+            if let Err(error) = told {
                 cancel.store(true, Ordering::Relaxed);
                 interruption = Some(error);
             }
         }
-        worker.join()
-    });
-    if let Some(error) = interruption {
-        return Err(error);
-    }
-    match outcome {
-        Ok(Ok(result)) => result.map_err(image_error),
-        Ok(Err(PassError::OutOfMemory(problem))) => Err(PyMemoryError::new_err(problem)),
-        Ok(Err(PassError::Device(problem))) => Err(PyRuntimeError::new_err(problem)),
-        Ok(Err(PassError::Cancelled)) => Err(PyRuntimeError::new_err("the render was cancelled")),
-        Err(_) => Err(PyRuntimeError::new_err("the renderer failed")),
+        let outcome = worker.join();
+        match interruption {
+            Some(error) => Err(error),
+            None => outcome.unwrap_or_else(|_| Err(PyRuntimeError::new_err("the renderer failed"))),
+        }
+    })
+}
+
+/// Renders a job, which renders once at a time, on a pool of threads.
+fn run<T: Send>(
+    job: &Mutex<Job>,
+    order: Order,
+    control: &Control,
+    mut reporter: Reporter,
+    result: impl FnOnce(&Job, Stop) -> PyResult<T> + Send,
+) -> PyResult<T> {
+    let mut job = free(job)?;
+    let job = &mut *job;
+    let render = || {
+        job.restart(order.alternates).map_err(image_error)?;
+        let header = job.header().clone();
+        let mut after_pass = |session: &Session| reporter.after_pass(session, &header);
+        let ended = job.session.run(order.passes, &order.limits, control, &mut after_pass);
+        result(job, ended.map_err(pass_error)?)
+    };
+    with_pool(order.threads, |pool| pool.install(render))?
+}
+
+/// The job, if it is not in use.
+pub fn free(job: &Mutex<Job>) -> PyResult<MutexGuard<'_, Job>> {
+    job.try_lock().map_err(|error| {
+        PyRuntimeError::new_err(match error {
+            TryLockError::WouldBlock => "the job is being rendered already",
+            TryLockError::Poisoned(_) => "the job has failed before",
+        })
+    })
+}
+
+/// The exception for a pass that was not completed.
+fn pass_error(error: PassError) -> PyErr {
+    match error {
+        PassError::OutOfMemory(problem) => PyMemoryError::new_err(problem),
+        PassError::Device(problem) => PyRuntimeError::new_err(problem),
+        PassError::Cancelled => PyRuntimeError::new_err("the render was cancelled"),
     }
 }
 

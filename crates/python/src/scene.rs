@@ -11,6 +11,9 @@ use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::calls::call;
+use crate::warning::warn_of_scene;
+
 create_exception!(
     alhazen,
     SceneError,
@@ -41,15 +44,13 @@ impl Scene {
     /// The scene of a builder.
     pub fn built(py: Python, builder: SceneBuilder) -> PyResult<Self> {
         let path = PathBuf::from(BUILT);
-        let (imported, hash) = py.detach(|| {
+        let (imported, hash) = call(py, || {
             let fingerprint = Fingerprint::new(&Files, &path);
             let imported = builder.finish(&fingerprint);
             fingerprint.add(&path, imported.sources.text(FileId(0)));
             (imported, fingerprint.hash())
-        });
-        if imported.has_errors() {
-            return Err(scene_error(&imported.diagnostics, &imported.sources));
-        }
+        })?;
+        check(py, &imported)?;
         Ok(Self { imported, path, hash, archive: None })
     }
 }
@@ -84,10 +85,10 @@ impl Scene {
             return Ok(PyBytes::new(py, &std::fs::read(&self.path)?));
         }
         let mut bytes = Vec::new();
-        let packed = py.detach(|| match self.path.as_os_str() == BUILT {
+        let packed = call(py, || match self.path.as_os_str() == BUILT {
             true => pack_converted(&self.imported.desc, &mut bytes),
             false => pack(&self.path, &Files, &mut bytes).map_err(ConvertError::Pack),
-        });
+        })?;
         let error = match packed {
             Ok(_) => return Ok(PyBytes::new(py, &bytes)),
             Err(ConvertError::Export(error)) => return Err(PyValueError::new_err(error.to_string())),
@@ -124,13 +125,11 @@ pub fn load(py: Python, source: &Bound<'_, PyAny>) -> PyResult<Scene> {
         None => source.extract::<PathBuf>()?,
     };
     let bytes = archive.map(|bytes| bytes.as_bytes());
-    let (imported, hash) = py.detach(|| match bytes {
+    let (imported, hash) = call(py, || match bytes {
         Some(bytes) => read(&path, &MemoryAssets::default().with(ARCHIVE, bytes)),
         None => read(&path, &Files),
-    });
-    if imported.has_errors() {
-        return Err(scene_error(&imported.diagnostics, &imported.sources));
-    }
+    })?;
+    check(py, &imported)?;
     Ok(Scene { imported, path, hash, archive: archive.map(|bytes| bytes.clone().unbind()) })
 }
 
@@ -138,6 +137,15 @@ fn read(path: &Path, assets: &dyn AssetSource) -> (Imported, [u8; 32]) {
     let fingerprint = Fingerprint::new(assets, path);
     let imported = import(path, &fingerprint);
     (imported, fingerprint.hash())
+}
+
+/// An error where a scene has any; warns of the rest.
+fn check(py: Python, imported: &Imported) -> PyResult<()> {
+    let Imported { diagnostics, sources, .. } = imported;
+    match imported.has_errors() {
+        true => Err(scene_error(diagnostics, sources)),
+        false => warn_of_scene(py, &lines(diagnostics, sources)),
+    }
 }
 
 /// The names of all integrators.
@@ -152,7 +160,7 @@ pub fn scene_error(diagnostics: &[Diagnostic], sources: &SourceMap) -> PyErr {
 }
 
 /// The statement of a scene that was built: its directive and type.
-fn call(sources: &SourceMap, span: Span) -> Option<String> {
+fn statement(sources: &SourceMap, span: Span) -> Option<String> {
     let line = (sources.name(span.file) == BUILT).then(|| sources.line(span))?;
     Some(line.split(' ').take(2).take_while(|word| *word != "at").collect::<Vec<_>>().join(" "))
 }
@@ -165,8 +173,8 @@ pub fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
             String::new()
         } else {
             let at = sources.position(span);
-            let call = call(sources, span).map_or(String::new(), |call| format!("in {call}: "));
-            format!("{}:{}:{}: {call}", sources.name(span.file), at.line, at.column)
+            let statement = statement(sources, span).map_or(String::new(), |it| format!("in {it}: "));
+            format!("{}:{}:{}: {statement}", sources.name(span.file), at.line, at.column)
         };
         let severity = if diagnostic.is_error() { "error" } else { "warning" };
         let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));

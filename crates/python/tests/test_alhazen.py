@@ -5,6 +5,7 @@ import pickle
 import signal
 import threading
 import time
+import warnings
 
 import alhazen
 import numpy
@@ -99,10 +100,73 @@ def test_warnings(tmp_path):
     path = tmp_path / "odd.pbrt"
     path.write_text('WorldBegin\nShape "sphere" "float radios" 1\n')
     try:
-        warnings = alhazen.load(path).warnings
+        found = alhazen.load(path).warnings
     except alhazen.SceneError as error:
-        warnings = str(error).splitlines()
-    assert any("radios" in warning for warning in warnings)
+        found = str(error).splitlines()
+    assert any("radios" in warning for warning in found)
+
+
+def test_warnings_are_told_at_the_line_of_the_program(tmp_path):
+    path = tmp_path / "odd.pbrt"
+    path.write_text('LightSource "point"'.join(["WorldBegin\n", ' "float from" 1\nShape "sphere"\n']))
+    with pytest.warns(alhazen.SceneWarning, match=r"odd\.pbrt:2:\d+: warning\[.*from") as told:
+        scene = alhazen.load(path)
+    assert [str(each.message) for each in told] == scene.warnings
+    assert {each.filename for each in told} == {__file__}
+    # A scene that is not loaded anew is not warned of anew.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        alhazen.compile(scene, spp=1, resolution=(8, 8))
+
+    def dark():
+        builder = alhazen.SceneBuilder()
+        builder.film(xresolution=8, yresolution=8)
+        builder.camera(transform=alhazen.look_at((0, 0, 5), (0, 0, 0)))
+        builder.shape("sphere")
+        return builder.build()
+
+    scene = dark()
+    for do in (alhazen.compile, alhazen.render):
+        with pytest.warns(alhazen.SceneWarning, match="light") as told:
+            do(scene, spp=1)
+        assert len(told) == 1 and told[0].filename == __file__
+    # What the same line finds again and again is shown once.
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("default")
+        for _ in range(3):
+            alhazen.render(dark(), spp=1)
+    assert len(told) == 1
+    with warnings.catch_warnings(), pytest.raises(alhazen.SceneWarning):
+        warnings.simplefilter("error")
+        alhazen.render(scene, spp=1)
+
+
+def test_time_and_noise_go_on_beyond_the_planned_passes(scene):
+    planned = alhazen.compile(scene).passes
+    image = alhazen.render(scene, time=0.5)
+    assert image.metadata["samplesPerPixel"] > planned
+    told = []
+    image = alhazen.render(scene, noise=0.05, progress=told.append)
+    assert image.metadata["samplesPerPixel"] > planned and told[-1].noise is not None
+    for arguments in ({"time": 60.0}, {"noise": 0.5}):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", alhazen.RenderWarning)
+            assert alhazen.render(scene, spp=4, **arguments).metadata["samplesPerPixel"] == 4
+
+
+def test_noise_that_is_not_reached_is_a_warning(scene):
+    for arguments, end in (({"spp": 16}, "after all passes"), ({"time": 0.3}, "when the time was up")):
+        with pytest.warns(alhazen.RenderWarning, match=f"noise is .* {end}, above the limit of 1e-05") as told:
+            alhazen.render(scene, noise=1e-5, **arguments)
+        assert told[0].filename == __file__
+    with pytest.warns(alhazen.RenderWarning, match="2 are too few"):
+        alhazen.render(scene, noise=0.1, spp=2)
+
+
+def test_samples_are_as_many_as_asked_for(scene):
+    for sampler in ("independent", "stratified", "halton", "paddedsobol", "sobol", "zsobol", "pmj02bn"):
+        job = alhazen.compile(scene, spp=5, settings={"sampler": sampler})
+        assert job.passes == 5 and job.render().metadata["samplesPerPixel"] == 5, sampler
 
 
 def test_an_interrupt_ends_a_render(scene):

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import alhazen
@@ -135,6 +136,67 @@ def test_errors_are_those_of_one_machine(cluster, scene):
 def test_time_ends_a_render(cluster, scene):
     image = alhazen.cluster.render(scene, spp=1 << 20, shards=1 << 14, time=0.5)
     assert 0 < image.metadata["samplesPerPixel"] < 1 << 20
+
+
+def test_time_and_noise_go_on_beyond_the_planned_passes(cluster, scene, tmp_path):
+    told = []
+    image = alhazen.cluster.render(scene, time=4.0, progress=told.append, shards=4)
+    assert image.metadata["samplesPerPixel"] > 64 and told[-1].total is None
+    assert image.metadata["samplesPerPixel"] == told[-1].passes == 16 * told[-1].shards
+    path = tmp_path / "a.film"
+    image = alhazen.cluster.render(scene, noise=0.03, shards=4, checkpoint=path)
+    samples = image.metadata["samplesPerPixel"]
+    assert samples > 64 and samples % 16 == 0
+    # The first passes are those of one machine.
+    assert (image.pixels == alhazen.render(scene, spp=samples).pixels).all()
+    again = alhazen.cluster.render(scene, noise=0.025, checkpoint=path)
+    assert again.metadata["samplesPerPixel"] > samples
+    with pytest.raises(ValueError, match="time or noise"):
+        alhazen.cluster.render(scene, checkpoint=path)
+    with pytest.warns(alhazen.RenderWarning, match="after all passes, above the limit of 0.0001") as found:
+        alhazen.cluster.render(scene, spp=64, noise=0.0001)
+    assert found[0].filename == __file__
+
+
+def test_cores_that_the_cluster_lacks_are_an_error(cluster, scene):
+    with pytest.raises(ValueError, match="threads=3, but the largest machine of the cluster has 2 cores"):
+        alhazen.cluster.render(scene, threads=3, time=3.0)
+    for name in ("threads", "shards"):
+        with pytest.raises(ValueError, match=f"{name} is 1 or more, not -1"):
+            alhazen.cluster.render(scene, **{name: -1})
+
+
+def test_time_is_heeded_while_all_cores_are_in_use(cluster, scene):
+    @ray.remote(num_cpus=1)
+    class Busy:
+        def begin(self):
+            return True
+
+    busy = [Busy.remote() for _ in range(5)]
+    ray.get([each.begin.remote() for each in busy])
+    begin = time.monotonic()
+    try:
+        with pytest.raises(TimeoutError, match="no machine had 1 cores free"):
+            alhazen.cluster.render(scene, threads=1, time=0.5)
+    finally:
+        for each in busy:
+            ray.kill(each)
+    assert time.monotonic() - begin < 30
+
+
+def test_warnings_are_told_once(cluster, tmp_path):
+    path = tmp_path / "dark.pbrt"
+    path.write_text('WorldBegin\nTranslate 0 0 5\nMakeNamedMedium "fog" "float odd" 1 "string type" "homogeneous"\nShape "sphere"\n')
+    for source in (path, alhazen.load(path), alhazen.load(path).pack()):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            alhazen.cluster.render(source, spp=2, resolution=(8, 8), shards=2)
+        assert {each.category for each in told} == {alhazen.SceneWarning}
+        assert {each.filename for each in told} == {__file__}
+        texts = [str(each.message) for each in told]
+        assert len(set(texts)) == len(texts), texts
+        assert sum("light" in text for text in texts) == 1
+        assert sum("odd" in text for text in texts) == (0 if isinstance(source, alhazen.Scene) else 1)
 
 
 def test_noise_ends_a_render_after_the_same_shard(cluster, scene, tmp_path):

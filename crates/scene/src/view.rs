@@ -6,7 +6,7 @@
 use crate::camera::{self, Camera};
 use crate::compile::media::medium_id;
 use crate::medium::MediumId;
-use description::{Diagnostic, FilmKind, IntegratorDesc, SamplerKind, SceneDesc};
+use description::{Diagnostic, FilmKind, IntegratorDesc, SceneDesc};
 use math::DMat4;
 
 /// Options of the format that apply to all algorithms.
@@ -86,20 +86,11 @@ pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
     camera::world_from_render(&desc.camera.camera_from_world, desc.options.render_space)
 }
 
-/// Samples per pixel of a description: for Metropolis, mutations per pixel; else the sampler's,
-/// which Sobol' sequences over the whole image round up to a power of two.
+/// Samples per pixel of a description: for Metropolis, mutations per pixel; else those for which
+/// the sampler arranges its points.
 fn samples_per_pixel(desc: &SceneDesc) -> u32 {
     if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
         return mlt.mutations_per_pixel.max(1);
     }
-    let samples = desc.sampler.kind.samples_per_pixel().max(1);
-    match desc.sampler.kind {
-        SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn { .. } => {
-            samples.next_power_of_two()
-        }
-        SamplerKind::Independent { .. }
-        | SamplerKind::Stratified { .. }
-        | SamplerKind::Halton { .. }
-        | SamplerKind::PaddedSobol { .. } => samples,
-    }
+    desc.sampler.kind.arranged_samples()
 }

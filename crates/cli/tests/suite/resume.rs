@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::common::Folder;
 use alhazen::film::{FilmFile, FilmHeader};
+use serde_json::Value;
 
 /// A closed box with a lamp, a mirror and glass: paths of all kinds.
 const ROOM: &str = r#"
@@ -145,6 +146,50 @@ fn samples_beyond_the_plan_are_reported() {
 }
 
 #[test]
+fn the_samples_of_every_sampler_are_as_many_as_asked_for() {
+    let folder = room("resume-numbers");
+    for sampler in ["independent", "stratified", "halton", "paddedsobol", "sobol", "zsobol", "pmj02bn"] {
+        for samples in ["1", "5", "12"] {
+            let set = format!("sampler={sampler}");
+            let render = |more: &[&str]| {
+                let start = ["render", "room.pbrt", "--json", "--resolution", "8x8", "--set", &set];
+                folder.alhazen(&[&start, &["--spp", samples][..], more].concat()).expect(0).json()
+            };
+            let whole = render(&["-o", "whole.exr"]);
+            assert_eq!(whole["samples_per_pixel"].to_string(), samples, "{sampler}");
+            render(&["-o", "part.exr", "--time", "0.001ms", "--checkpoint", "a.film"]);
+            let resumed = ["resume", "a.film", "--json", "--spp", samples, "--time", "1h", "-o", "part.exr"];
+            let resumed = folder.alhazen(&resumed).expect(0).json();
+            assert_eq!(resumed["samples_per_pixel"].to_string(), samples, "{sampler}");
+            assert_eq!(resumed["notes"]["samples"], Value::Null, "{sampler}");
+            assert!(bytes(&folder, "part.exr") == bytes(&folder, "whole.exr"), "{sampler} {samples}");
+        }
+    }
+}
+
+#[test]
+fn another_number_of_samples_is_that_of_a_new_render_or_is_reported() {
+    let folder = room("resume-other-numbers");
+    let run = |arguments: &[&str]| folder.alhazen(arguments).expect(0).json();
+    for sampler in ["stratified", "paddedsobol", "sobol", "zsobol", "pmj02bn"] {
+        let set = format!("sampler={sampler}");
+        let start = ["render", "room.pbrt", "--json", "--resolution", "8x8", "--set", &set];
+        for [planned, asked] in [["6", "8"], ["8", "5"], ["6", "9"], ["6", "3"]] {
+            run(&[&start[..], &["-o", "new.exr", "--spp", asked]].concat());
+            let stopped = ["-o", "a.exr", "--spp", planned, "--time", "0.001ms", "--checkpoint", "a.film"];
+            run(&[&start[..], &stopped].concat());
+            let resumed = run(&["resume", "a.film", "--json", "--spp", asked, "-o", "a.exr"]);
+            let is_same = bytes(&folder, "a.exr") == bytes(&folder, "new.exr");
+            let is_told = resumed["notes"]["samples"].is_string();
+            assert_eq!(is_same, !is_told, "{sampler}: {planned} and {asked}");
+            let is_arranged_alike =
+                ["8", "5", "6"].contains(&asked) && !["stratified", "paddedsobol"].contains(&sampler);
+            assert_eq!(is_same, is_arranged_alike, "{sampler}: {planned} and {asked}");
+        }
+    }
+}
+
+#[test]
 fn noise_and_time_end_a_render() {
     let folder = room("resume-limits");
     let noisy = |more: &[&str]| {
@@ -170,6 +215,28 @@ fn noise_and_time_end_a_render() {
 
     let few = noisy(&["--spp", "2"]);
     assert_eq!((&few["ended_by"], &few["passes"], &few["noise"]), (&"passes".into(), &2.into(), &().into()));
+}
+
+#[test]
+fn noise_that_is_not_reached_is_a_warning() {
+    let folder = room("resume-noise");
+    let noisy = |more: &[&str]| {
+        let start = ["render", "room.pbrt", "-o", "a.exr", "--integrator", "path", "--noise"];
+        folder.alhazen(&[&start[..], more].concat()).expect(0)
+    };
+    for (more, expected) in [
+        (&["0.001", "--spp", "16"][..], "after all passes, above the limit of 0.001"),
+        (&["0.1", "--spp", "2"], "the noise is unknown after all passes, for 2 are too few"),
+        (&["0.1", "--time", "0.001ms"], "the noise is unknown when the time was up, for 1 are too few"),
+    ] {
+        let warnings = noisy(&[more, &["--json"]].concat()).json()["warnings"].clone();
+        assert_eq!(warnings[0]["code"], "noise-not-reached");
+        let message = warnings[0]["message"].as_str().unwrap();
+        assert!(message.contains(expected), "{message}");
+        assert!(noisy(more).err.contains(message));
+        assert_eq!(noisy(&[more, &["--quiet"]].concat()).err, "");
+    }
+    assert_eq!(noisy(&["0.5", "--spp", "64", "--json"]).json()["warnings"], Value::Array(Vec::new()));
 }
 
 #[test]

@@ -3,12 +3,12 @@
 //! | kind | numbers |
 //! |---|---|
 //! | 0 independent | key |
-//! | 1 zsobol | key, binary logarithm of the number of samples, digits of a pixel's code, randomisation |
+//! | 1 zsobol | key, binary logarithm of the samples of a round, digits of a pixel's code, randomisation |
 //! | 2 paddedsobol | seed, number of samples, randomisation |
 //! | 3 sobol | randomisation, binary logarithm of the side of the square of pixels, number of dimensions, offset of their hashes, offset of their matrices |
 //! | 4 halton | key, randomisation, number of bases, their offset |
 //! | 5 stratified | key, seed, columns, rows, 1 where positions in cells are random |
-//! | 6 pmj02bn | key, binary logarithm of the number of samples |
+//! | 6 pmj02bn | key, binary logarithm of the samples of a round |
 
 use description::Span;
 use sampling::low_discrepancy::{PRIME_COUNT, prime};

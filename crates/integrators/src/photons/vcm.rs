@@ -96,7 +96,7 @@ impl Vcm {
         photon_paths: usize,
     ) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
-        let specular_paths = SpecularPaths::new(sampler.samples_per_pixel(), !photon_seed);
+        let specular_paths = SpecularPaths::new(light_sampler.samples_per_pixel(), !photon_seed);
         let lights = Lights::none();
         Self { settings, photon_paths, sampler, light_sampler, specular_paths, photon_seed, lights, merging }
     }

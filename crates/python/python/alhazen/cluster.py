@@ -18,20 +18,28 @@ import hashlib
 import os
 import sys
 import time as clock
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import ray
 import ray.exceptions
 
-from . import Film, Image, Job, Scene, SceneError, compile, load
+from . import Film, Image, Job, RenderWarning, Scene, SceneError, SceneWarning, compile, load
 
 __all__ = ["Progress", "render"]
 
 #: How often a task is run again whose worker or machine was lost.
 RETRIES = 32
+
+#: Seconds in which a worker starts.
+STARTING = 5.0
+
+#: The number of passes of a render that only time or noise ends.
+ENDLESS = 2**32 - 1
 
 #: Seconds between two saves of the film, and between two previews at most.
 INTERVAL = 60.0
@@ -41,9 +49,9 @@ INTERVAL = 60.0
 class Progress:
     """How far a render is."""
 
-    #: Shards done, and all of them.
+    #: Shards done, and all of them; None where only time or noise ends the render.
     shards: int
-    total: int
+    total: int | None
     #: Passes in the picture, each of one sample per pixel.
     passes: int
     #: Seconds since the start.
@@ -69,9 +77,11 @@ def render(
     as "auto" or "ray://host:10001"; where Ray is initialised already, that cluster is used; by
     default the one that runs on this machine, or else a new one. shards: the number of parts that the passes are split
     into, by default 16, or 4 for each worker if that is more. threads: of each worker, by default
-    the cores of the smallest machine. time: seconds after which no more shards are waited for.
+    the cores of the smallest machine. time: seconds after which no more shards are waited for, if
+    there is one; TimeoutError is raised if all cores of the cluster are in use until then.
     noise: the relative error at which the render ends; its shards are then merged in their order, so
-    that it ends after the same one on any cluster.
+    that it ends after the same one on any cluster. With time or noise and no spp, the number of
+    passes has no limit, and shards are as large as those of the passes that the scene plans.
     checkpoint: a film file from which the render is continued if it exists, and that is saved every
     minute. progress: called with a Progress after shards. preview: called with an Image now and
     then. All other arguments are those of alhazen.compile().
@@ -79,46 +89,75 @@ def render(
     Ctrl-C ends it with KeyboardInterrupt, after the film was saved; so does an exception of a
     callback.
     """
+    for name, value in (("threads", threads), ("shards", shards)):
+        if value is not None and value < 1:
+            raise ValueError(f"{name} is 1 or more, not {value}")
     archive = scene if isinstance(scene, bytes) else _load(scene).pack()
+    saved = None if checkpoint is None or not Path(checkpoint).exists() else Film.open(checkpoint)
+    is_limited = time is not None or noise is not None
+    if saved is not None:
+        if saved.planned is None and not is_limited:
+            raise ValueError("the checkpoint is of a render that time or noise ends: give one of them")
+        is_limited = saved.planned is None
     if not ray.is_initialized():
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
         ray.init(address=address, log_to_driver=False, include_dashboard=False if address is None else None)
     cores = [int(node["Resources"].get("CPU", 0)) for node in ray.nodes() if node["Alive"]]
     threads = threads or min((count for count in cores if count), default=1)
     workers = sum(count // threads for count in cores)
+    if any(cores) and not workers:
+        raise ValueError(f"threads={threads}, but the largest machine of the cluster has {max(cores)} cores")
 
     key = hashlib.sha256(archive).hexdigest() + repr(sorted(arguments.items()))
-    task = _Task(ray.put(archive), key, arguments, threads, noise is not None)
-    passes, blank = _result(task.start(_plan))
-    saved = None if checkpoint is None or not Path(checkpoint).exists() else Film.open(checkpoint)
+    task = _Task(ray.put(archive), key, arguments, threads, noise is not None, is_limited)
+    passes, blank, of_scene, of_job = _planned(task, time)
+    # Of a scene that was loaded here, Python has warned already.
+    for message in (of_scene if isinstance(scene, bytes) else []) + of_job:
+        warnings.warn(message, SceneWarning, stacklevel=2)
+    blank = Film.from_bytes(blank)
+    is_endless = blank.planned is None
     if saved is not None:
         # It is refused if it is of another render.
-        Film.from_bytes(blank).merge(saved)
-    # The passes of a shard alternate between two films, from which noise is estimated.
-    most = passes if noise is None else max(1, passes // 2)
-    count, done = _shards(saved, passes, min(most, shards or max(16, 4 * workers)))
+        blank.merge(saved)
+        count, done = _shards(saved)
+    else:
+        # The passes of a shard alternate between two films, from which noise is estimated.
+        least = 1 if noise is None else 2
+        usual = shards or max(16, 4 * workers)
+        count, done = min(max(1, passes // least), usual), set()
+        if is_endless:
+            count = ENDLESS // max(least, -(-passes // count))
 
     begin = clock.monotonic()
-    run = _Run(saved, checkpoint, count, len(done), begin, noise, progress, preview)
-    missing = [index for index in range(1, count + 1) if index not in done]
-    indices = {task.start(_render_shard, index, count): index for index in missing}
-    pending, waiting = list(indices), {}
+    total = None if is_endless else count
+    run = _Run(saved, checkpoint, total, len(done), begin, noise, progress, preview)
+    to_start, to_merge = ((index for index in range(1, count + 1) if index not in done) for _ in range(2))
+    most = max(16, 4 * workers) if is_endless else count
+    indices, waiting, turn = {}, {}, next(to_merge, None)
     try:
-        while pending and not run.ended:
+        while not run.ended:
+            for index in islice(to_start, most - len(indices) - len(waiting)):
+                indices[task.start(_render_shard, index, count)] = index
             left = None if time is None else time - (clock.monotonic() - begin)
-            if left is not None and left <= 0 and run.done:
+            if not indices or (left is not None and left <= 0 and run.done):
                 break
             wait = 0.2 if left is None else min(0.2, max(left, 0.0))
-            ready, pending = ray.wait(pending, num_returns=1, timeout=wait)
+            ready, _ = ray.wait(list(indices), num_returns=1, timeout=wait)
             for each in ready:
-                waiting[indices[each]] = _result(each)
-            while waiting and not run.ended and (noise is None or missing[0] in waiting):
-                index = next(iter(waiting)) if noise is None else missing.pop(0)
+                waiting[indices.pop(each)] = _result(each)
+            while waiting and not run.ended and (noise is None or turn in waiting):
+                index = next(iter(waiting)) if noise is None else turn
+                turn = next(to_merge, None)
                 run.add(waiting.pop(index))
     finally:
-        for each in pending:
+        for each in indices:
             ray.cancel(each, force=True)
         run.save()
+    if noise is not None and not run.ended:
+        end = "when the time was up" if indices else "after all passes"
+        found = "unknown" if run.film.noise is None else f"{run.film.noise:.4f}"
+        message = f"the noise is {found} {end}, above the limit of {noise}"
+        warnings.warn(message, RenderWarning, stacklevel=2)
     return run.film.image()
 
 
@@ -135,11 +174,12 @@ class _Task:
     arguments: dict[str, Any]
     threads: int
     alternates: bool
+    is_limited: bool
 
     def start(self, function: Any, *arguments: int) -> ray.ObjectRef:
         options = {"num_cpus": self.threads, "max_retries": RETRIES}
         return function.options(**options).remote(
-            self.archive, self.key, self.arguments, self.threads, self.alternates, *arguments
+            self.archive, self.key, self.arguments, self.threads, self.alternates, self.is_limited, *arguments
         )
 
 
@@ -185,16 +225,28 @@ class _Run:
             self.saved_at, self.is_saved = clock.monotonic(), True
 
 
-def _shards(saved: Film | None, passes: int, count: int) -> tuple[int, set[int]]:
+def _shards(saved: Film) -> tuple[int, set[int]]:
     """The number of shards, and the indices of those that a saved film has."""
-    if saved is None:
-        return min(count, passes), set()
-    missing, (_, count) = saved.missing, saved.shards[0]
-    if any(name.startswith("passes") for name in missing):
+    all, count = saved.planned or ENDLESS, saved.shards[0][1]
+    done = {index for index, _ in saved.shards}
+    size = sum(all * index // count - all * (index - 1) // count for index in done)
+    if size != saved.passes or any(other != count for _, other in saved.shards):
         raise ValueError("the checkpoint has shards that are not complete; `alhazen resume` completes them")
-    # Those that it lacks are named "shard 3/16 (passes 8–11)".
-    lacks = {int(name.split()[1].split("/")[0]) for name in missing}
-    return count, set(range(1, count + 1)) - lacks
+    return count, done
+
+
+def _planned(task: _Task, time: float | None) -> tuple[int, bytes, list[str], list[str]]:
+    """What `_plan` says, unless all cores are in use for longer than the render may take."""
+    is_free = ray.available_resources().get("CPU", 0) >= task.threads
+    reference, begin = task.start(_plan), clock.monotonic()
+    try:
+        while not ray.wait([reference], timeout=0.2)[0]:
+            if not is_free and time is not None and clock.monotonic() - begin > max(time, STARTING):
+                raise TimeoutError(f"no machine had {task.threads} cores free in {time} seconds")
+    except BaseException:
+        ray.cancel(reference, force=True)
+        raise
+    return _result(reference)
 
 
 def _result(reference: ray.ObjectRef) -> Any:
@@ -205,23 +257,27 @@ def _result(reference: ray.ObjectRef) -> Any:
         raise (error.cause if isinstance(error.cause, Exception) else error) from None
 
 
-#: The compiled scene that a worker keeps, by its key.
-_compiled: dict[str, Job] = {}
+#: The compiled scene that a worker keeps, by its key, and the warnings of the scene.
+_compiled: dict[str, tuple[Job, list[str]]] = {}
 
 
-def _job(archive: bytes, key: str, arguments: dict[str, Any]) -> Job:
+def _job(archive: bytes, key: str, arguments: dict[str, Any]) -> tuple[Job, list[str]]:
     if key not in _compiled:
         _compiled.clear()
-        _compiled[key] = compile(load(archive), **arguments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            scene = load(archive)
+            _compiled[key] = compile(scene, **arguments), scene.warnings
     return _compiled[key]
 
 
 @ray.remote
 def _plan(
-    archive: bytes, key: str, arguments: dict[str, Any], threads: int, alternates: bool
-) -> tuple[int, bytes]:
-    job = _job(archive, key, arguments)
-    return job.passes, bytes(job.blank_film(alternate=alternates))
+    archive: bytes, key: str, arguments: dict[str, Any], threads: int, alternates: bool, is_limited: bool
+) -> tuple[int, bytes, list[str], list[str]]:
+    job, of_scene = _job(archive, key, arguments)
+    blank = job.blank_film(alternate=alternates, limited=is_limited)
+    return job.passes, bytes(blank), of_scene, job.warnings
 
 
 @ray.remote
@@ -231,11 +287,13 @@ def _render_shard(
     arguments: dict[str, Any],
     threads: int,
     alternates: bool,
+    is_limited: bool,
     index: int,
     count: int,
 ) -> bytes:
-    job = _job(archive, key, arguments)
-    return bytes(job.render_shard(index, count, alternate=alternates, threads=threads))
+    job, _ = _job(archive, key, arguments)
+    shard = job.render_shard(index, count, alternate=alternates, limited=is_limited, threads=threads)
+    return bytes(shard)
 
 
 def _resolution(text: str) -> tuple[int, int]:
@@ -278,11 +336,16 @@ def _main() -> int:
         arguments["settings"] = dict(each.split("=", 1) for each in options.set)
 
     def show(progress: Progress) -> None:
-        print(f"{progress.shards}/{progress.total} shards, {progress.passes} passes, {progress.seconds:.1f} s")
+        shards = f"{progress.shards}" if progress.total is None else f"{progress.shards}/{progress.total}"
+        print(f"{shards} shards, {progress.passes} passes, {progress.seconds:.1f} s")
 
     def write(image: Image) -> None:
         image.write(options.output, view=options.view)
 
+    def format(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> str:
+        return f"{message}\n" if category is SceneWarning else f"warning: {message}\n"
+
+    warnings.formatwarning = format
     try:
         image = render(
             options.scene,

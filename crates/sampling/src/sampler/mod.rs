@@ -4,11 +4,11 @@
 //! coordinates. Values are in [0, 1) and depend on the sampler's settings, pixel, sample index,
 //! dimension and seed alone, so that any sample can be replayed, from any clone, in any order.
 //!
-//! [`Sampler::samples_per_pixel`] is the number of samples that a sampler stratifies; some round up
-//! the number requested. Indices beyond it are valid: the sequence continues, or a new set of
-//! samples, randomised anew, begins. The mean over pixels and seeds is unbiased at any number,
-//! except with [`Randomize::None`] in [`PaddedSobol`], [`Sobol`] and [`ZSobol`], where nothing is
-//! random.
+//! [`Sampler::samples_per_pixel`] is the number of samples that were requested, for which a sampler
+//! arranges them; some arrange the next power of two, of which these are the first. Indices beyond
+//! it are valid: the sequence continues, or a new set of samples, randomised anew, begins. The mean
+//! over pixels and seeds is unbiased at any number, except with [`Randomize::None`] in
+//! [`PaddedSobol`], [`Sobol`] and [`ZSobol`], where nothing is random.
 
 mod address;
 mod halton;
@@ -75,7 +75,7 @@ macro_rules! each_sampler {
 }
 
 impl Sampler {
-    /// The number of samples per pixel that this sampler stratifies.
+    /// The number of samples per pixel that were requested.
     pub fn samples_per_pixel(&self) -> u32 {
         each_sampler!(self, sampler => sampler.samples_per_pixel())
     }

@@ -17,8 +17,8 @@
 //! pbrt-v4 has tables of points that also keep their distance, and shifts them by the values of
 //! blue-noise textures, which moves them between elementary intervals.
 //!
-//! A number of samples that is no power of two is rounded up to one. Beyond it, each further round
-//! has a sequence of its own. So have tiles, of 2¹⁶ pixels a side where there is one sample per
+//! A round has the next power of two of samples, of which a pixel takes the first where that is more
+//! than it is to take. Each further round has a sequence of its own. So have tiles, of 2¹⁶ pixels a side where there is one sample per
 //! pixel, and of 2¹³ where there are 64.
 
 use super::address::{Address, interleaved};
@@ -28,10 +28,12 @@ use crate::mix_word;
 use lanes::{Each, Int};
 use math::Vec2;
 
-/// Progressive multi-jittered (0, 2) points, distributed over pixels along a Z-order curve. The
-/// number of samples is rounded up to a power of two; beyond it each round has points of its own.
+/// Progressive multi-jittered (0, 2) points, distributed over pixels along a Z-order curve, in rounds
+/// of the next power of two of samples, each with points of its own.
 #[derive(Clone, Debug)]
 pub struct Pmj02Bn {
+    samples_per_pixel: u32,
+    /// Of the samples of a round.
     log2_samples: u32,
     /// A hash of the seed.
     key: u32,
@@ -41,17 +43,19 @@ pub struct Pmj02Bn {
 impl Pmj02Bn {
     /// A sampler, best with a power of four of samples.
     pub fn new(samples_per_pixel: u32, seed: u32) -> Pmj02Bn {
-        let log2_samples = samples_per_pixel.clamp(1, 1 << 31).next_power_of_two().ilog2();
-        Pmj02Bn { log2_samples, key: mix_word(seed), address: Address::new([0; 2], 0, 0) }
+        let samples_per_pixel = samples_per_pixel.clamp(1, 1 << 31);
+        let log2_samples = samples_per_pixel.next_power_of_two().ilog2();
+        let address = Address::new([0; 2], 0, 0);
+        Pmj02Bn { samples_per_pixel, log2_samples, key: mix_word(seed), address }
     }
 
-    /// The binary logarithm of the number of samples, and the hash of the seed.
+    /// The binary logarithm of the samples of a round, and the hash of the seed.
     pub fn parts(&self) -> (u32, u32) {
         (self.log2_samples, self.key)
     }
 
     pub(super) fn samples_per_pixel(&self) -> u32 {
-        1 << self.log2_samples
+        self.samples_per_pixel
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
@@ -100,7 +104,7 @@ impl Pmj02Bn {
         let log2_side = (32 - self.log2_samples) / 2;
         let kept = I::splat((1 << log2_side) - 1);
         let [x, y] = address.pixel.each(|x| x & kept);
-        let sample = address.index & (self.samples_per_pixel() - 1);
+        let sample = address.index & ((1 << self.log2_samples) - 1);
         let index = interleaved(x, y).shl(self.log2_samples) | I::splat(sample);
         let round = mix_word(self.key ^ mix_word(address.index >> self.log2_samples));
         let [column, row] = address.pixel.each(|x| x.shr(log2_side));

@@ -4,8 +4,8 @@
 //! On a square with side 2^m, every 2^(2m) successive points have one in each pixel. Which index
 //! that is follows from the first 2m rows of the two matrices: a linear system over the binary
 //! field, inverted here once. The digits of a coordinate thus are linear in the bits of pixel and
-//! sample, and have a table of their own: a matrix of these bits for each dimension. The number of
-//! samples is rounded up to a power of two; beyond it the sequence continues.
+//! sample, and have a table of their own: a matrix of these bits for each dimension. Any number of
+//! samples is the beginning of the sequence, best a power of two.
 
 use super::address::Address;
 use super::randomize::{Randomize, wrapped};
@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// For each bit of a word, the digits that it adds.
 type Matrix = [u32; 32];
 
-/// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded
-/// up to a power of two; beyond it the sequence continues.
+/// Sobol' points of all dimensions, one sequence over the picture, which any number of samples
+/// begins. The number is best a power of two.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     samples_per_pixel: u32,
@@ -42,7 +42,7 @@ impl Sobol {
         let points = points_of_bits(log2_side);
         let matrices = |dimension| points.map(|points| points.map(|point| sobol_digits(point, dimension)));
         Sobol {
-            samples_per_pixel: samples_per_pixel.clamp(1, 1 << 31).next_power_of_two(),
+            samples_per_pixel: samples_per_pixel.clamp(1, 1 << 31),
             randomize,
             seeds: (0..SOBOL_DIMENSIONS as u32).map(|dimension| hash(&[dimension, seed]) as u32).collect(),
             log2_side,

@@ -3,9 +3,10 @@
 //! the error is blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
 //! The seed selects both the permutations and the scrambles: all pixels share the scrambles, so
-//! that by them alone the errors of two seeds would be correlated. A number of samples that is no
-//! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
-//! of its own. All hashes are of 32 bits, so that lanes of a vector can each compute a coordinate.
+//! that by them alone the errors of two seeds would be correlated. A round has the next power of two
+//! of samples, of which a pixel takes the first where that is more than it is to take. Beyond it,
+//! each further round has scrambles and permutations of its own. All hashes are of 32 bits, so that
+//! lanes of a vector can each compute a coordinate.
 
 use super::address::{Address, interleaved};
 use super::randomize::Randomize;
@@ -17,10 +18,12 @@ use math::Vec2;
 /// Separates the hash of scrambles from that of permutations.
 const SCRAMBLES: u32 = 0x9e37_79b9;
 
-/// Two-dimensional Sobol' points distributed over the picture along a Morton curve. The number of
-/// samples is rounded up to a power of two; beyond it each round has scrambles of its own.
+/// Two-dimensional Sobol' points distributed over the picture along a Morton curve, in rounds of
+/// the next power of two of samples, each with scrambles of its own.
 #[derive(Clone, Debug)]
 pub struct ZSobol {
+    samples_per_pixel: u32,
+    /// Of the samples of a round.
     log2_samples: u32,
     /// Base-4 digits of a pixel's Morton code.
     log2_side: u32,
@@ -33,10 +36,11 @@ pub struct ZSobol {
 impl ZSobol {
     /// A sampler for a picture of the given resolution.
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> ZSobol {
-        let log2_samples = samples_per_pixel.clamp(1, 1 << 31).next_power_of_two().ilog2();
+        let samples_per_pixel = samples_per_pixel.clamp(1, 1 << 31);
         let side = resolution[0].max(resolution[1]).max(1) as u32;
         ZSobol {
-            log2_samples,
+            samples_per_pixel,
+            log2_samples: samples_per_pixel.next_power_of_two().ilog2(),
             log2_side: side.next_power_of_two().ilog2(),
             randomize,
             key: mix_word(seed),
@@ -44,14 +48,14 @@ impl ZSobol {
         }
     }
 
-    /// The binary logarithm of the number of samples, the base-4 digits of a pixel's Morton code,
+    /// The binary logarithm of the samples of a round, the base-4 digits of a pixel's Morton code,
     /// the randomisation, and the hash of the seed.
     pub fn parts(&self) -> (u32, u32, Randomize, u32) {
         (self.log2_samples, self.log2_side, self.randomize, self.key)
     }
 
     pub(super) fn samples_per_pixel(&self) -> u32 {
-        1 << self.log2_samples
+        self.samples_per_pixel
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
@@ -105,7 +109,7 @@ impl ZSobol {
     /// The point of the sequence that a sample takes in these dimensions, as low and high word of
     /// its index: the Morton code of the pixel and the index of the sample, each base-4 digit
     /// permuted by a hash of the digits above it. Below them there is one binary digit if the
-    /// number of samples is not a power of four.
+    /// samples of a round are not a power of four.
     #[inline(always)]
     fn point<I: Int>(&self, address: &Address<I>) -> [I; 2] {
         if 2 * self.log2_side + self.log2_samples > 32 {
@@ -122,7 +126,7 @@ impl ZSobol {
         let [x, y] = address.pixel.each(|x| x & kept);
         let [low, high] = [interleaved(x, y), interleaved(x.shr(16), y.shr(16))];
         let log2 = self.log2_samples;
-        let index = I::splat(address.index & (self.samples_per_pixel() - 1));
+        let index = I::splat(address.index & ((1 << self.log2_samples) - 1));
         if log2 == 0 {
             return [low, high];
         }

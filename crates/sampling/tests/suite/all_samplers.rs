@@ -141,10 +141,20 @@ fn positions_in_a_pixel_of_different_seeds_are_uncorrelated() {
 }
 
 #[test]
-fn sample_counts_are_as_requested_or_rounded_up() {
+fn sample_counts_are_as_requested() {
     for (name, sampler) in random_samplers(12, 0) {
-        let rounds_up = ["sobol", "zsobol", "pmj02bn"].iter().any(|start| name.starts_with(start));
-        assert_eq!(sampler.samples_per_pixel(), if rounds_up { 16 } else { 12 }, "{name}");
+        assert_eq!(sampler.samples_per_pixel(), 12, "{name}");
+    }
+}
+
+#[test]
+fn a_number_that_is_no_power_of_two_begins_the_samples_of_the_next_one() {
+    for ((name, mut few), (_, mut all)) in random_samplers(12, 3).into_iter().zip(random_samplers(16, 3)) {
+        if ["sobol", "zsobol", "pmj02bn", "halton"].iter().any(|start| name.starts_with(start)) {
+            for index in 0..40 {
+                assert_eq!(draw(&mut few, [4, 5], index), draw(&mut all, [4, 5], index), "{name} {index}");
+            }
+        }
     }
 }
 

@@ -65,6 +65,9 @@ const OF_THE_PLATFORM: [&str; 21] = [
 /// File system access.
 const FILES: [&str; 5] = ["std::fs", "fs::read", "File::open", "File::create", "OpenOptions"];
 
+/// Where a static may be mutable: only what a process keeps itself tells it that it was forked.
+const GLOBALS: [&str; 1] = ["crates/python/src/calls.rs"];
+
 /// What makes a static mutable.
 const CELLS: [&str; 5] = ["Mutex", "RwLock", "Atomic", "Cell<", "thread_local!"];
 
@@ -103,7 +106,7 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
                 findings.push(Finding::new(path, number + 1, message));
             }
             let global = words_start(line, "static ") || line.contains("thread_local!");
-            if global && CELLS.iter().any(|cell| line.contains(cell)) {
+            if global && outside(&GLOBALS) && CELLS.iter().any(|cell| line.contains(cell)) {
                 findings.push(Finding::new(path, number + 1, "mutable global state; pass it as a value"));
             }
         }
