@@ -53,6 +53,7 @@ impl std::error::Error for OverrideError {}
 impl Overrides {
     /// Changes the scene; the first change that is not valid is the error.
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
+        let resolution = desc.film.resolution;
         if let Some(name) = &self.integrator {
             let changed = integrator_called(name, &desc.integrator)
                 .ok_or_else(|| unknown("integrator", name, &drawn::<IntegratorDesc>()))?;
@@ -82,6 +83,7 @@ impl Overrides {
         if let Some(resolution) = self.resolution {
             desc.film.resolution = resolution;
         }
+        import::refit_camera(desc, resolution);
         if let Some(crop) = self.crop {
             desc.film.pixel_bounds = None;
             desc.film.crop_window = Some(crop);

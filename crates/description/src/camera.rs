@@ -19,6 +19,9 @@ settings! {
         shutter_close: f32 = 1.0 => ["shutterclose"];
         /// The medium around the camera.
         medium: Option<Handle<MediumDesc>> = None;
+        /// Half of the width and height, at distance 1, that the image has at least. A camera that
+        /// an importer placed has them, so that its field of view can follow the size of the film.
+        shows: Option<[f32; 2]> = None;
     }
 }
 

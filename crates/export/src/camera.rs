@@ -42,7 +42,7 @@ pub(crate) fn camera(
     text: &mut Text,
     extensions: &mut BTreeSet<String>,
 ) {
-    let CameraDesc { kind, camera_from_world, shutter_open: _, shutter_close: _, medium } =
+    let CameraDesc { kind, camera_from_world, shutter_open: _, shutter_close: _, medium, shows: _ } =
         &desc.camera.value;
     text.transform(camera_from_world);
     if let Some(medium) = medium {

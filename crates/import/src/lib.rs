@@ -30,7 +30,7 @@ use std::path::Path;
 pub use archive::{Manifest, is_archive};
 pub use assets::{AssetSource, Files, MemoryAssets};
 pub use imported::Imported;
-pub use mesh::{Mesh, MeshError, read_obj, read_ply, read_stl};
+pub use mesh::{Mesh, MeshError, read_obj, read_ply, read_stl, refit_camera};
 pub use pbrt::{Argument, ArgumentValues, Motion, Placement, SceneBuilder};
 pub use suggest::closest;
 

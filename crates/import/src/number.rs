@@ -27,6 +27,27 @@ pub(crate) fn float(text: &[u8]) -> Option<f32> {
     if is_decimal(text) { std::str::from_utf8(text).ok()?.parse().ok() } else { None }
 }
 
+/// A double, or what programs write for infinity and for no number; `None` for all else.
+#[inline]
+pub(crate) fn lenient(text: &[u8]) -> Option<f64> {
+    double(text).or_else(|| special(text))
+}
+
+/// The value of `inf`, `-nan`, `1.#QNAN`, `nan(ind)` and the like.
+fn special(text: &[u8]) -> Option<f64> {
+    let text = String::from_utf8_lossy(text).to_ascii_lowercase();
+    let name = text.trim_start_matches(['+', '-']);
+    // A width of digits is filled up by some programs.
+    let name = name.strip_prefix("1.#").map_or(name, |name| name.trim_end_matches('0'));
+    let magnitude = match name {
+        "inf" | "infinity" => f64::INFINITY,
+        "nan" | "ind" | "qnan" | "snan" => f64::NAN,
+        _ if name.starts_with("nan(") => f64::NAN,
+        _ => return None,
+    };
+    Some(if text.starts_with('-') { -magnitude } else { magnitude })
+}
+
 /// An integer; `None` if the text is not one or does not fit.
 #[inline]
 pub(crate) fn integer(text: &[u8]) -> Option<i32> {
@@ -132,6 +153,17 @@ mod tests {
         for text in ["", "-", "1.0", "1e3", "2147483648", "99999999999"] {
             assert_eq!(integer(text.as_bytes()), None, "{text}");
         }
+    }
+
+    #[test]
+    fn words_for_infinity_and_no_number_are_numbers_where_they_may_be() {
+        for (text, value) in [("inf", 1.0), ("-Infinity", -1.0), ("1.#INF", 1.0), ("-1.#INF00", -1.0)] {
+            assert_eq!(lenient(text.as_bytes()), Some(value * f64::INFINITY), "{text}");
+        }
+        for text in ["nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND"] {
+            assert!(lenient(text.as_bytes()).is_some_and(f64::is_nan), "{text}");
+        }
+        assert_eq!((lenient(b"2.5"), lenient(b"name"), lenient(b"")), (Some(2.5), None, None));
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub(crate) fn complete(
             let axis = |v: math::DVec3| v.normalize_or(DVec3::Y);
             [axis(node.x_axis.truncate()), axis(node.y_axis.truncate()), -axis(node.z_axis.truncate())]
         }
-        None => studio::add_camera(desc, low, high),
+        None => studio::add_camera(desc, [low, high]).0,
     };
     if is_lit {
         expose(desc, (low + high) / 2.0, (high - low).length() / 2.0, lamps, log);

@@ -10,7 +10,7 @@ use exr::meta::attribute::SampleType;
 use exr::meta::{BlockDescription, MetaData};
 use image_rs::{ExtendedColorType, ImageDecoder, ImageReader};
 
-use super::{Format, ReadOptions, exr as open_exr, pfm, raster};
+use super::{Format, ReadOptions, exr as open_exr, hdr, pfm, raster, tiff};
 use crate::error::ImageError;
 use crate::metadata::{Attribute, ImageMetadata, Window};
 
@@ -79,6 +79,18 @@ pub fn info(bytes: &[u8], name: &str) -> Result<ImageInfo, ImageError> {
             let channels = image.channels().iter().map(|name| (name.clone(), Sample::Float(32))).collect();
             Ok(single_layer(format, [image.width(), image.height()], channels))
         }
+        Format::Hdr => {
+            let channels = ["R", "G", "B"].map(|name| (name.to_owned(), Sample::SharedExponent));
+            Ok(single_layer(format, hdr::size(bytes)?, channels.into()))
+        }
+        Format::Tiff => match tiff::Tiff::open(bytes)? {
+            Some(mut file) => {
+                let (size, names, sample) = file.info()?;
+                let channels = names.iter().map(|&name| (name.to_owned(), sample)).collect();
+                Ok(single_layer(format, size, channels))
+            }
+            None => raster_info(bytes, format),
+        },
         _ => raster_info(bytes, format),
     };
     // As in `read`: the decoders of other crates may panic on damaged files.
@@ -113,7 +125,6 @@ fn raster_info(bytes: &[u8], format: Format) -> Result<ImageInfo, ImageError> {
     let count = usize::from(color.channel_count()).max(1);
     let bits = u32::from(color.bits_per_pixel()) / count as u32;
     let sample = match color {
-        _ if format == Format::Hdr => Sample::SharedExponent,
         ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F => Sample::Float(bits),
         _ => Sample::Integer(bits),
     };

@@ -6,9 +6,11 @@
 //! decoder becomes [`ImageError::Invalid`].
 
 mod exr;
+mod hdr;
 mod info;
 mod pfm;
 mod raster;
+mod tiff;
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -34,7 +36,8 @@ pub enum Format {
     Jpeg,
     /// Radiance RGBE: colours that share an exponent.
     Hdr,
-    /// Truevision TGA: 8 bits.
+    /// Truevision TGA: 8 bits. The fourth byte of a pixel is opacity, even where the header has no
+    /// bits of attributes: this is how the usual readers have it, for many writers leave them out.
     Tga,
     /// Portable float map: single floats, one or three channels.
     Pfm,
@@ -179,7 +182,12 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, Im
     let format = Format::of(bytes, name)?;
     let decode = || match format {
         Format::Exr => exr::decode(bytes, options),
+        Format::Hdr => hdr::decode(bytes, options),
         Format::Pfm => pfm::decode(bytes, options),
+        Format::Tiff => match tiff::Tiff::open(bytes)? {
+            Some(file) => file.decode(options),
+            None => raster::decode(bytes, format, options),
+        },
         _ => raster::decode(bytes, format, options),
     };
     // The decoders of other crates may panic on damaged files, which must not end a render.

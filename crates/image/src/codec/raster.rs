@@ -1,4 +1,4 @@
-//! PNG, JPEG, Radiance HDR, TGA, BMP, QOI, WebP and TIFF, by the `image` crate.
+//! PNG, JPEG, TGA, BMP, QOI, WebP and TIFF, by the `image` crate, which also writes Radiance HDR.
 
 use std::io::{BufWriter, Cursor, Seek, Write};
 

@@ -1,22 +1,28 @@
 //! Mesh files: polygons with shared vertices.
 
 pub(crate) mod contours;
+mod material;
+mod mtl;
+mod notes;
 mod obj;
+mod outline;
 mod ply;
 pub(crate) mod polygon;
 pub(crate) mod scene;
 mod stl;
 pub(crate) mod studio;
+mod text;
 
 use std::fmt;
 use std::path::Path;
 
+use image::linear_from_srgb;
 use math::{Normal3, Point2, Point3};
 
 pub use obj::read_obj;
-pub(crate) use obj::{Obj, ObjMaterial, read_materials, read_obj_parts};
 pub use ply::read_ply;
 pub use stl::read_stl;
+pub use studio::refit_camera;
 
 /// The mesh formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +65,8 @@ pub struct Mesh {
     pub normals: Vec<Normal3>,
     /// Vertex texture coordinates.
     pub uvs: Vec<Point2>,
+    /// Vertex colours, linear.
+    pub colors: Vec<[f32; 3]>,
     /// Triangles: those of the file, and those of triangulated polygons.
     pub triangles: Vec<[u32; 3]>,
     /// Convex quadrilaterals, corners in order around the face.
@@ -67,6 +75,8 @@ pub struct Mesh {
     pub triangle_faces: Vec<i32>,
     /// The file's own number for each quadrilateral; or empty.
     pub quad_faces: Vec<i32>,
+    /// What of the file's surface is not in the mesh.
+    pub warnings: Vec<String>,
 }
 
 impl Mesh {
@@ -87,10 +97,34 @@ impl Mesh {
         }
     }
 
+    /// A new vertex that is like another one.
+    fn copy_vertex(&mut self, vertex: u32) -> u32 {
+        fn copy<T: Copy>(values: &mut Vec<T>, vertex: usize) {
+            values.extend(values.get(vertex).copied());
+        }
+        let vertex = vertex as usize;
+        copy(&mut self.positions, vertex);
+        copy(&mut self.normals, vertex);
+        copy(&mut self.uvs, vertex);
+        copy(&mut self.colors, vertex);
+        self.positions.len() as u32 - 1
+    }
+
     fn push_triangle(&mut self, triangle: [u32; 3], number: Option<i32>) {
         self.triangles.push(triangle);
         self.triangle_faces.extend(number);
     }
+}
+
+/// Makes colours of vertices linear, which files have as sRGB codes in [0, 1]. Whether they are
+/// codes up to 255 instead: some are above 1.
+fn decode_colors(colors: &mut [[f32; 3]]) -> bool {
+    let is_wide = colors.iter().flatten().any(|&code| code > 1.0);
+    let scale = if is_wide { 255.0 } else { 1.0 };
+    for code in colors.iter_mut().flatten() {
+        *code = if *code > 0.0 { linear_from_srgb((*code / scale).min(1.0)) } else { 0.0 };
+    }
+    is_wide
 }
 
 /// Why a mesh could not be read.

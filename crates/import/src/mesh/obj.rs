@@ -1,45 +1,33 @@
-//! Wavefront OBJ meshes and the materials of MTL files.
+//! Wavefront OBJ meshes.
 //!
-//! Read: `v`, `vt`, `vn`, `f` (corners `v`, `v/t`, `v//n`, `v/t/n`; negative indices count
-//! backwards), `usemtl`, `mtllib`, and lines continued by a backslash. `p` and `l` are checked and
-//! ignored; everything else is skipped.
+//! Read: `v` with colours, `vt`, `vn`, `f` (corners `v`, `v/t`, `v//n`, `v/t/n`; negative indices
+//! count backwards), `s`, `usemtl`, `mtllib`, and lines continued by a backslash. Names of groups
+//! and objects have no effect; all other statements are named in a warning.
 
 use std::collections::HashMap;
 
-use math::{Vec2, Vec3};
+use math::{DVec3, Vec2, Vec3};
 
-use super::{Mesh, MeshError, invalid};
+use super::notes::Notes;
+use super::text::{name, statements, unmarked, words};
+use super::{Mesh, MeshError, invalid, polygon};
 use crate::number;
 
 /// An OBJ file: one mesh per material.
 #[derive(Debug, Default)]
 pub(crate) struct Obj {
-    /// Names of material files.
+    /// Names of material files: each a line, which may name several.
     pub(crate) libraries: Vec<String>,
     /// Material names (empty for none) and the faces with each.
     pub(crate) parts: Vec<(String, Mesh)>,
-}
-
-/// A material of an MTL file; parameters that are not given are absent.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct ObjMaterial {
-    pub(crate) name: String,
-    pub(crate) diffuse: Option<[f32; 3]>,
-    pub(crate) specular: Option<[f32; 3]>,
-    pub(crate) emission: Option<[f32; 3]>,
-    /// Phong exponent.
-    pub(crate) shininess: Option<f32>,
-    pub(crate) index_of_refraction: Option<f32>,
-    /// 1 is opaque.
-    pub(crate) opacity: Option<f32>,
-    pub(crate) diffuse_map: Option<String>,
-    pub(crate) illumination: Option<i32>,
+    /// What of the file is not in the meshes.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Reads an OBJ file as one mesh, whatever its materials.
 pub fn read_obj(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let mut parts = read(bytes, false)?.parts;
-    Ok(parts.remove(0).1)
+    let Obj { mut parts, warnings, .. } = read(bytes, false)?;
+    Ok(Mesh { warnings, ..parts.remove(0).1 })
 }
 
 /// Reads an OBJ file as one mesh per material.
@@ -47,134 +35,296 @@ pub(crate) fn read_obj_parts(bytes: &[u8]) -> Result<Obj, MeshError> {
     read(bytes, true)
 }
 
-/// A corner of a face: indices of position, texture coordinates and normal.
-type Corner = (u32, Option<u32>, Option<u32>);
+/// The normal of a corner.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum NormalOf {
+    /// That of its face alone.
+    Face,
+    /// One of the file.
+    Given(u32),
+    /// The mean over the faces of a smoothing group around the vertex.
+    Group(i32),
+}
+
+/// A corner of a face, of indices into the arrays of the file.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Corner {
+    position: u32,
+    uv: Option<u32>,
+    normal: NormalOf,
+}
+
+/// The arrays of a file, and its state at a statement.
+#[derive(Default)]
+struct Reader {
+    positions: Vec<Vec3>,
+    /// sRGB codes; empty as long as no vertex has any.
+    colors: Vec<[f32; 3]>,
+    uvs: Vec<Vec2>,
+    normals: Vec<Vec3>,
+    material: String,
+    /// The smoothing group; 0 for none.
+    group: i32,
+    /// Sums of the normals of a group's faces around a vertex.
+    smooth: HashMap<(i32, u32), DVec3>,
+    parts: Vec<(String, Part)>,
+    places: HashMap<String, usize>,
+    libraries: Vec<String>,
+    notes: Notes,
+}
 
 /// A mesh being built, with the vertex of each distinct corner.
 #[derive(Default)]
 struct Part {
     mesh: Mesh,
+    /// The corner of each vertex.
+    corners: Vec<Corner>,
     vertices: HashMap<Corner, u32>,
-    /// Whether some corner has no normal, or no texture coordinates: then the part has none.
-    lacks_normals: bool,
-    lacks_uvs: bool,
 }
 
 fn read(bytes: &[u8], by_material: bool) -> Result<Obj, MeshError> {
-    let mut obj = Obj::default();
-    let (mut positions, mut uvs, mut normals) = (Vec::<Vec3>::new(), Vec::<Vec2>::new(), Vec::<Vec3>::new());
-    let mut parts: Vec<(String, Part)> = Vec::new();
-    let mut places: HashMap<String, usize> = HashMap::new();
-    let mut material = String::new();
-    let mut corners: Vec<Corner> = Vec::new();
-    for line in lines(bytes) {
-        let mut words = words(line);
-        match words.next() {
-            Some(b"v") => positions.push(Vec3::from_array(floats(words)?)),
-            Some(b"vn") => normals.push(Vec3::from_array(floats(words)?)),
-            Some(b"vt") => {
-                let [u] = floats(words.clone())?;
-                let v = words.nth(1).and_then(number::float).unwrap_or(0.0);
-                uvs.push(Vec2::new(u, v));
-            }
-            Some(keyword @ (b"f" | b"p" | b"l")) => {
-                corners.clear();
-                for word in words {
-                    corners.push(corner(word, [positions.len(), uvs.len(), normals.len()])?);
-                }
-                if keyword != b"f" {
-                    continue;
-                }
-                let place = *places.entry(material.clone()).or_insert_with(|| {
-                    parts.push((material.clone(), Part::default()));
-                    parts.len() - 1
-                });
-                parts[place].1.push_face(&corners, &positions, &uvs, &normals);
-            }
-            Some(b"usemtl") if by_material => material = rest_of_line(line, 6),
-            Some(b"mtllib") => {
-                obj.libraries.extend(rest_of_line(line, 6).split_whitespace().map(str::to_owned));
-            }
-            _ => (),
-        }
+    let text = unmarked(bytes);
+    let mut reader = Reader::default();
+    for (line, statement) in statements(&text) {
+        reader.statement(line, &statement, by_material).or_else(|error| match error {
+            MeshError::Invalid(text) => invalid(format!("line {line}: {text}")),
+            error => Err(error),
+        })?;
     }
-    obj.parts = parts.into_iter().map(|(material, part)| (material, part.finish())).collect();
-    obj.parts.retain(|(_, mesh)| !mesh.triangles.is_empty() || !mesh.quads.is_empty());
-    if obj.parts.is_empty() {
+    let (parts, smooth) = (std::mem::take(&mut reader.parts), std::mem::take(&mut reader.smooth));
+    if super::decode_colors(&mut reader.colors) {
+        reader.notes.add_at("vertices", "colours beyond 1 are taken as codes up to 255");
+    }
+    let mut parts: Vec<_> =
+        parts.into_iter().map(|(material, part)| (material, part.finish(&reader, &smooth))).collect();
+    parts.retain(|(_, mesh)| !mesh.triangles.is_empty() || !mesh.quads.is_empty());
+    if parts.is_empty() {
         return Err(MeshError::Unsupported("it has no faces".into()));
     }
-    Ok(obj)
+    Ok(Obj { libraries: reader.libraries, parts, warnings: reader.notes.into_texts() })
+}
+
+impl Reader {
+    fn statement(&mut self, line: usize, statement: &[u8], by_material: bool) -> Result<(), MeshError> {
+        let mut words = words(statement);
+        match words.next() {
+            Some(b"v") => self.vertex(line, words)?,
+            Some(b"vn") => {
+                let normal = self.lenient(line, words, 3)?;
+                self.normals.push(Vec3::from_array(normal));
+            }
+            Some(b"vt") => {
+                let [u, v, _] = self.lenient(line, words, 1)?;
+                self.uvs.push(Vec2::new(u, v));
+            }
+            Some(keyword @ (b"f" | b"fo" | b"p" | b"l")) => {
+                let corners = words.map(|word| self.corner(line, word)).collect::<Result<Vec<_>, _>>()?;
+                match keyword {
+                    b"p" | b"l" => self.notes.add(line, "points and lines are not drawn"),
+                    _ => self.face(line, corners),
+                }
+            }
+            Some(b"s") => {
+                let group = words.next().unwrap_or(b"off");
+                self.group = if group == b"off" { 0 } else { number::integer(group).unwrap_or(1) };
+            }
+            Some(b"usemtl") if by_material => self.material = name(statement),
+            Some(b"usemtl") => (),
+            Some(b"mtllib") => self.libraries.push(name(statement)),
+            Some(b"g" | b"o") | None => (),
+            Some(keyword) => {
+                self.notes.add(line, format!("`{:.40}` is not read", String::from_utf8_lossy(keyword)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A vertex: a position, and after it a weight, a colour, or a colour and its opacity.
+    fn vertex<'a>(
+        &mut self,
+        line: usize,
+        words: impl Iterator<Item = &'a [u8]> + Clone,
+    ) -> Result<(), MeshError> {
+        self.positions.push(Vec3::from_array(floats(words.clone())?));
+        let mut more = [0.0; 5];
+        let mut count = 0;
+        for word in words.skip(3) {
+            match number::float(word) {
+                Some(number) if count < more.len() => more[count] = number,
+                _ => {
+                    self.notes.add(line, "what stands after a position is not a colour");
+                    count = 0;
+                    break;
+                }
+            }
+            count += 1;
+        }
+        let color = (count >= 3).then_some([more[0], more[1], more[2]]);
+        match count {
+            1 if more[0] != 1.0 => self.notes.add(line, "weights of vertices are not read"),
+            4 if more[3] != 1.0 => self.notes.add(line, "opacity of vertices is not drawn"),
+            2 | 5 => self.notes.add(line, "a vertex has more numbers than a position and a colour"),
+            _ => (),
+        }
+        if color.is_some() && self.colors.is_empty() {
+            if self.positions.len() > 1 {
+                self.notes.add(line, "only some vertices have colours: the others are white");
+            }
+            self.colors.resize(self.positions.len() - 1, [1.0; 3]);
+        }
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.push(color.unwrap_or([1.0; 3]));
+        }
+        Ok(())
+    }
+
+    /// Numbers of a normal or of texture coordinates, of which some are optional; 0 where one is
+    /// not finite, as programs write normals of faces without an area.
+    fn lenient<'a>(
+        &mut self,
+        line: usize,
+        mut words: impl Iterator<Item = &'a [u8]>,
+        needed: usize,
+    ) -> Result<[f32; 3], MeshError> {
+        let mut values = [0.0; 3];
+        for (index, value) in values.iter_mut().enumerate() {
+            let Some(word) = words.next().or((index < needed).then_some(b"")) else { break };
+            match number::lenient(word).map(|value| value as f32) {
+                Some(number) if number.is_finite() => *value = number,
+                Some(_) => self.notes.add(line, "numbers that are not finite are read as 0"),
+                None => return not_a_number(word),
+            }
+        }
+        Ok(values)
+    }
+
+    fn corner(&mut self, line: usize, word: &[u8]) -> Result<Corner, MeshError> {
+        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        let shown = || format!("`{:.40}`", String::from_utf8_lossy(word));
+        let mut indices = [None; 3];
+        for (place, text) in word.split(|&byte| byte == b'/').enumerate() {
+            if place > 0 && text.is_empty() {
+                continue;
+            }
+            let Some(index) = number::integer(text).map(i64::from).filter(|_| place < 3) else {
+                return invalid(format!("{} is not a face corner", shown()));
+            };
+            let count = counts[place] as i64;
+            let index = match index {
+                1.. if index <= count => index - 1,
+                ..=-1 if -index <= count => count + index,
+                _ if place == 0 => {
+                    return invalid(format!("a corner has index `{index}`, but only {count} are defined"));
+                }
+                _ => {
+                    let what = ["", "texture coordinates", "normal"][place];
+                    let message = format!("a corner whose {what} is not defined before it has none");
+                    self.notes.add_at(format_args!("line {line}, {}", shown()), message);
+                    continue;
+                }
+            };
+            indices[place] = u32::try_from(index).ok();
+        }
+        match indices {
+            [Some(position), uv, normal] => {
+                Ok(Corner { position, uv, normal: normal.map_or(NormalOf::Face, NormalOf::Given) })
+            }
+            _ => invalid(format!("{} is not a face corner", shown())),
+        }
+    }
+
+    fn face(&mut self, line: usize, mut corners: Vec<Corner>) {
+        // A repeated corner adds nothing to the face.
+        corners.dedup_by_key(|corner| self.positions[corner.position as usize].to_array());
+        if corners.len() < 3 {
+            return;
+        }
+        let lacking = |has: &dyn Fn(&Corner) -> bool| corners.iter().filter(|corner| !has(corner)).count();
+        let (no_uv, no_normal) =
+            (lacking(&|corner| corner.uv.is_some()), lacking(&|corner| corner.normal != NormalOf::Face));
+        if (no_uv > 0 && no_uv < corners.len()) || (no_normal > 0 && no_normal < corners.len()) {
+            let message =
+                "texture coordinates and normals that only some corners of a face have are not used";
+            self.notes.add(line, message);
+        }
+        if no_uv > 0 {
+            corners.iter_mut().for_each(|corner| corner.uv = None);
+        }
+        if no_normal > 0 {
+            let group = self.group;
+            let normal = if group == 0 { NormalOf::Face } else { NormalOf::Group(group) };
+            corners.iter_mut().for_each(|corner| corner.normal = normal);
+            if group != 0 {
+                let positions: Vec<u32> = corners.iter().map(|corner| corner.position).collect();
+                let normal = polygon::normal(&self.positions, &positions);
+                for position in positions {
+                    *self.smooth.entry((group, position)).or_default() += normal;
+                }
+            }
+        }
+        let place = *self.places.entry(self.material.clone()).or_insert_with(|| {
+            self.parts.push((self.material.clone(), Part::default()));
+            self.parts.len() - 1
+        });
+        self.parts[place].1.push_face(&corners, &self.positions);
+    }
 }
 
 impl Part {
-    fn push_face(&mut self, corners: &[Corner], positions: &[Vec3], uvs: &[Vec2], normals: &[Vec3]) {
+    fn push_face(&mut self, corners: &[Corner], positions: &[Vec3]) {
         let mut face: Vec<u32> = Vec::with_capacity(corners.len());
         for &corner in corners {
-            let (position, uv, normal) = corner;
-            // A repeated corner adds nothing to the face.
-            let repeats =
-                |&earlier: &u32| self.mesh.positions[earlier as usize] == positions[position as usize];
-            if face.last().is_some_and(repeats) {
-                continue;
-            }
-            let mesh = &mut self.mesh;
             let vertex = *self.vertices.entry(corner).or_insert_with(|| {
-                mesh.positions.push(positions[position as usize]);
-                mesh.uvs.push(uv.map_or(Vec2::ZERO, |uv| uvs[uv as usize]));
-                mesh.normals.push(normal.map_or(Vec3::ZERO, |normal| normals[normal as usize]));
-                mesh.positions.len() as u32 - 1
+                self.mesh.positions.push(positions[corner.position as usize]);
+                self.corners.push(corner);
+                self.corners.len() as u32 - 1
             });
-            self.lacks_uvs |= uv.is_none();
-            self.lacks_normals |= normal.is_none();
             face.push(vertex);
         }
         self.mesh.push_face(&face, None);
     }
 
-    fn finish(mut self) -> Mesh {
-        if self.lacks_uvs {
-            self.mesh.uvs = Vec::new();
+    /// The mesh with what its vertices have. Faces without texture coordinates have the origin
+    /// where others have some, and faces without normals their own.
+    fn finish(self, file: &Reader, smooth: &HashMap<(i32, u32), DVec3>) -> Mesh {
+        let Self { mut mesh, corners, .. } = self;
+        if corners.iter().any(|corner| corner.uv.is_some()) {
+            let uv = |corner: &Corner| corner.uv.map_or(Vec2::ZERO, |uv| file.uvs[uv as usize]);
+            mesh.uvs = corners.iter().map(uv).collect();
         }
-        if self.lacks_normals {
-            self.mesh.normals = Vec::new();
+        if !file.colors.is_empty() {
+            mesh.colors = corners.iter().map(|corner| file.colors[corner.position as usize]).collect();
         }
-        self.mesh
+        if corners.iter().any(|corner| corner.normal != NormalOf::Face) {
+            let normal = |corner: &Corner| match corner.normal {
+                NormalOf::Face => Vec3::ZERO,
+                NormalOf::Given(normal) => file.normals[normal as usize],
+                NormalOf::Group(group) => unit(smooth[&(group, corner.position)]),
+            };
+            mesh.normals = corners.iter().map(normal).collect();
+            let is_flat = |vertex: u32| corners[vertex as usize].normal == NormalOf::Face;
+            let mut triangles = std::mem::take(&mut mesh.triangles);
+            triangles.iter_mut().filter(|face| is_flat(face[0])).for_each(|face| flatten(&mut mesh, face));
+            let mut quads = std::mem::take(&mut mesh.quads);
+            quads.iter_mut().filter(|face| is_flat(face[0])).for_each(|face| flatten(&mut mesh, face));
+            (mesh.triangles, mesh.quads) = (triangles, quads);
+        }
+        mesh
     }
 }
 
-/// The lines of a file without comments; a backslash at the end of a line joins it to the next.
-fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    // Joined lines are rare: a file without them is searched once, and its lines are slices of it.
-    let mut rest = bytes;
-    std::iter::from_fn(move || {
-        if rest.is_empty() {
-            return None;
-        }
-        let mut end = 0;
-        loop {
-            end += rest[end..].iter().position(|&byte| byte == b'\n').unwrap_or(rest.len() - end);
-            let before = rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]);
-            if end < rest.len() && before.ends_with(b"\\") {
-                end += 1;
-            } else {
-                break;
-            }
-        }
-        let line = &rest[..end];
-        rest = &rest[(end + 1).min(rest.len())..];
-        let is_comment = |at: &usize| line[*at] == b'#' && (*at == 0 || line[*at - 1].is_ascii_whitespace());
-        Some(&line[..(0..line.len()).find(is_comment).unwrap_or(line.len())])
-    })
+/// Gives a face vertices of its own, with its normal.
+fn flatten(mesh: &mut Mesh, face: &mut [u32]) {
+    let normal = unit(polygon::normal(&mesh.positions, face));
+    for corner in face {
+        let vertex = mesh.copy_vertex(*corner);
+        mesh.normals[vertex as usize] = normal;
+        *corner = vertex;
+    }
 }
 
-/// The words of a line, without the backslashes that join lines.
-fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
-    line.split(|&byte| byte.is_ascii_whitespace() || byte == b'\\').filter(|word| !word.is_empty())
-}
-
-/// The rest of a line after its keyword.
-fn rest_of_line(line: &[u8], keyword: usize) -> String {
-    String::from_utf8_lossy(&line.trim_ascii_start()[keyword..]).trim().to_owned()
+fn unit(normal: DVec3) -> Vec3 {
+    normal.normalize_or_zero().as_vec3().into()
 }
 
 fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; N], MeshError> {
@@ -183,130 +333,12 @@ fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Resu
         let word = words.next().unwrap_or(b"");
         match number::float(word).filter(|value| value.is_finite()) {
             Some(number) => *value = number,
-            None => return invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(word))),
+            None => return not_a_number(word),
         }
     }
     Ok(values)
 }
 
-fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
-    let mut indices = [None; 3];
-    for (place, text) in word.split(|&byte| byte == b'/').enumerate() {
-        if place == 3 {
-            return invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word)));
-        }
-        if text.is_empty() && place > 0 {
-            continue;
-        }
-        let count = counts[place] as i64;
-        let index = match number::integer(text).map(i64::from) {
-            Some(index @ 1..) if index <= count => index - 1,
-            Some(index @ ..=-1) if -index <= count => count + index,
-            _ => {
-                let text = String::from_utf8_lossy(text);
-                return invalid(format!("a corner has index `{text:.40}`, but only {count} are defined"));
-            }
-        };
-        indices[place] = u32::try_from(index).ok();
-    }
-    match indices {
-        [Some(position), uv, normal] => Ok((position, uv, normal)),
-        _ => invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word))),
-    }
-}
-
-/// Reads an MTL file. Parameters that cannot be read are ignored: a mesh is not refused for its
-/// materials.
-pub(crate) fn read_materials(bytes: &[u8]) -> Vec<ObjMaterial> {
-    let mut materials: Vec<ObjMaterial> = Vec::new();
-    for line in lines(bytes) {
-        let mut words = words(line);
-        let Some(keyword) = words.next() else { continue };
-        if keyword == b"newmtl" {
-            materials.push(ObjMaterial { name: rest_of_line(line, 6), ..ObjMaterial::default() });
-            continue;
-        }
-        let Some(material) = materials.last_mut() else { continue };
-        let number = |mut words: std::iter::Peekable<_>| words.next().and_then(number::float);
-        match keyword {
-            b"Kd" => material.diffuse = color(words),
-            b"Ks" => material.specular = color(words),
-            b"Ke" => material.emission = color(words),
-            b"Ns" => material.shininess = number(words.peekable()),
-            b"Ni" => material.index_of_refraction = number(words.peekable()),
-            b"d" => material.opacity = number(words.peekable()),
-            b"Tr" if material.opacity.is_none() => {
-                material.opacity = number(words.peekable()).map(|transparency| 1.0 - transparency);
-            }
-            b"illum" => material.illumination = words.next().and_then(number::integer),
-            b"map_Kd" => {
-                let file = rest_of_line(line, 6);
-                // Options before the name begin with a dash; the name is then the last word.
-                let name = if file.starts_with('-') { file.rsplit(' ').next().unwrap_or("") } else { &file };
-                material.diffuse_map = Some(name.replace('\\', "/"));
-            }
-            _ => (),
-        }
-    }
-    materials
-}
-
-/// A colour of three numbers, or of one that holds for all three.
-fn color<'a>(words: impl Iterator<Item = &'a [u8]>) -> Option<[f32; 3]> {
-    let values: Vec<f32> = words.map_while(number::float).filter(|value| value.is_finite()).collect();
-    match values[..] {
-        [r, g, b, ..] => Some([r, g, b]),
-        [value] => Some([value; 3]),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn corners_share_vertices_and_concave_faces_are_cut() {
-        let text = b"v 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\r\nvt 0 0\nf 1/1 2/1 3/1 4/1 # arrow\nf -4/1 \\\n-3/1 -2/1\n";
-        let mesh = read_obj(text).unwrap();
-        assert_eq!((mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()), (4, 4, 0));
-        assert_eq!((mesh.triangles.len(), mesh.quads.len()), (3, 0));
-    }
-
-    #[test]
-    fn indices_must_be_defined_already() {
-        for text in [
-            "v 0 0 0\nf 1 2 3",
-            "v 0 0 0\nf 0 1 1",
-            "v 0 0 0\nf -2 1 1",
-            "v 0 0 0\nf 1/1 1 1",
-            "v 0 0 0\np 2",
-            "v 0 x 0",
-        ] {
-            assert!(matches!(read_obj(text.as_bytes()), Err(MeshError::Invalid(_))), "{text}");
-        }
-    }
-
-    #[test]
-    fn faces_are_grouped_by_material() {
-        let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red paint\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red paint\nf 3 2 1";
-        let obj = read_obj_parts(text).unwrap();
-        let sizes: Vec<_> =
-            obj.parts.iter().map(|(name, mesh)| (name.as_str(), mesh.triangles.len())).collect();
-        assert_eq!(sizes, [("red paint", 2), ("b", 1)]);
-        assert_eq!(obj.libraries, ["a.mtl"]);
-    }
-
-    #[test]
-    fn materials_are_read_leniently() {
-        let text = b"newmtl red paint\nKd 1 0 0\nKe nonsense\nNs 20\nTr 0.25\nmap_Kd -s 2 2 2 tex\\a.png\nnewmtl b\nKd .5";
-        let materials = read_materials(text);
-        assert_eq!(materials[0].name, "red paint");
-        assert_eq!((materials[0].diffuse, materials[0].emission), (Some([1.0, 0.0, 0.0]), None));
-        assert_eq!(
-            (materials[0].opacity, materials[0].diffuse_map.as_deref()),
-            (Some(0.75), Some("tex/a.png"))
-        );
-        assert_eq!(materials[1].diffuse, Some([0.5; 3]));
-    }
+fn not_a_number<T>(word: &[u8]) -> Result<T, MeshError> {
+    invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(word)))
 }

@@ -1,92 +1,183 @@
 //! A mesh file as a scene of its own, with its materials, in a [`studio`].
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use description::{
-    AreaLightDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic, Handle,
-    ImageTextureDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SourceMap,
-    Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
-};
-use math::{DMat4, DVec3};
+use description::{ImageDesc, SceneDesc, ShapeDesc, ShapeKind, SourceMap, TransformDesc};
+use math::{DMat4, Point2};
 
-use super::{Format, Mesh, Obj, ObjMaterial, read_materials, read_obj_parts, studio};
+use super::material::{Paint, Surfaces};
+use super::mtl::{Map, ObjMaterial, read_materials};
+use super::obj::{Obj, read_obj_parts};
+use super::ply::read_textured;
+use super::stl::read_stl;
+use super::{Format, Mesh, MeshError, studio};
 use crate::Imported;
 use crate::assets::{AssetSource, read_unpacked, resolve};
-use crate::images;
-use crate::report::Report;
+use crate::log::{Fault, Log};
+use crate::look::{self, Look, Primitive, Vertices};
+
+/// Materials by their names, with the files that they are of.
+type Library = HashMap<String, (ObjMaterial, PathBuf)>;
 
 /// Reads a mesh file as a scene.
 pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imported {
-    let (mut desc, mut report) = (SceneDesc::default(), Report::default());
+    let (mut desc, mut log) = (SceneDesc::default(), Log::default());
     let name = path.to_string_lossy();
-    let parts = read_unpacked(assets, path).map_err(|error| error.to_string()).and_then(|bytes| {
-        let parts = match format {
-            Format::Obj => read_obj_parts(&bytes),
-            Format::Ply | Format::Stl => format
-                .read(&bytes)
-                .map(|mesh| Obj { libraries: Vec::new(), parts: vec![(String::new(), mesh)] }),
-        };
-        parts.map_err(|error| error.to_string())
-    });
+    let mut materials = Library::new();
+    let parts = read_unpacked(assets, path).map_err(|error| error.to_string());
+    let parts = parts
+        .and_then(|bytes| parts_of(&bytes, format, path, &mut materials).map_err(|error| error.to_string()));
     match parts {
-        Ok(obj) => fill(&mut desc, obj, format, (path, assets), &mut report),
+        Ok(obj) => fill(&mut desc, obj, format, (path, assets, materials), &mut log),
         Err(message) => {
-            report.error("unreadable-mesh", format!("cannot read the mesh `{name}`: {message}"), Span::NONE)
+            let message = format!("cannot read the mesh `{name}`: {message}");
+            log.fault(Fault::new("unreadable-mesh", "", message));
         }
     }
-    Imported { desc, sources: SourceMap::default(), diagnostics: report.finish() }
+    Imported { desc, sources: SourceMap::default(), diagnostics: log.finish() }
+}
+
+/// The meshes of a file; a PLY file may name a picture, which becomes a material.
+fn parts_of(bytes: &[u8], format: Format, path: &Path, materials: &mut Library) -> Result<Obj, MeshError> {
+    let whole = |name: String, mut mesh: Mesh| {
+        let warnings = std::mem::take(&mut mesh.warnings);
+        Obj { parts: vec![(name, mesh)], warnings, ..Obj::default() }
+    };
+    match format {
+        Format::Obj => read_obj_parts(bytes),
+        Format::Stl => Ok(whole(String::new(), read_stl(bytes)?)),
+        Format::Ply => {
+            let (mesh, texture) = read_textured(bytes)?;
+            if let Some(file) = &texture {
+                let diffuse_map = Some(Map::new(file));
+                let material = ObjMaterial { name: file.clone(), diffuse_map, ..ObjMaterial::default() };
+                materials.insert(file.clone(), (material, path.to_owned()));
+            }
+            Ok(whole(texture.unwrap_or_default(), mesh))
+        }
+    }
 }
 
 fn fill(
     desc: &mut SceneDesc,
     obj: Obj,
     format: Format,
-    (path, assets): (&Path, &dyn AssetSource),
-    report: &mut Report,
+    (path, assets, mut materials): (&Path, &dyn AssetSource, Library),
+    log: &mut Log,
 ) {
     let world_from_mesh = match format {
         Format::Ply | Format::Obj => DMat4::IDENTITY,
-        // What is made layer by layer has z up.
+        // What is made layer by layer has z up, and its front towards −y.
         Format::Stl => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
     };
-    let mut materials = HashMap::new();
-    for library in &obj.libraries {
-        let path = resolve(assets, library, &path.to_string_lossy(), "");
-        match read_unpacked(assets, &path) {
+    for text in obj.warnings {
+        log.warn("not-drawn", "", text);
+    }
+    for library in obj.libraries.iter().flat_map(|line| libraries(line, path, assets)) {
+        match read_unpacked(assets, &library) {
             Ok(bytes) => {
-                materials.extend(
-                    read_materials(&bytes).into_iter().map(|material| (material.name.clone(), material)),
-                );
+                let (known, warnings) = read_materials(&bytes);
+                for text in warnings {
+                    log.warn("not-drawn", format!("`{}`", library.display()), text);
+                }
+                let known = known.into_iter();
+                materials.extend(known.map(|known| (known.name.clone(), (known, library.clone()))));
             }
             Err(error) => {
-                let message = format!("cannot read the materials `{}`: {error}", path.display());
-                report.warning("unreadable-file", message, Span::NONE);
+                let message = format!("cannot read the materials `{}`: {error}", library.display());
+                log.warn("unreadable-file", "", message);
             }
         }
     }
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut surfaces = Surfaces::new(desc, log, assets, path);
     for (name, mesh) in obj.parts {
-        for position in &mesh.positions {
-            let position = world_from_mesh.transform_point3(position.as_dvec3());
-            (low, high) = (low.min(position), high.max(position));
+        // A comment may follow the name.
+        let material = materials.get(&name).or_else(|| materials.get(name.split(" #").next()?.trim_end()));
+        if material.is_none() && !name.is_empty() {
+            let message = format!("there is no material `{name}`; its faces are drawn without it");
+            surfaces.log.warn("unknown-reference", "", message);
         }
-        let mut shape = ShapeDesc::from(shape_kind(mesh));
-        shape.world_from_object = TransformDesc::fixed(world_from_mesh);
-        if let Some(material) = materials.get(&name) {
-            shape.material = Some(add_material(desc, material, path, assets, report));
-            shape.area_light = material
-                .emission
-                .filter(|rgb| rgb.iter().any(|&value| value > 0.0))
-                .map(|[r, g, b]| desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(r, g, b))));
-        } else if !name.is_empty() {
-            let message = format!("there is no material `{name}`; its faces are drawn grey");
-            report.push(Diagnostic::warning("unknown-reference", message, Span::NONE));
+        for shape in shapes(mesh, material, &mut surfaces) {
+            let world_from_object = TransformDesc::fixed(world_from_mesh);
+            surfaces.desc.shapes.push(ShapeDesc { world_from_object, ..shape });
         }
-        desc.shapes.push(shape);
     }
-    studio::furnish(desc, low, high);
+    studio::furnish(desc);
+}
+
+/// The files that a line names: one, whose name may have spaces, or several.
+fn libraries(line: &str, path: &Path, assets: &dyn AssetSource) -> Vec<PathBuf> {
+    let place = |name: &str| resolve(assets, &name.replace('\\', "/"), &path.to_string_lossy(), "");
+    let whole = place(line);
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let is_name = |word: &&&str| word.to_ascii_lowercase().ends_with(".mtl");
+    if assets.exists(&whole) || words.iter().filter(is_name).count() < 2 {
+        return vec![whole];
+    }
+    // A name ends where a word ends as they all do.
+    let names = words.split_inclusive(|word| is_name(&word));
+    names.map(|words| place(&words.join(" "))).collect()
+}
+
+/// The shapes of the faces of one material.
+fn shapes(
+    mut mesh: Mesh,
+    material: Option<&(ObjMaterial, PathBuf)>,
+    surfaces: &mut Surfaces,
+) -> Vec<ShapeDesc> {
+    let grey = (ObjMaterial::default(), PathBuf::new());
+    let (described, library) = material.unwrap_or(&grey);
+    if described.has_maps() && mesh.uvs.is_empty() {
+        let message = "there are no texture coordinates (`vt`) for its pictures: each face has the same ones";
+        surfaces.log.warn("not-drawn", format!("material `{}`", described.name), message);
+    }
+    let colors = std::mem::take(&mut mesh.colors);
+    let first = colors.first().copied();
+    let is_even = colors.iter().all(|color| Some(*color) == first);
+    let (mut paint, mut primitive) = (first.filter(|_| is_even).map_or(Paint::None, Paint::Even), None);
+    if !is_even && described.has_maps() {
+        let message = "colours of vertices are not drawn on surfaces with pictures";
+        surfaces.log.warn("not-drawn", format!("material `{}`", described.name), message);
+    } else if !is_even {
+        let triangles = Primitive { colors, ..primitive_of(&mesh) };
+        let factor = described.diffuse.unwrap_or([1.0; 3]);
+        let (unwrapped, picture) = look::unwrapped(&triangles, factor);
+        let image = ImageDesc { name: "colours of vertices".into(), image: picture.into() };
+        paint = Paint::Image(surfaces.desc.images.push(image));
+        primitive = Some(unwrapped);
+    }
+    if material.is_none() && matches!(paint, Paint::None) {
+        return vec![ShapeDesc::from(shape_kind(mesh))];
+    }
+    let both = surfaces.both(described, library, paint);
+    let has_normals = surfaces.desc.materials[both[0].material].normal_map.is_some();
+    if !has_normals && described.emission_map.is_none() && primitive.is_none() {
+        let [surface, _] = both;
+        return vec![ShapeDesc {
+            material: Some(surface.material),
+            area_light: surface.area_light,
+            alpha: surface.alpha,
+            ..ShapeDesc::from(shape_kind(mesh))
+        }];
+    }
+    let mut start = primitive.unwrap_or_else(|| primitive_of(&mesh));
+    let parts = vec![(std::mem::take(&mut start.triangles), both)];
+    let look = Look { has_normals, is_stretched: false, parts };
+    look.shapes(&Vertices { start, end: None }, surfaces.desc)
+}
+
+/// The triangles of a mesh, and its quadrilaterals as two each.
+fn primitive_of(mesh: &Mesh) -> Primitive {
+    let halves = mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    Primitive {
+        triangles: mesh.triangles.iter().copied().chain(halves).collect(),
+        positions: mesh.positions.clone(),
+        normals: mesh.normals.clone(),
+        uvs: mesh.uvs.iter().map(|uv| Point2::new(uv.x, 1.0 - uv.y)).collect(),
+        ..Primitive::default()
+    }
 }
 
 /// The shape of a mesh. Quadrilaterals become bilinear patches, whose corners go in rows.
@@ -115,53 +206,4 @@ pub(crate) fn shape_kind(mesh: Mesh) -> ShapeKind {
         displacement: None,
         edge_length: 1.0,
     }
-}
-
-fn add_material(
-    desc: &mut SceneDesc,
-    material: &ObjMaterial,
-    path: &Path,
-    assets: &dyn AssetSource,
-    report: &mut Report,
-) -> Handle<MaterialDesc> {
-    let color = |rgb: Option<[f32; 3]>| rgb.map(|[r, g, b]| SpectrumDesc::rgb(r, g, b));
-    let mut reflectance: SpectrumParameter = color(material.diffuse).unwrap_or(0.5.into()).into();
-    if let Some(map) = &material.diffuse_map {
-        let path = resolve(assets, map, &path.to_string_lossy(), "");
-        match images::decode(assets, &path, None) {
-            Ok(image) => {
-                let image =
-                    desc.images.push(description::ImageDesc { name: map.clone(), image: Arc::new(image) });
-                let kind = TextureKind::Image(ImageTextureDesc::new(image));
-                reflectance = desc.spectrum_textures.push(TextureDesc::new(kind)).into();
-            }
-            Err(message) => {
-                let message = format!("cannot read the image `{}`: {message}", path.display());
-                report.warning("unreadable-image", message, Span::NONE);
-            }
-        }
-    }
-    let dark = material.diffuse.is_some_and(|rgb| rgb.iter().all(|&value| value < 1e-3));
-    let shines = material.specular.is_some_and(|rgb| rgb.iter().any(|&value| value > 0.0));
-    let clear = material.opacity.is_some_and(|opacity| opacity < 0.5) || material.illumination == Some(7);
-    // The Phong exponent of a lobe as wide as a microfacet distribution's is 2/α² − 2.
-    let alpha = (2.0 / (material.shininess.unwrap_or(0.0).max(0.0) + 2.0)).sqrt();
-    let roughness = RoughnessDesc { u: alpha.into(), v: alpha.into(), remap: false };
-    let kind = if clear {
-        let eta = material.index_of_refraction.filter(|&eta| eta > 1.0).unwrap_or(1.5);
-        MaterialKind::Dielectric { eta: eta.into(), roughness: RoughnessDesc::default() }
-    } else if dark && shines && material.diffuse_map.is_none() {
-        let reflectance =
-            ConductorReflectance::Reflectance(color(material.specular).unwrap_or(0.5.into()).into());
-        MaterialKind::Conductor(ConductorDesc { reflectance, roughness })
-    } else if shines {
-        MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
-            reflectance,
-            roughness,
-            ..CoatedDiffuseDesc::default()
-        })
-    } else {
-        MaterialKind::Diffuse { reflectance }
-    };
-    desc.materials.push(MaterialDesc { name: material.name.clone(), ..kind.into() })
 }

@@ -2,13 +2,15 @@
 //! each [Burns 1993].
 //!
 //! Triangles keep the order of their corners, counter-clockwise seen from outside. Corners at the
-//! same place become one vertex. Normals of the file are those of its flat triangles and not read;
-//! nor are the two bytes after each, into which some programs put a colour.
+//! same place become one vertex. Normals of the file are those of its flat triangles and not read.
+//! Colours, for which programs have ways of their own, are named in a warning.
 
 use std::collections::HashMap;
 
 use math::Vec3;
 
+use super::notes::Notes;
+use super::text::{lines, unmarked};
 use super::{Mesh, MeshError, invalid};
 use crate::number;
 
@@ -19,85 +21,122 @@ const TRIANGLE: usize = 50;
 
 /// Reads an STL file.
 pub fn read_stl(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    // Headers of binary files may begin as texts do, so that the length decides first.
+    let text = unmarked(bytes);
+    let first = text.trim_ascii_start().get(..5).unwrap_or_default().to_ascii_lowercase();
+    let is_text = matches!(first.as_slice(), b"solid" | b"facet");
     let count = bytes.get(HEADER..).and_then(|rest| rest.first_chunk());
     let count = count.map(|count| u32::from_le_bytes(*count) as usize);
     let triangles = bytes.get(HEADER + 4..).unwrap_or_default();
     let needed = count.map(|count| count as u64 * TRIANGLE as u64);
-    let is_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let mut mesh = Welded::default();
-    match (count, needed) {
-        (Some(count), Some(needed)) if !is_text || needed == triangles.len() as u64 => {
-            if needed > triangles.len() as u64 {
-                let text = format!("{count} triangles do not fit in {} bytes", triangles.len());
-                return Err(MeshError::Limits(text));
+    let fits = needed.is_some_and(|needed| needed > 0 && needed <= triangles.len() as u64);
+    // Headers of binary files may begin as texts do, and bytes may follow their triangles: what is
+    // a text is read as one, unless the length is exactly that of a binary file.
+    let mesh = match (count, needed) {
+        (Some(_), Some(needed)) if is_text && needed != triangles.len() as u64 => {
+            // A text has no zeros, so that a binary file is not called a damaged text.
+            let is_binary = fits || text[..text.len().min(HEADER + 4 + TRIANGLE)].contains(&0);
+            match read_text(&text) {
+                Ok(mesh) if !mesh.triangles.is_empty() || !is_binary => Ok(mesh),
+                Err(error) if !is_binary => Err(error),
+                _ => read_binary(triangles, count.unwrap_or(0)),
             }
-            read_binary(&triangles[..needed as usize], &mut mesh)?;
         }
-        _ if is_text => read_text(bytes, &mut mesh)?,
-        _ => return invalid("it is neither text that begins with `solid` nor long enough for a binary file"),
-    }
-    if mesh.mesh.triangles.is_empty() {
+        (Some(count), Some(_)) => read_binary(triangles, count),
+        _ if is_text => read_text(&text),
+        _ => invalid("it is neither text that begins with `solid` nor long enough for a binary file"),
+    }?;
+    if mesh.triangles.is_empty() {
         return Err(MeshError::Unsupported("it has no faces".into()));
     }
-    Ok(mesh.mesh)
+    Ok(mesh)
 }
 
-fn read_binary(triangles: &[u8], mesh: &mut Welded) -> Result<(), MeshError> {
-    for (index, triangle) in triangles.as_chunks::<TRIANGLE>().0.iter().enumerate() {
+fn read_binary(bytes: &[u8], count: usize) -> Result<Mesh, MeshError> {
+    let triangles = bytes.as_chunks::<TRIANGLE>().0;
+    let Some(triangles) = triangles.get(..count) else {
+        return Err(MeshError::Limits(format!("{count} triangles do not fit in {} bytes", bytes.len())));
+    };
+    let (mut mesh, mut notes) = (Welded::default(), Notes::default());
+    for (index, triangle) in triangles.iter().enumerate() {
         let number = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| triangle[at + i]));
         let corners = [12, 24, 36].map(|at| Vec3::new(number(at), number(at + 4), number(at + 8)));
         if !corners.iter().all(|corner| corner.is_finite()) {
             let at = HEADER + 4 + TRIANGLE * index;
             return invalid(format!("triangle {index}, at byte {at}, has a corner that is not finite"));
         }
+        if triangle[48..] != [0; 2] {
+            let message = "the two bytes after it, which some programs make its colour, are not read";
+            notes.add_at(format_args!("triangle {index}"), message);
+        }
         mesh.push(corners);
     }
-    Ok(())
+    Ok(Mesh { warnings: notes.into_texts(), ..mesh.mesh })
 }
 
-fn read_text(bytes: &[u8], mesh: &mut Welded) -> Result<(), MeshError> {
+/// Reads a text: words, of which lines matter only for names.
+fn read_text(text: &[u8]) -> Result<Mesh, MeshError> {
+    let (mut mesh, mut notes) = (Welded::default(), Notes::default());
     let mut corners = Vec::with_capacity(3);
     // How many of `solid`, `facet` and `outer` are open.
     let mut depth = 0;
-    for (line, text) in bytes.split(|&byte| byte == b'\n').enumerate() {
-        let wrong = |what: &str| invalid(format!("line {}: {what}", line + 1));
+    for (line, text) in lines(text) {
+        let wrong = |what: &str| invalid(format!("line {line}: {what}"));
         let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        let Some(keyword) = words.next() else { continue };
-        match (keyword.to_ascii_lowercase().as_slice(), depth) {
-            (b"solid", 0) | (b"facet", 1) | (b"outer", 2) => depth += 1,
-            (b"vertex", 3) if corners.len() < 3 => {
-                let mut corner = [0.0; 3];
-                for value in &mut corner {
-                    let number = words.next().and_then(number::float).filter(|value| value.is_finite());
-                    match number {
-                        Some(number) => *value = number,
-                        None => return wrong("a vertex is three finite numbers"),
-                    }
+        while let Some(word) = words.next() {
+            let mut keyword = word.to_ascii_lowercase();
+            if keyword == b"end" {
+                keyword.extend(words.next().unwrap_or_default().to_ascii_lowercase());
+            }
+            match (keyword.as_slice(), depth) {
+                // A name follows. The ends of a solid may be missing.
+                (b"solid", 0 | 1) => {
+                    depth = 1;
+                    break;
                 }
-                corners.push(Vec3::from_array(corner));
-            }
-            (b"vertex", 3) => return wrong("a facet has more than three vertices"),
-            (b"endloop", 3) => {
-                let Ok(triangle) = corners.as_slice().try_into() else {
-                    return wrong("a facet has fewer than three vertices");
-                };
-                mesh.push(triangle);
-                corners.clear();
-                depth = 2;
-            }
-            (b"endfacet", 2) => depth = 1,
-            (b"endsolid", 1) => depth = 0,
-            (word, _) => {
-                let word = String::from_utf8_lossy(word);
-                return wrong(&format!("`{word:.40}` is not expected here"));
+                (b"endsolid", 0 | 1) => {
+                    depth = 0;
+                    break;
+                }
+                (b"color" | b"colour", _) => {
+                    notes.add(line, "colours are not read");
+                    break;
+                }
+                (b"facet", 0 | 1) => depth = 2,
+                (b"outer", 2) => depth = 3,
+                (b"normal", 2) | (b"loop", 3) => (),
+                (word, 2) if number::lenient(word).is_some() => (),
+                (b"vertex", 3) if corners.len() < 3 => {
+                    let mut corner = [0.0; 3];
+                    for value in &mut corner {
+                        let number = words.next().and_then(number::float).filter(|value| value.is_finite());
+                        match number {
+                            Some(number) => *value = number,
+                            None => return wrong("a vertex is three finite numbers"),
+                        }
+                    }
+                    corners.push(Vec3::from_array(corner));
+                }
+                (b"vertex", 3) => return wrong("a facet has more than three vertices"),
+                (b"endloop", 3) => {
+                    let Ok(triangle) = corners.as_slice().try_into() else {
+                        return wrong("a facet has fewer than three vertices");
+                    };
+                    mesh.push(triangle);
+                    corners.clear();
+                    depth = 2;
+                }
+                (b"endfacet", 2) => depth = 1,
+                (word, _) => {
+                    let word = String::from_utf8_lossy(word);
+                    return wrong(&format!("`{word:.40}` is not expected here"));
+                }
             }
         }
     }
-    if depth > 0 {
-        return invalid("the file ends before `endsolid`");
+    if depth > 1 {
+        return invalid("the file ends before `endfacet`");
     }
-    Ok(())
+    Ok(Mesh { warnings: notes.into_texts(), ..mesh.mesh })
 }
 
 /// A mesh in which corners at the same place are one vertex.
@@ -154,7 +193,9 @@ mod tests {
         assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)]);
         assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
         assert!(mesh.normals.is_empty());
-        assert_eq!(read_stl(&binary(&SQUARE)), Ok(mesh.clone()));
+        let packed = read_stl(&binary(&SQUARE)).unwrap();
+        assert_eq!(packed.warnings.len(), 1, "colours");
+        assert_eq!(Mesh { warnings: Vec::new(), ..packed }, mesh);
         // Bytes beyond the triangles are of no use, and triangles without an area not either.
         let mut longer = binary(&[SQUARE[0], [1.0; 9], SQUARE[1]]);
         longer[..5].copy_from_slice(b"SOLID");
@@ -162,6 +203,46 @@ mod tests {
         longer[0] = b'-';
         longer.push(0);
         assert_eq!(read_stl(&longer).unwrap().triangles.len(), 2);
+    }
+
+    #[test]
+    fn texts_of_other_programs_are_read() {
+        let mesh = read_stl(TEXT.as_bytes()).unwrap();
+        let one_line = TEXT.replacen('\n', "\r", 1).replace('\n', " ").replace('\r', "\n");
+        let colored = TEXT.replacen(" facet", "color 1 0 0\n facet", 2).replacen("color 1 0 0\n", "", 1);
+        for text in [
+            TEXT.replace("endsolid", "end solid")
+                .replace("endfacet", "END  FACET")
+                .replace("endloop", "end loop"),
+            TEXT.replace("endsolid a facet\n", ""),
+            TEXT.replacen("solid a facet\n", "", 1),
+            TEXT.replacen("endfacet\n", "endfacet\nendsolid\nsolid b\n", 1),
+            TEXT.replacen("endfacet\n", "endfacet\nsolid b\n", 1),
+            TEXT.replace("facet normal 0 0 1\n", "facet\tnormal  nan -nan(ind) 0 "),
+            TEXT.replace("\r\n", "\n").replace('\n', "\r"),
+            TEXT.to_uppercase(),
+            format!("\u{feff}{TEXT}"),
+            format!("\n  {TEXT}"),
+            one_line,
+        ] {
+            assert_eq!(read_stl(text.as_bytes()), Ok(mesh.clone()), "{text}");
+        }
+        let warnings = vec!["line 2: colours are not read".to_owned()];
+        assert_eq!(read_stl(colored.as_bytes()), Ok(Mesh { warnings, ..mesh }));
+    }
+
+    #[test]
+    fn binary_files_may_begin_as_texts_and_have_more_bytes() {
+        let mesh = read_stl(&binary(&SQUARE)).unwrap();
+        for header in [&b"solid "[..], b"solid\nfacet normal 0 0 1\n", b"SOLID a\0", b"solid\n\n"] {
+            for more in 0..3 {
+                let mut bytes = binary(&SQUARE);
+                bytes[..header.len()].copy_from_slice(header);
+                bytes.extend(vec![b'\n'; more]);
+                assert_eq!(read_stl(&bytes), Ok(mesh.clone()), "{more}");
+                assert!(matches!(read_stl(&bytes[..150]), Err(MeshError::Limits(_))));
+            }
+        }
     }
 
     #[test]
@@ -173,7 +254,7 @@ mod tests {
             ("endloop", "vertex 0 0 0\nendloop", "line 7: a facet has more than three"),
             ("\tvertex 0 1 -0\n", "", "line 6: a facet has fewer than three"),
             (" outer loop", "", "line 4: `vertex` is not expected here"),
-            ("endsolid a facet", "", "ends before `endsolid`"),
+            (" endfacet\nendsolid a facet", "", "ends before `endfacet`"),
         ] {
             let text = TEXT.replacen(from, to, 1);
             let found = message(text.as_bytes());

@@ -17,8 +17,12 @@ use description::{
 use image::Image;
 use math::{DMat4, DVec3, Vec2, Vec3, equal_area_square_to_sphere};
 
-/// The field of view, in degrees.
+use super::outline::{Axes, Outline};
+
+/// The field of view over the shorter side, in degrees.
 const FOV: f64 = 40.0;
+/// How much of the frame is filled.
+const FILLED: f64 = 0.8;
 /// Radiance of the environment, and so of the ground.
 const BACKGROUND: f32 = 0.45;
 /// Reflectance of the ground.
@@ -33,19 +37,16 @@ const RESOLUTION: u32 = 128;
 /// Radius of the ground, in radii of the mesh: beyond all shadows.
 const GROUND_RADIUS: f64 = 6.0;
 
-/// How something is looked at: right, up and forwards, as unit vectors.
-pub(crate) type Axes = [DVec3; 3];
-
-/// Adds camera, ground and light for shapes between two corners of a box; y is up.
-pub(crate) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
+/// Adds camera, ground and light for shapes; y is up.
+pub(crate) fn furnish(desc: &mut SceneDesc) {
     if desc.shapes.iter().any(|(_, shape)| shape.material.is_none()) {
         let clay = desc.materials.push(diffuse(CLAY));
         for (_, shape) in desc.shapes.iter_mut() {
             shape.material.get_or_insert(clay);
         }
     }
-    let axes = add_camera(desc, low, high);
     desc.film.resolution = [640, 480];
+    let (axes, [low, high]) = add_camera(desc, [-DVec3::ONE, DVec3::ONE]);
     desc.integrator = IntegratorDesc::Path(PathDesc::default()).into();
     desc.sampler.kind.set_samples_per_pixel(64);
     add_ground(desc, low, high);
@@ -56,16 +57,24 @@ fn center_and_radius(low: DVec3, high: DVec3) -> (DVec3, f64) {
     ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6))
 }
 
-/// Adds a camera that sees all of a box, from the front, a little from the side and from above.
-pub(crate) fn add_camera(desc: &mut SceneDesc, low: DVec3, high: DVec3) -> Axes {
-    let (center, radius) = center_and_radius(low, high);
-    let direction = -DVec3::new(0.4, 0.35, 1.0).normalize();
-    let right = direction.cross(DVec3::Y).normalize();
-    let up = right.cross(direction);
-    let eye = center - 1.1 * radius / libm::sin((FOV / 2.0).to_radians()) * direction;
+/// Adds a camera that sees all surfaces, from the front, a little from the side and from above, so
+/// that they fill [`FILLED`] of the frame from side to side or from top to bottom. Gives its axes,
+/// and the box around all points. `bounds` are those of surfaces without points.
+pub(crate) fn add_camera(desc: &mut SceneDesc, bounds: [DVec3; 2]) -> (Axes, [DVec3; 2]) {
+    let forwards = -DVec3::new(0.4, 0.35, 1.0).normalize();
+    let right = forwards.cross(DVec3::Y).normalize();
+    let axes = [right, right.cross(forwards), forwards];
+    let sides = desc.film.resolution.map(|side| f64::from(side.max(1)));
+    let unit = FILLED * libm::tan((FOV / 2.0).to_radians()) / sides[0].min(sides[1]);
+    let mut outline = Outline::of(desc, axes, sides.map(|side| unit * side));
+    if outline.is_empty() || desc.shapes.iter().any(|(_, shape)| !has_points(&shape.kind)) {
+        outline.add_box(bounds, &[DMat4::IDENTITY]);
+    }
+    let bounds = outline.bounds;
+    let (eye, slopes) = outline.eye();
     // Camera space is left-handed, with x to the right.
-    let world_from_camera =
-        DMat4::from_cols(right.extend(0.0), up.extend(0.0), direction.extend(0.0), eye.extend(1.0));
+    let [x, y, z] = axes.map(|axis| axis.extend(0.0));
+    let world_from_camera = DMat4::from_cols(x, y, z, eye.extend(1.0));
     desc.camera = CameraDesc {
         kind: CameraKind::Perspective {
             fov: FOV as f32,
@@ -73,10 +82,36 @@ pub(crate) fn add_camera(desc: &mut SceneDesc, low: DVec3, high: DVec3) -> Axes 
             lens: LensDesc::default(),
         },
         camera_from_world: TransformDesc::fixed(world_from_camera.inverse()),
+        shows: Some(slopes.map(|slope| (slope / FILLED) as f32)),
         ..CameraDesc::default()
     }
     .into();
-    [right, up, direction]
+    (axes, bounds)
+}
+
+/// Chooses the field of view of a scene's camera anew, after the size of its film has changed, if
+/// the scene came without a camera and the field of view is still that of its import.
+pub fn refit_camera(desc: &mut SceneDesc, resolution_before: [i32; 2]) {
+    let (resolution, camera) = (desc.film.resolution, &mut desc.camera.value);
+    if let (Some(shows), CameraKind::Perspective { fov, .. }) = (camera.shows, &mut camera.kind)
+        && resolution != resolution_before
+        && (*fov - field_of_view(shows, resolution_before)).abs() < 1e-3
+    {
+        *fov = field_of_view(shows, resolution);
+    }
+}
+
+/// The field of view over the shorter side, in degrees, so that a frame is as wide and as high.
+fn field_of_view(shows: [f32; 2], resolution: [i32; 2]) -> f32 {
+    let sides = resolution.map(|side| f64::from(side.max(1)));
+    let shorter = sides[0].min(sides[1]);
+    let slope = |axis: usize| f64::from(shows[axis]) * shorter / sides[axis];
+    (2.0 * libm::atan(slope(0).max(slope(1))).to_degrees()) as f32
+}
+
+/// Whether a shape is known by its points.
+fn has_points(shape: &ShapeKind) -> bool {
+    matches!(shape, ShapeKind::Triangles(_) | ShapeKind::PlyMesh { .. })
 }
 
 /// Adds the environment, whose key light is behind the viewer, above and to the left.

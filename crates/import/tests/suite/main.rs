@@ -6,6 +6,8 @@ mod gltf;
 mod hostile;
 mod meshes;
 mod messages;
+mod studio;
 #[cfg(feature = "usd")]
 mod usd;
 mod volumes;
+mod wavefront;

@@ -70,6 +70,13 @@ fn expected() -> Mesh {
         uvs: VERTICES.iter().map(|&(.., uv)| Vec2::from_array(uv)).collect(),
         quads: vec![[0, 1, 2, 3]],
         triangles: vec![[3, 2, 4]],
+        warnings: [
+            "the property `red` of `vertex` is not read",
+            "the property `material` of `face` is not read",
+            "elements `edge` are not read",
+        ]
+        .map(|text| format!("header: {text}"))
+        .into(),
         ..Mesh::default()
     }
 }
@@ -221,7 +228,7 @@ fn an_stl_file_stands_in_the_studio_and_is_a_shape_of_scenes() {
 fn an_obj_file_is_a_scene_with_its_materials() {
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\nusemtl glass\nf 3 2 1\n";
     assert_eq!(read_obj(obj.as_bytes()).unwrap().triangles.len(), 2);
-    let mtl = "newmtl lamp\nKd 0.5 0.5 0.5\nKe 4 4 4\nnewmtl glass\nd 0.1\nNi 1.4\n";
+    let mtl = "newmtl lamp\nKd 0.5 0.5 0.5\nKe 4 4 4\nnewmtl glass\nillum 7\nNi 1.4\n";
     let imported = import("a.obj", &MemoryAssets::default().with("a.obj", obj).with("a.mtl", mtl));
     assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
     let desc = imported.desc;
@@ -235,4 +242,100 @@ fn an_obj_file_is_a_scene_with_its_materials() {
             "{seen}"
         );
     }
+}
+
+/// An ASCII PLY file of a square, with more properties and their values.
+fn square_ply(vertex: &str, values: [&str; 4], face: &str, faces: [&str; 2]) -> String {
+    let places = ["-1 -1 0", "1 -1 0", "1 1 0", "-1 1 0"];
+    let rows: String = places.iter().zip(values).map(|(place, value)| format!("{place} {value}\n")).collect();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{vertex}\
+         element face 2\nproperty list uchar int vertex_indices\n{face}end_header\n{rows}3 0 1 2 {}\n3 0 2 3 {}\n",
+        faces[0], faces[1]
+    )
+}
+
+#[test]
+fn ply_files_of_other_programs_are_read() {
+    let plain = square_ply("", [""; 4], "", [""; 2]);
+    let mesh = read_ply(plain.as_bytes()).unwrap();
+    let quality = square_ply("property float quality\n", ["nan", "-nan", "inf", "1.#QNAN"], "", [""; 2]);
+    let latin = plain.replace("element face", "comment by J\u{f6}rg\nelement face");
+    let latin: Vec<u8> = latin.chars().map(|c| c as u8).collect();
+    for bytes in [
+        quality.into_bytes(),
+        latin,
+        plain.replace('\n', "\r").into_bytes(),
+        plain.replace('\n', "\r\n").into_bytes(),
+        format!("\u{feff}{plain}").into_bytes(),
+    ] {
+        assert_eq!(read_ply(&bytes), Ok(mesh.clone()));
+    }
+    // Binary values after a header whose lines end by a carriage return alone.
+    let header = plain.split("end_header").next().unwrap().replace("ascii", "binary_little_endian");
+    let mut bytes = format!("{header}end_header\n").replace('\n', "\r").into_bytes();
+    mesh.positions.iter().for_each(|p| bytes.extend(p.to_array().map(f32::to_le_bytes).concat()));
+    for [a, b, c] in &mesh.triangles {
+        bytes.push(3);
+        bytes.extend([a, b, c].map(|corner| corner.to_le_bytes()).concat());
+    }
+    assert_eq!(read_ply(&bytes), Ok(mesh.clone()));
+    // Elsewhere a number that is none is an error, or 0 where nothing needs it.
+    let bad = plain.replace("1 1 0 ", "1 nan 0 ");
+    assert_eq!(read_ply(bad.as_bytes()), Err(MeshError::Invalid("a vertex position is not finite".into())));
+    let uvs = square_ply("property float u\nproperty float v\n", ["nan 0", "1 0", "1 1", "0 1"], "", [""; 2]);
+    let uvs = read_ply(uvs.as_bytes()).unwrap();
+    assert_eq!((uvs.uvs[0], uvs.warnings.len()), (Vec2::ZERO, 1));
+}
+
+#[test]
+fn colours_of_ply_files_are_srgb_codes_of_any_type() {
+    let properties = |kind: &str, prefix: &str| {
+        ["red", "green", "blue"].map(|name| format!("property {kind} {prefix}{name}\n")).concat()
+    };
+    let half = image::linear_from_srgb(0.2);
+    let expected = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, half], [1.0; 3]];
+    for (kind, prefix, values) in [
+        ("uchar", "", ["255 0 0", "0 255 0", "0 0 51", "255 255 255"]),
+        ("uchar", "diffuse_", ["255 0 0", "0 255 0", "0 0 51", "255 255 255"]),
+        ("ushort", "", ["65535 0 0", "0 65535 0", "0 0 13107", "65535 65535 65535"]),
+        ("float", "", ["1 0 0", "0 1 0", "0 0 0.2", "1 1 1"]),
+        ("int", "", ["255 0 0", "0 255 0", "0 0 51", "255 255 255"]),
+    ] {
+        let ply = square_ply(&properties(kind, prefix), values, "", [""; 2]);
+        let mesh = read_ply(ply.as_bytes()).unwrap();
+        assert_eq!((&mesh.colors[..], &mesh.warnings[..]), (&expected[..], &[][..]), "{kind}");
+        let imported = import("a.ply", &MemoryAssets::default().with("a.ply", ply));
+        assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+        let (_, image) = imported.desc.images.iter().next().unwrap();
+        assert_eq!(image.image.rgb(0, 0), [1.0, 0.0, 0.0]);
+    }
+    let faces = square_ply("", [""; 4], &properties("uchar", ""), ["255 0 0", "0 255 0"]);
+    let mesh = read_ply(faces.as_bytes()).unwrap();
+    for (triangle, color) in mesh.triangles.iter().zip(&expected) {
+        assert!(triangle.iter().all(|&corner| mesh.colors[corner as usize] == *color));
+    }
+    let clear = properties("uchar", "") + "property uchar alpha\n";
+    let clear = square_ply(&clear, ["0 0 0 255", "0 0 0 7", "0 0 0 255", "0 0 0 255"], "", [""; 2]);
+    assert_eq!(read_ply(clear.as_bytes()).unwrap().warnings, ["vertices: their opacity is not drawn"]);
+    let scene = "WorldBegin Shape \"plymesh\" \"string filename\" \"a.ply\"";
+    let imported = import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("a.ply", faces));
+    assert!(imported.diagnostics[0].message.contains("colours of its vertices are not drawn"));
+}
+
+#[test]
+fn texture_coordinates_of_faces_and_pictures_of_ply_files_are_read() {
+    let wedges = ["6 0 0 1 0 1 1", "6 0.5 0.5 1 1 0 1"];
+    let ply = square_ply("", [""; 4], "property list uchar float texcoord\n", wedges);
+    let mesh = read_ply(ply.as_bytes()).unwrap();
+    let uvs = |triangle: [u32; 3]| triangle.map(|corner| mesh.uvs[corner as usize]);
+    let places = |triangle: [u32; 3]| triangle.map(|corner| mesh.positions[corner as usize]);
+    assert_eq!(uvs(mesh.triangles[0]), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]].map(Vec2::from_array));
+    assert_eq!(uvs(mesh.triangles[1]), [[0.5, 0.5], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array));
+    assert_eq!(places(mesh.triangles[1])[0], Vec3::new(-1.0, -1.0, 0.0));
+    assert_eq!((mesh.positions.len(), mesh.warnings.len()), (5, 0), "one corner is split");
+    let named = ply.replace("element vertex", "comment TextureFile my skin.png\nelement vertex");
+    let imported = import("d/a.ply", &MemoryAssets::default().with("d/a.ply", named));
+    let message = &imported.diagnostics[0].message;
+    assert!(message.starts_with("cannot read the image `d/my skin.png`"), "{message}");
 }

@@ -20,8 +20,8 @@ use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
-/// Mesh files by path, each read once; or the reason of the failure.
-pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
+/// Mesh files by path, each read once, with what is said about them; or the reason of the failure.
+pub(super) type Meshes = HashMap<PathBuf, Result<(ShapeKind, Vec<String>), String>>;
 
 impl Builder<'_> {
     /// Reads all mesh files that shapes name, in parallel.
@@ -101,13 +101,17 @@ impl Builder<'_> {
     }
 }
 
-fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<ShapeKind, String> {
+fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<(ShapeKind, Vec<String>), String> {
     let bytes = read_unpacked(assets, path).map_err(|error| error.to_string())?;
     let format = Format::from_path(path).unwrap_or(Format::Ply);
-    let mesh = format.read(&bytes).map_err(|error| error.to_string())?;
+    let mut mesh = format.read(&bytes).map_err(|error| error.to_string())?;
     // Before arrays are copied to their final place.
     drop(bytes);
-    Ok(shape_kind(mesh))
+    let mut warnings = std::mem::take(&mut mesh.warnings);
+    if !mesh.colors.is_empty() {
+        warnings.push("colours of its vertices are not drawn: the material is that of the shape".to_owned());
+    }
+    Ok((shape_kind(mesh), warnings))
 }
 
 fn kind(reader: &mut Reader) -> Option<ShapeKind> {
@@ -441,8 +445,12 @@ fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
     };
     let path = reader.builder.path(&file);
     match reader.builder.meshes.get(&path) {
-        Some(Ok(kind)) => {
+        Some(Ok((kind, warnings))) => {
             let mut kind = kind.clone();
+            for text in warnings {
+                let message = format!("of the mesh `{}`: {text}", path.display());
+                reader.builder.report.warning("not-drawn", message, file.span);
+            }
             if let ShapeKind::PlyMesh { displacement, edge_length, .. } = &mut kind {
                 (*displacement, *edge_length) = (displaced, edge);
             }
