@@ -3,7 +3,7 @@
 //! The archive is a ZIP file with relative paths as they are, so that it can be unpacked and
 //! rendered, too. The same files give the same bytes, and thus the same hash, wherever they are.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -59,7 +59,7 @@ pub fn pack(scene: &Path, assets: &dyn AssetSource, output: impl Write) -> Resul
     let read = recorder.read.into_inner().unwrap_or_else(PoisonError::into_inner);
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let here = std::path::absolute(here).map_err(|error| PackError::File(here.to_owned(), error))?;
-    let (manifest, entries) = entries((folder, &here), &name, &read);
+    let (manifest, entries) = entries(&here, &name, &read);
 
     let mut archive = ZipWriter::new_stream(Hashing::new(output));
     let mut add = |name: &str, content: &[u8]| {
@@ -106,15 +106,15 @@ pub enum ConvertError {
     Pack(PackError),
 }
 
-/// The manifest, and the name and source of each entry, the scene first. `folder` is the scene's,
-/// as it was given and as an absolute path.
+/// The manifest, and the name and source of each entry, the scene first. `absolute` is the scene's
+/// folder.
 fn entries(
-    (folder, absolute): (&Path, &Path),
+    absolute: &Path,
     scene: &Path,
-    read: &BTreeSet<PathBuf>,
+    read: &BTreeMap<PathBuf, PathBuf>,
 ) -> (Manifest, Vec<(String, PathBuf)>) {
     let inside: Vec<_> = absolute.components().filter_map(name_of).collect();
-    let relative = read.iter().filter(|path| !path.is_absolute());
+    let relative = read.keys().filter(|path| !path.is_absolute());
     let highest = relative.map(|path| resolved(path).0).max().unwrap_or(0).min(inside.len());
     let inside = &inside[inside.len() - highest..];
     let entry = |path: &Path| {
@@ -124,14 +124,14 @@ fn entries(
     };
     let mut manifest = Manifest { scene: entry(scene), absolute: BTreeMap::new() };
     let mut entries = BTreeMap::new();
-    for path in read {
+    for (path, source) in read {
         if path.is_absolute() {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let entry = format!("absolute/{}-{name}", manifest.absolute.len());
             manifest.absolute.insert(path.clone(), entry.clone());
-            entries.insert(entry, path.clone());
+            entries.insert(entry, source.clone());
         } else {
-            entries.insert(entry(path), folder.join(path));
+            entries.insert(entry(path), source.clone());
         }
     }
     let first = entries.remove(&manifest.scene).map(|path| (manifest.scene.clone(), path));
@@ -165,23 +165,32 @@ fn output_error(error: ZipError) -> PackError {
     })
 }
 
-/// Records which files of a folder are read.
+/// Records which files are read: those of a folder, and those that are not in it but in the current
+/// one, which are beside the scene in the archive.
 struct Recorder<'a> {
     assets: &'a dyn AssetSource,
     folder: &'a Path,
-    /// Paths as the scene names them.
-    read: Mutex<BTreeSet<PathBuf>>,
+    /// Paths as the scene names them, and where they are.
+    read: Mutex<BTreeMap<PathBuf, PathBuf>>,
+}
+
+impl Recorder<'_> {
+    fn place(&self, path: &Path) -> PathBuf {
+        let beside = self.folder.join(path);
+        if !self.assets.exists(&beside) && self.assets.exists(path) { path.to_owned() } else { beside }
+    }
 }
 
 impl AssetSource for Recorder<'_> {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let bytes = self.assets.read(&self.folder.join(path))?;
-        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
+        let place = self.place(path);
+        let bytes = self.assets.read(&place)?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), place);
         Ok(bytes)
     }
 
     fn exists(&self, path: &Path) -> bool {
-        self.assets.exists(&self.folder.join(path))
+        self.assets.exists(&self.place(path))
     }
 }
 
@@ -252,6 +261,19 @@ mod tests {
         let imported = import("there.zip", &there);
         assert!(!imported.has_errors(), "{:?}", imported.diagnostics);
         assert_eq!(imported.desc.film.resolution[0], 7);
+        assert_eq!(imported.desc.shapes.len(), 1);
+    }
+
+    #[test]
+    fn files_of_the_current_folder_are_beside_the_packed_scene() {
+        let assets = MemoryAssets::default()
+            .with("s/a.pbrt", "WorldBegin Include \"assets/shape.pbrt\"")
+            .with("assets/shape.pbrt", "Shape \"sphere\"");
+        let mut bytes = Vec::new();
+        let packed = pack(Path::new("s/a.pbrt"), &assets, &mut bytes).unwrap();
+        assert_eq!(packed.files, ["s/a.pbrt", "assets/shape.pbrt"].map(PathBuf::from));
+        let imported = import("there.zip", &MemoryAssets::default().with("there.zip", bytes));
+        assert!(!imported.has_errors(), "{:?}", imported.diagnostics);
         assert_eq!(imported.desc.shapes.len(), 1);
     }
 

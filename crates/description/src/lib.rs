@@ -35,6 +35,7 @@ mod transform;
 mod voxels;
 
 pub use self::image::ImageDesc;
+pub use ::image::EdgeMode;
 pub use accelerator::{AcceleratorDesc, BuildQualityDesc, BvhSplit};
 pub use arena::{Arena, Handle, Origin, Stated};
 pub use camera::{
@@ -71,7 +72,7 @@ pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use substance::Substance;
 pub use texture::{
     EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
-    SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,
+    SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, UvImageDesc, WrapMode,
 };
 pub use transform::TransformDesc;
 pub use voxels::VoxelsDesc;

@@ -3,7 +3,7 @@
 use math::Point3;
 
 use crate::names::names;
-use crate::{Handle, ImageDesc, MediumDesc, SpectrumDesc, TransformDesc};
+use crate::{Handle, ImageDesc, MediumDesc, SpectrumDesc, TransformDesc, UvImageDesc};
 
 /// A light that is not a surface.
 #[derive(Clone, Debug)]
@@ -131,8 +131,8 @@ pub enum InfiniteRadiance {
 pub struct AreaLightDesc {
     /// Radiance.
     pub radiance: SpectrumDesc,
-    /// An image over (u, v) instead of one colour.
-    pub image: Option<Handle<ImageDesc>>,
+    /// An image instead of one colour.
+    pub image: Option<UvImageDesc>,
     /// Factor on its emission.
     pub scale: f32,
     /// Total power in watts; replaces the brightness of `radiance`.

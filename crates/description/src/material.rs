@@ -5,7 +5,7 @@ use std::sync::Arc;
 use scattering::{MeasuredTable, SubsurfaceMethod};
 
 use crate::names::names;
-use crate::{FloatParameter, Handle, ImageDesc, OpenPbrDesc, SpectrumDesc, SpectrumParameter};
+use crate::{FloatParameter, Handle, OpenPbrDesc, SpectrumDesc, SpectrumParameter, UvImageDesc};
 
 /// A material.
 #[derive(Clone, Debug)]
@@ -15,7 +15,7 @@ pub struct MaterialDesc {
     /// Which one.
     pub kind: MaterialKind,
     /// A tangent-space normal map.
-    pub normal_map: Option<Handle<ImageDesc>>,
+    pub normal_map: Option<UvImageDesc>,
     /// A bump map: a displacement along the normal that only shading sees. It has no effect beside
     /// a normal map.
     pub displacement: Option<FloatParameter>,

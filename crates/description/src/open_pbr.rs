@@ -1,6 +1,6 @@
 //! The principled surface: its parameters have the names of OpenPBR Surface.
 
-use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
+use crate::{FloatParameter, SpectrumDesc, SpectrumParameter, UvImageDesc};
 
 /// A number of [`OpenPbrDesc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct OpenPbrDesc {
     /// Factors on the radius under the surface, each in [0, 1].
     pub subsurface_radius_scale: SpectrumParameter,
     /// The normal map of the coat; without one it is parallel to the surface.
-    pub geometry_coat_normal: Option<Handle<ImageDesc>>,
+    pub geometry_coat_normal: Option<UvImageDesc>,
     /// Whether it is a sheet without an inside.
     pub thin_walled: bool,
     /// Emitted luminance, in cd/m².

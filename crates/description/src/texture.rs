@@ -1,6 +1,7 @@
 //! Textures: values that vary over surfaces. Numbers and spectra have the same kinds of texture, so
 //! that one generic description serves both.
 
+use image::EdgeMode;
 use math::{DMat4, Vec3};
 
 use crate::{Handle, ImageDesc, SpectrumDesc};
@@ -211,6 +212,30 @@ impl ImageTextureDesc {
     }
 }
 
+/// An image over the parameters (u, v) of surfaces, of which the finest level is seen: of emission,
+/// or of normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvImageDesc {
+    /// The image.
+    pub image: Handle<ImageDesc>,
+    /// The columns of the matrix from (u, v) to texture coordinates.
+    pub columns: [[f32; 2]; 3],
+    /// Value outside of the image.
+    pub wrap: WrapMode,
+    /// Whether the nearest texel is seen, not an interpolation of four.
+    pub is_nearest: bool,
+}
+
+impl UvImageDesc {
+    /// The columns of the identity.
+    pub const IDENTITY: [[f32; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+
+    /// An image of which (u, v) are the texture coordinates, interpolated.
+    pub fn new(image: Handle<ImageDesc>, wrap: WrapMode) -> Self {
+        Self { image, columns: Self::IDENTITY, wrap, is_nearest: false }
+    }
+}
+
 /// A channel of an image. A grey image has its one value as red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ImageChannel {
@@ -250,6 +275,40 @@ pub enum WrapMode {
     Clamp,
     /// The neighbour on the sphere, for equal-area octahedral images.
     OctahedralSphere,
+    /// Columns and rows each by a rule of their own, which differ.
+    Axes([EdgeMode; 2]),
+}
+
+impl WrapMode {
+    /// The names of all modes.
+    pub const NAMES: &'static [(&'static str, Self)] = &[
+        ("repeat", Self::Repeat),
+        ("black", Self::Black),
+        ("clamp", Self::Clamp),
+        ("octahedralsphere", Self::OctahedralSphere),
+        ("repeat-black", Self::Axes([EdgeMode::Repeat, EdgeMode::Black])),
+        ("repeat-clamp", Self::Axes([EdgeMode::Repeat, EdgeMode::Clamp])),
+        ("black-repeat", Self::Axes([EdgeMode::Black, EdgeMode::Repeat])),
+        ("black-clamp", Self::Axes([EdgeMode::Black, EdgeMode::Clamp])),
+        ("clamp-repeat", Self::Axes([EdgeMode::Clamp, EdgeMode::Repeat])),
+        ("clamp-black", Self::Axes([EdgeMode::Clamp, EdgeMode::Black])),
+    ];
+
+    /// The mode of an image whose columns and rows go on by these rules.
+    pub fn of_axes(axes: [EdgeMode; 2]) -> Self {
+        match axes {
+            [EdgeMode::Repeat, EdgeMode::Repeat] => Self::Repeat,
+            [EdgeMode::Black, EdgeMode::Black] => Self::Black,
+            [EdgeMode::Clamp, EdgeMode::Clamp] => Self::Clamp,
+            axes => Self::Axes(axes),
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        let named = Self::NAMES.iter().find(|&&(_, mode)| mode == self);
+        named.map_or("repeat", |(name, _)| name)
+    }
 }
 
 /// How stored values are decoded to linear ones.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use description::{
     AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, TransformDesc,
+    WrapMode,
 };
 use image::ColorEncoding;
 use math::{DMat4, Vec3};
@@ -12,6 +13,7 @@ use crate::files::Files;
 use crate::names::Names;
 use crate::statement::{Statement, quoted};
 use crate::text::Text;
+use crate::textures::uv_lookup;
 
 /// The file of an image whose codes are those of sRGB.
 fn image(desc: &SceneDesc, image: Handle<ImageDesc>, files: &mut Files) -> String {
@@ -115,8 +117,9 @@ pub(crate) fn area_light(
     let mut statement = Statement::new("AreaLightSource", "diffuse").target("light");
     match picture {
         Some(picture) => {
-            let name = image(desc, *picture, files);
+            let name = image(desc, picture.image, files);
             statement.text("filename", &name);
+            uv_lookup(&mut statement, picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
         }
         None => statement.white_or("L", radiance),
     }

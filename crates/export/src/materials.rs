@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use description::{
     CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, FloatParameter, HairColor,
     LayersDesc, MaterialDesc, MaterialKind, OpenPbrDesc, Parameter, RoughnessDesc, SceneDesc,
-    SubsurfaceScattering,
+    SubsurfaceScattering, UvImageDesc, WrapMode,
 };
 use image::ColorEncoding;
 use scattering::SubsurfaceMethod;
@@ -14,6 +14,7 @@ use crate::files::Files;
 use crate::names::Names;
 use crate::statement::Statement;
 use crate::text::Text;
+use crate::textures::uv_lookup;
 
 /// All materials, each with a name.
 pub(crate) fn materials(
@@ -29,21 +30,38 @@ pub(crate) fn materials(
             Statement::named("MakeNamedMaterial", names.material(handle), kind.name()).target("material");
         write(&mut statement, kind, names, files, extensions);
         if !matches!(kind, MaterialKind::Mix { .. } | MaterialKind::Interface) {
-            if let Some(image) = normal_map {
-                let name = files.image(&desc.images[*image].image, ColorEncoding::Linear);
-                statement.text("normalmap", &name);
+            if let Some(map) = normal_map {
+                let names = ["normalmap", "normalmap_wrap", "normalmap_filter", "normalmap_columns"];
+                write_normal_map(&mut statement, names, map, desc, files, extensions);
             } else {
                 statement.optional_float_parameter("displacement", displacement.as_ref(), names);
             }
             if let MaterialKind::OpenPbr(surface) = kind
-                && let Some(image) = surface.geometry_coat_normal
+                && let Some(map) = &surface.geometry_coat_normal
             {
-                let name = files.image(&desc.images[image].image, ColorEncoding::Linear);
-                statement.text("geometry_coat_normal", &name);
+                let names = [
+                    "geometry_coat_normal",
+                    "geometry_coat_normal_wrap",
+                    "geometry_coat_normal_filter",
+                    "geometry_coat_normal_columns",
+                ];
+                write_normal_map(&mut statement, names, map, desc, files, extensions);
             }
         }
         text.statement(statement);
     }
+}
+
+fn write_normal_map(
+    to: &mut Statement,
+    [file, wrap, filter, columns]: [&str; 4],
+    map: &UvImageDesc,
+    desc: &SceneDesc,
+    files: &mut Files,
+    extensions: &mut BTreeSet<String>,
+) {
+    to.text(file, &files.image(&desc.images[map.image].image, ColorEncoding::Linear));
+    uv_lookup(to, map, [wrap, filter, columns], WrapMode::Repeat, extensions);
 }
 
 fn write(

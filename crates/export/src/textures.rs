@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use description::{
     EncodingDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter, SceneDesc, SpectrumDesc,
-    TextureDesc, TextureFilter, TextureKind, WrapMode,
+    TextureDesc, TextureFilter, TextureKind, UvImageDesc, WrapMode,
 };
 use image::{ColorEncoding, Pixels};
 use math::{DMat4, Vec3};
@@ -186,16 +186,34 @@ impl Context<'_, '_> {
             TextureFilter::Ewa => "ewa",
         };
         to.choice("filter", filter, "bilinear");
-        let wrap = match wrap {
-            WrapMode::Repeat => "repeat",
-            WrapMode::Black => "black",
-            WrapMode::Clamp => "clamp",
-            WrapMode::OctahedralSphere => "octahedralsphere",
-        };
-        to.choice("wrap", wrap, "repeat");
+        if matches!(wrap, WrapMode::Axes(_)) {
+            self.extensions.insert("texture wrap by axis".into());
+        }
+        to.choice("wrap", wrap.name(), "repeat");
         to.float("maxanisotropy", *max_anisotropy, 8.0);
         to.float("scale", *scale, 1.0);
         to.flag("invert", *invert, false);
+    }
+}
+
+/// How an image over (u, v) is looked up, by the names of its wrap mode, filter and columns, and the
+/// wrap mode that is the default.
+pub(crate) fn uv_lookup(
+    to: &mut Statement,
+    image: &UvImageDesc,
+    [wrap, filter, columns]: [&str; 3],
+    default: WrapMode,
+    extensions: &mut BTreeSet<String>,
+) {
+    let UvImageDesc { image: _, columns: matrix, wrap: mode, is_nearest } = image;
+    if *image == UvImageDesc::new(image.image, default) {
+        return;
+    }
+    extensions.insert("lookups of images of emission and normals".into());
+    to.choice(wrap, mode.name(), default.name());
+    to.choice(filter, if *is_nearest { "point" } else { "bilinear" }, "bilinear");
+    if *matrix != UvImageDesc::IDENTITY {
+        to.floats(columns, matrix.as_flattened().iter().copied());
     }
 }
 

@@ -2,15 +2,14 @@
 // `scene/src/material/`.
 
 // The normal of a map.
-fn mapped_normal(pyramid: u32, uv: vec2f) -> vec3f {
-    let color = few_texels(pyramid, level_of(pyramid, 0), vec2f(uv.x, 1 - uv.y), false, false);
-    let mapped = Vec3_normalize_masked(2 * color - 1);
+fn mapped_normal(image: u32, uv: vec2f) -> vec3f {
+    let mapped = Vec3_normalize_masked(2 * uv_color(image, uv) - 1);
     return select(vec3f(0, 0, 1), mapped.v0, mapped.v1);
 }
 
 // Turns the shading frame to the normal of a map; its tangents keep their lengths.
-fn map_normal(s: ptr<function, Surface>, pyramid: u32) {
-    let inner = mapped_normal(pyramid, (*s).uv);
+fn map_normal(s: ptr<function, Surface>, image: u32) {
+    let inner = mapped_normal(image, (*s).uv);
     let ns = Frame_from_local(Frame_from_z_and_x((*s).ns, (*s).ss), inner);
     let bent = Frame_from_z_and_x(ns, (*s).ss);
     (*s).ns = face_forward(ns, (*s).n);

@@ -1,4 +1,4 @@
-// The images of lights with surfaces: the offsets of a pyramid of one level and of a colour space.
+// The images of lights with surfaces: the offsets of an image over (u, v) and of a colour space.
 
 // The offset of the image of a light, or 0.
 fn emission_image(at: u32) -> u32 {
@@ -12,9 +12,7 @@ fn emission_image(at: u32) -> u32 {
 // What the image of a light multiplies its emission by at texture coordinates of its surface.
 fn image_share(image: u32, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
     let parts = words_at(image);
-    let pyramid = parts.x;
-    // Rows of images go down.
-    let rgb = few_texels(pyramid, level_of(pyramid, 0), vec2f(uv.x, 1 - uv.y), false, false);
+    let rgb = uv_color(parts.x, uv);
     return rgb_spectrum(parts.y, UNBOUNDED, max(rgb, vec3f()), lambda);
 }
 

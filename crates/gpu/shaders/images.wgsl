@@ -8,6 +8,7 @@ const WRAP_REPEAT = 0u;
 const WRAP_BLACK = 1u;
 const WRAP_CLAMP = 2u;
 const WRAP_SPHERE = 3u;
+const WRAP_AXES = 5u;
 
 const LOOKUP_POINT = 0u;
 const LOOKUP_TRILINEAR = 2u;
@@ -55,16 +56,23 @@ fn remainder(p: vec2i, size: vec2i) -> vec2i {
     return (p % size + size) % size;
 }
 
+// The wrap modes of columns and of rows.
+fn wraps(wrap: u32) -> vec2u {
+    return select(vec2u(wrap), vec2u(wrap >> 4, wrap >> 6) & vec2u(3), (wrap & 15) == WRAP_AXES);
+}
+
 // The pixel that a lookup anywhere reads.
 fn wrapped(p: vec2i, size: vec2i, wrap: u32) -> vec2i {
-    switch (wrap) {
-        case WRAP_REPEAT: { return remainder(p, size); }
+    switch (wrap & 15) {
+        case WRAP_REPEAT, WRAP_BLACK, WRAP_CLAMP, WRAP_AXES: {
+            let is_repeated = wraps(wrap) == vec2u(WRAP_REPEAT);
+            return select(clamp(p, vec2i(), size - 1), remainder(p, size), is_repeated);
+        }
         case WRAP_SPHERE: {
             let q = remainder(p, size);
             let tile = (p - q) / size;
             return select(q, size - 1 - q, ((tile.x + tile.y) & 1) == 1);
         }
-        case WRAP_BLACK, WRAP_CLAMP: { return clamp(p, vec2i(), size - 1); }
         default: {
             let y = remainder(p, 2 * size).y;
             let is_beyond = y >= size.y;
@@ -77,15 +85,15 @@ fn wrapped(p: vec2i, size: vec2i, wrap: u32) -> vec2i {
 // The colour at any column and row of a level.
 fn texel(pyramid: u32, level: Level, p: vec2i) -> vec3f {
     let size = vec2i(level.size);
-    let is_inside = all(p >= vec2i()) && all(p < size);
+    let is_beyond = (p < vec2i()) | (p >= size);
     let head = words_at(pyramid);
     let more = words_at(pyramid + 4);
     let wrap = more.z;
-    if (!is_inside && wrap == WRAP_BLACK) {
+    if (any(is_beyond & (wraps(wrap) == vec2u(WRAP_BLACK)))) {
         return vec3f();
     }
     var q = p;
-    if (!is_inside) {
+    if (any(is_beyond)) {
         q = wrapped(p, size, wrap);
     }
     let pixel = (u32(q.y) * level.size.x + u32(q.x)) * head.z;
@@ -122,6 +130,15 @@ fn few_texels(pyramid: u32, level: Level, st: vec2f, is_nearest: bool, is_last: 
         sum += weight * texel(pyramid, level, first + vec2i(offset));
     }
     return sum;
+}
+
+// The colour of an image over (u, v).
+fn uv_color(at: u32, uv: vec2f) -> vec3f {
+    let head = words_at(at);
+    let columns = numbers_at(at + 4);
+    let st = columns.xy * uv.x + columns.zw * uv.y + numbers_at(at + 8).xy;
+    // Rows of images go down.
+    return few_texels(head.x, level_of(head.x, 0), vec2f(st.x, 1 - st.y), head.y == 1, false);
 }
 
 // Texels of a level within an ellipse around a position, by a Gaussian, and the sum of the weights.

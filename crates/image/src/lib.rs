@@ -38,4 +38,4 @@ pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
 pub use projection::Projection;
 pub use pyramid::{Pyramid, TextureFilter};
 pub use source::{Channel, PixelSource};
-pub use wrap::WrapMode;
+pub use wrap::{EdgeMode, WrapMode};

@@ -25,6 +25,7 @@ use crate::{
     image::{Image, Pixels},
     memory::filled,
     source::PixelSource,
+    texels::nearest,
     wrap::WrapMode,
 };
 
@@ -342,18 +343,6 @@ fn halved(image: &Image) -> Result<Image, ImageError> {
     let rows = values.par_chunks_mut(width as usize * count).zip(0..height);
     rows.for_each_init(|| [vec![0.0; old_row], vec![0.0; old_row]], average);
     Image::new(width, height, image.channels(), Pixels::F32(values))
-}
-
-/// The texel whose centre is nearest to a coordinate; the one farther from zero of two that are as
-/// near.
-#[inline(always)]
-fn nearest<R: Real>(coordinate: R, size: u32) -> R::Int {
-    let position = coordinate * R::splat(size as f32) - R::splat(0.5);
-    let magnitude = position.abs();
-    let below = magnitude.floor();
-    let is_nearer_above = (magnitude - below).ge(R::splat(0.5));
-    let nearest = R::select(is_nearer_above, below + R::one(), below).copysign(position);
-    nearest.clamp(R::splat(-1e9), R::splat(1e9)).to_int()
 }
 
 #[cfg(test)]

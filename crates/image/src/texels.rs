@@ -5,7 +5,7 @@ use lanes::{Int, MAX_LANES, Mask, Real};
 use math::Point2;
 
 use crate::image::{Image, Pixels};
-use crate::wrap::WrapMode;
+use crate::wrap::{EdgeMode, WrapMode};
 
 /// Images of more values are read lane by lane: lanes have indices of 31 bits.
 const MAX_VALUES: usize = 1 << 31;
@@ -41,6 +41,12 @@ impl Image {
                 + dy * ((R::one() - dx) * lower_left[c] + dx * lower_right[c]);
         }
         values
+    }
+
+    /// The colour of the texel whose centre is nearest to `st`.
+    #[inline(always)]
+    pub fn nearest_rgb<R: Real>(&self, st: Point2<R>, wrap: WrapMode) -> [R; 3] {
+        self.texels([nearest(st.x, self.width()), nearest(st.y, self.height())], self.color_channels(), wrap)
     }
 
     /// The linear values of channels at any column and row.
@@ -121,14 +127,22 @@ impl WrapMode {
                 ([x & I::splat(width - 1), y & I::splat(height - 1)], I::Mask::splat(true))
             }
             _ => {
+                let mut is_kept = I::Mask::splat(true);
+                if let Self::Axes([across, down]) = self {
+                    for (mode, at, count) in [(across, x, width), (down, y, height)] {
+                        if mode == EdgeMode::Black {
+                            is_kept = is_kept & at.lt(I::splat(count));
+                        }
+                    }
+                }
                 let (mut x, mut y) = (x.to_array(), y.to_array());
                 self.apply_each(&mut x, &mut y, width, height);
-                ([I::load(&x), I::load(&y)], I::Mask::splat(true))
+                ([I::load(&x), I::load(&y)], is_kept)
             }
         }
     }
 
-    /// [`WrapMode::apply`] of all pairs; for modes that never give zero.
+    /// [`WrapMode::apply`] of all pairs; the first pixel where that gives zero.
     #[inline(never)]
     fn apply_each(self, x: &mut [u32; MAX_LANES], y: &mut [u32; MAX_LANES], width: u32, height: u32) {
         for (x, y) in x.iter_mut().zip(y) {
@@ -144,6 +158,18 @@ fn position<R: Real>(coordinate: R, size: u32) -> (R::Int, R) {
     let position = coordinate * R::splat(size as f32) - R::splat(0.5);
     let texel = position.floor().clamp(R::splat(-1e9), R::splat(1e9));
     (texel.to_int(), position - texel)
+}
+
+/// The texel whose centre is nearest to a coordinate; the one farther from zero of two that are as
+/// near.
+#[inline(always)]
+pub(crate) fn nearest<R: Real>(coordinate: R, size: u32) -> R::Int {
+    let position = coordinate * R::splat(size as f32) - R::splat(0.5);
+    let magnitude = position.abs();
+    let below = magnitude.floor();
+    let is_nearer_above = (magnitude - below).ge(R::splat(0.5));
+    let nearest = R::select(is_nearer_above, below + R::one(), below).copysign(position);
+    nearest.clamp(R::splat(-1e9), R::splat(1e9)).to_int()
 }
 
 /// The numbers that are stored as half floats in the low 16 bits.
@@ -196,7 +222,9 @@ mod tests {
             (rgba.to_f16(), WrapMode::Clamp),
             (rgba, WrapMode::Black),
             (many.to_u8(ColorEncoding::Linear), WrapMode::Repeat),
-            (square, WrapMode::OctahedralSphere),
+            (square.clone(), WrapMode::OctahedralSphere),
+            (square.clone(), WrapMode::Axes([EdgeMode::Repeat, EdgeMode::Clamp])),
+            (square, WrapMode::Axes([EdgeMode::Clamp, EdgeMode::Black])),
         ];
         for (image, wrap) in images {
             let pyramid = Pyramid::new(image, wrap).unwrap();

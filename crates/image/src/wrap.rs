@@ -17,6 +17,30 @@ pub enum WrapMode {
     /// The neighbour on the sphere, for images of latitude and longitude: rows are closed, and
     /// beyond a pole lies the meridian on the other side.
     LatitudeLongitude,
+    /// Columns and rows each by a rule of their own.
+    Axes([EdgeMode; 2]),
+}
+
+/// The value of a lookup beyond the edges of one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EdgeMode {
+    /// The image again.
+    Repeat,
+    /// Zero.
+    Black,
+    /// The nearest edge pixel.
+    Clamp,
+}
+
+impl EdgeMode {
+    /// The pixel of `count` that a lookup at `at` reads; `None` means zero.
+    fn apply(self, at: i64, count: i64) -> Option<i64> {
+        match self {
+            Self::Repeat => Some(at.rem_euclid(count)),
+            Self::Black => (0..count).contains(&at).then_some(at),
+            Self::Clamp => Some(at.clamp(0, count - 1)),
+        }
+    }
 }
 
 impl WrapMode {
@@ -55,6 +79,7 @@ impl WrapMode {
                 let (x, y) = if y < h { (x, y) } else { (x + w / 2, 2 * h - 1 - y) };
                 (x.rem_euclid(w), y)
             }
+            Self::Axes([across, down]) => (across.apply(x, w)?, down.apply(y, h)?),
         };
         Some((x as u32, y as u32))
     }
@@ -77,6 +102,15 @@ mod tests {
         assert_eq!(WrapMode::Clamp.apply(-5, 9, 4, 4), Some((0, 3)));
         assert_eq!(WrapMode::Black.apply(-1, 0, 4, 4), None);
         assert_eq!(WrapMode::Black.apply(0, 4, 4, 4), None);
+    }
+
+    #[test]
+    fn each_axis_may_have_its_own_rule() {
+        use EdgeMode::{Black, Clamp, Repeat};
+        assert_eq!(WrapMode::Axes([Repeat, Clamp]).apply(-1, 9, 4, 4), Some((3, 3)));
+        assert_eq!(WrapMode::Axes([Clamp, Repeat]).apply(-1, 9, 4, 4), Some((0, 1)));
+        assert_eq!(WrapMode::Axes([Repeat, Black]).apply(-1, 2, 4, 4), Some((3, 2)));
+        assert_eq!(WrapMode::Axes([Repeat, Black]).apply(2, 4, 4, 4), None);
     }
 
     #[test]

@@ -135,7 +135,14 @@ fn plain(desc: &SceneDesc) -> SceneDesc {
         if material.name.is_empty() {
             material.name = format!("material-{}", handle.index());
         }
-        material.normal_map.iter_mut().for_each(fixed);
+        if let Some(map) = &mut material.normal_map {
+            fixed(&mut map.image);
+        }
+        if let MaterialKind::OpenPbr(surface) = &mut material.kind
+            && let Some(map) = &mut surface.geometry_coat_normal
+        {
+            fixed(&mut map.image);
+        }
     }
     for (_, medium) in desc.media.iter_mut() {
         still(&mut medium.world_from_medium);
@@ -154,7 +161,7 @@ fn plain(desc: &SceneDesc) -> SceneDesc {
     }
     for (_, light) in desc.area_lights.iter_mut() {
         if let Some(image) = &mut light.image {
-            fixed(image);
+            fixed(&mut image.image);
             light.radiance = 1.0.into();
         }
     }

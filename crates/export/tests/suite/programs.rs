@@ -6,7 +6,8 @@ use alhazen_export::{ExportError, export, export_camera};
 use description::{
     AreaLightDesc, CameraDesc, CameraKind, CoatedConductorDesc, ConductorDesc, ImageDesc, ImageTextureDesc,
     InfiniteRadiance, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, RoughnessDesc,
-    SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc,
+    SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc, UvImageDesc,
+    WrapMode,
 };
 use image::{ColorEncoding, Image, Pixels};
 use import::MemoryAssets;
@@ -75,7 +76,10 @@ fn images_are_kept_with_their_codes_and_values() {
         let texture = desc.spectrum_textures.push(TextureDesc::new(kind));
         let kind = MaterialKind::Diffuse { reflectance: texture.into() };
         // Normal maps are read as linear, lights as sRGB, whatever the codes are.
-        desc.materials.push(MaterialDesc { normal_map: Some(image), ..kind.into() });
+        desc.materials.push(MaterialDesc {
+            normal_map: Some(UvImageDesc::new(image, WrapMode::Repeat)),
+            ..kind.into()
+        });
         desc.lights.push(LightDesc::from(LightKind::Projection { image, power: None, fov: 45.0 }));
     }
     let text = check(&desc);

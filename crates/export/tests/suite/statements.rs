@@ -31,6 +31,25 @@ fn colours_keep_their_spaces() {
 }
 
 #[test]
+fn lookups_of_images_are_kept() {
+    let image = [b"PF\n1 1\n-1\n".as_slice(), &[0; 12]].concat();
+    let scene = r#"WorldBegin
+        AreaLightSource "diffuse" "string filename" "a.pfm" "string wrap" "repeat" "string filter" "point"
+            "float columns" [ 2 0 0.5 1 0.25 0 ]
+        Material "openpbr" "string normalmap" "a.pfm" "string normalmap_wrap" "clamp-repeat"
+            "string geometry_coat_normal" "a.pfm" "float geometry_coat_normal_columns" [ 1 0 0 2 0 0 ]
+        Shape "sphere"
+        Texture "t" "float" "imagemap" "string filename" "a.pfm" "string wrap" "black-clamp"
+        AreaLightSource "diffuse" "string filename" "a.pfm" Shape "sphere" "texture alpha" "t""#;
+    let desc = read(&MemoryAssets::default().with("scene.pbrt", scene).with("a.pfm", image));
+    let (exported, again) = round_trip(&desc);
+    assert_eq!(difference(&desc, &again), None, "{}", exported.text);
+    for extension in ["lookups of images of emission and normals", "texture wrap by axis"] {
+        assert!(exported.extensions.iter().any(|name| name == extension), "{:?}", exported.extensions);
+    }
+}
+
+#[test]
 fn motion_is_kept() {
     let text = check(
         r#"TransformTimes 0.25 0.75

@@ -6,17 +6,21 @@
 //! | 1 | how values are stored: 0 bytes, 1 half floats, 2 floats |
 //! | 2 | values a pixel |
 //! | 3–5 | which of them are red, green and blue |
-//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude |
+//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude, 5 those of the columns from bit 4 on and of the rows from bit 6 on |
 //! | 7 | of bytes, the offset of the 256 numbers that they stand for |
 //! | 8… | for each level where it begins in the buffer of texels, its width, its height, and 0 |
 //!
 //! Texels are stored as in the image, as many values a word as it holds, the first one lowest.
+//!
+//! An image over (u, v), of emission or of normals, is a pyramid of one level, 1 where the nearest
+//! texel is seen, two zeros, and three columns of a matrix.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::Span;
-use image::{ColorEncoding, Image, Pixels, WrapMode};
+use image::{ColorEncoding, EdgeMode, Image, Pixels, WrapMode};
+use scene::texture::UvLookup;
 
 use super::Flattener;
 
@@ -29,6 +33,7 @@ const BLACK: u32 = 1;
 const CLAMP: u32 = 2;
 const SPHERE: u32 = 3;
 const LATITUDE_LONGITUDE: u32 = 4;
+const AXES: u32 = 5;
 
 /// The buffer of texels, and where each image begins in it, by its address.
 #[derive(Default)]
@@ -38,6 +43,14 @@ pub struct Texels {
 }
 
 impl Flattener<'_> {
+    /// An image over (u, v), which a thing at `span` has; its offset.
+    pub fn uv_image(&mut self, image: &Arc<Image>, lookup: &UvLookup, span: Span) -> u32 {
+        let pyramid = self.image(std::slice::from_ref(image), lookup.wrap, span);
+        let at = self.slab.add([pyramid, lookup.is_nearest.into(), 0, 0]);
+        self.slab.extend_numbers(lookup.columns.iter().flat_map(|column| column.to_array()));
+        at
+    }
+
     /// The levels of an image, the largest first, which a thing at `span` has; their offset.
     pub fn image(&mut self, levels: &[Arc<Image>], wrap: WrapMode, span: Span) -> u32 {
         let image = &levels[0];
@@ -58,6 +71,10 @@ impl Flattener<'_> {
             WrapMode::Clamp => CLAMP,
             WrapMode::OctahedralSphere => SPHERE,
             WrapMode::LatitudeLongitude => LATITUDE_LONGITUDE,
+            WrapMode::Axes(axes) => {
+                let [across, down] = axes.map(edge);
+                AXES | across << 4 | down << 6
+            }
         };
         let channels = [image.channel_count(), red, green, blue].map(|n| n as u32);
         let mut words = vec![levels.len() as u32, format];
@@ -96,5 +113,13 @@ impl Flattener<'_> {
         }
         self.texels.images.insert(address, at);
         at
+    }
+}
+
+fn edge(mode: EdgeMode) -> u32 {
+    match mode {
+        EdgeMode::Repeat => REPEAT,
+        EdgeMode::Black => BLACK,
+        EdgeMode::Clamp => CLAMP,
     }
 }

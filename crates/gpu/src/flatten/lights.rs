@@ -23,14 +23,13 @@
 //! Of the record of a surface that is in an instance only kind and numbers count. What else a
 //! surface has is the image of its emission, the colour space of that, and the texture of its
 //! alpha, each an offset or 0. The spectrum of an image is its illuminant; a pixel is the scale and
-//! the coefficients of an RGB spectrum. The image of a surface is a pyramid of one level, in which
-//! colours are interpolated.
+//! the coefficients of an RGB spectrum. The image of a surface is one over (u, v).
 
 use std::f32::consts::TAU;
 
 use description::Span;
 use geometry::{PlainShape, RevolvedKind, Shape};
-use image::{Image, Projection, WrapMode};
+use image::{Image, Projection};
 use math::{AnimatedTransform, DVec3};
 use scene::light::{
     AreaEmission, AreaLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef, ProjectionLight,
@@ -255,14 +254,14 @@ impl Flattener<'_> {
             }
             None => 0,
         };
-        let Some(EmissionImage { image, color_space, .. }) = &emission.image else {
+        let Some((EmissionImage { image, color_space, .. }, lookup)) = &emission.image else {
             let more = if alpha == 0 { 0 } else { self.slab.add([0, 0, alpha]) };
             return [self.spectrum(&emission.radiance.spectrum), more];
         };
         self.parts.emission_images = true;
-        let pyramid = self.image(std::slice::from_ref(image), WrapMode::Clamp, span);
+        let image = self.uv_image(image, lookup, span);
         let space = self.color_space(color_space);
-        [self.spectrum(&color_space.illuminant()), self.slab.add([pyramid, space, alpha])]
+        [self.spectrum(&color_space.illuminant()), self.slab.add([image, space, alpha])]
     }
 }
 

@@ -19,7 +19,6 @@
 //! Where `remap` is 1, α is the square root of the roughness.
 
 use description::Span;
-use image::WrapMode;
 use scene::GeometryEntry;
 use scene::material::{
     Coat, ConductorIndex, ConductorMaterial, HairAbsorption, HairMaterial, Material, MaterialEntry,
@@ -84,7 +83,7 @@ impl Flattener<'_> {
 
     /// The image of normals.
     pub(super) fn normal_map(&mut self, map: &NormalMap, span: Span) -> u32 {
-        self.image(std::slice::from_ref(&map.image), WrapMode::Repeat, span)
+        self.uv_image(&map.image, &map.lookup, span)
     }
 
     fn material(&mut self, material: &Material, span: Span) -> Record {

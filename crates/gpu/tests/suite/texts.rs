@@ -103,7 +103,7 @@ Shape "trianglemesh" "point3 P" [ 1 -0.4 -1  1.8 -0.4 -1  1 0.4 -1.3  1.8 0.4 -1
 Shape "disk" "float radius" 0.4 "float height" 1.5 "float alpha" 0
 "#;
 
-/// Lights of all shapes with an image: triangles with texture coordinates and without, a rectangle,
+/// Lights of all shapes with an image, moved and repeated for some: triangles with texture coordinates and without, a rectangle,
 /// a patch, one whose points the image chooses, a sphere, a disk and a cylinder.
 pub const PANELS: &str = r#"
 LookAt 0 -6 2  0 0 0.8  0 0 1
@@ -112,7 +112,8 @@ Film "rgb"
 WorldBegin
 Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.5 ]
 Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
-AreaLightSource "diffuse" "string filename" "panel.pfm" "bool twosided" true
+AreaLightSource "diffuse" "string filename" "panel.pfm" "bool twosided" true "string wrap" "repeat-clamp"
+    "string filter" "point" "float columns" [ 1.5 0.2 -0.3 1.2 -0.1 0.1 ]
 Shape "trianglemesh" "point3 P" [ -2.6 1 0.2  -1.4 1 0.2  -2.6 1 1.4  -1.4 1 1.4 ] "integer indices" [ 0 1 2  1 3 2 ]
     "point2 uv" [ 0 0  2 0.1  0 1  1.2 1.5 ]
 Shape "trianglemesh" "point3 P" [ -1.2 1 0.2  -0.2 1 0.2  -0.7 1.2 1.4 ] "integer indices" [ 0 1 2 ]
@@ -198,6 +199,7 @@ Material "openpbr" "float transmission_weight" 1 "float transmission_dispersion_
 Shape "sphere" "float radius" 0.3
 Translate 0.7 0 0
 Material "openpbr" "float coat_weight" 1 "float coat_roughness" 0.2 "string geometry_coat_normal" "normals.pfm"
+    "string geometry_coat_normal_wrap" "clamp-black" "float geometry_coat_normal_columns" [ 0.7 0 0.2 0.6 0.1 0.1 ]
 Shape "sphere" "float radius" 0.3
 "#;
 

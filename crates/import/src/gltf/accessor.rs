@@ -118,9 +118,15 @@ impl<'a> Accessor<'a> {
         Ok(Self { count, width, component, normalized, unpacked: None, place })
     }
 
-    /// The same with data that are not in a view, but were unpacked.
+    /// The same with data that are not in a view, but were unpacked; as many as these are.
     pub fn with_data(self, unpacked: Vec<u8>) -> Self {
-        Self { unpacked: Some(unpacked), ..self }
+        let count = unpacked.len() / (self.width * self.component.size());
+        Self { count, unpacked: Some(unpacked), ..self }
+    }
+
+    /// The same with integers that stand for numbers in [0, 1] or [−1, 1].
+    pub fn with_normalized(self) -> Self {
+        Self { normalized: true, ..self }
     }
 
     /// Whether any of its numbers are in the file; else all are zero.

@@ -79,6 +79,11 @@ impl Buffers {
         }
     }
 
+    /// How many bytes may still be decoded.
+    pub fn left(&self) -> u64 {
+        self.budget.get()
+    }
+
     /// Takes bytes that are about to be decoded from the budget.
     pub fn spend(&self, place: &Place, bytes: u64) -> Result<()> {
         spend(&self.budget, place, bytes)

@@ -37,7 +37,8 @@ impl Camera {
             Some("perspective") => {
                 let lens = place.required("perspective")?;
                 let (yfov, aspect) = (number(&lens, "yfov")?, lens.get("aspectRatio"));
-                if yfov >= std::f64::consts::PI {
+                // π itself may be rounded up, and is drawn as the widest view there is.
+                if yfov > std::f64::consts::PI + 1e-6 {
                     return Err(lens.invalid_member("yfov", "a field of view is below π"));
                 }
                 let aspect = aspect.map(|_| number(&lens, "aspectRatio")).transpose()?;
@@ -70,7 +71,7 @@ impl Camera {
         let aspect = self.aspect();
         let kind = match *self {
             Self::Perspective { yfov, .. } => {
-                let vertical = libm::tan(yfov / 2.0);
+                let vertical = libm::tan(yfov.min(3.141) / 2.0);
                 // The field of view is that over the shorter side.
                 let fov = 2.0 * libm::atan(vertical * aspect.min(1.0));
                 CameraKind::Perspective {

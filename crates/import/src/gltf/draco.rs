@@ -11,20 +11,15 @@ use super::json::{Place, Result};
 
 /// The vertices and triangles of one primitive.
 pub(super) struct Packed<'a> {
-    place: Place<'a>,
+    pub place: Place<'a>,
     mesh: Mesh,
     /// The numbers of attributes by their names.
     ids: HashMap<String, u32>,
 }
 
 impl<'a> Packed<'a> {
-    /// The packed data of a primitive of so many vertices and indices; `None` if it has none.
-    pub fn of(
-        primitive: &Place<'a>,
-        buffers: &Buffers,
-        vertices: usize,
-        indices: usize,
-    ) -> Result<Option<Self>> {
+    /// The packed data of a primitive; `None` if it has none.
+    pub fn of(primitive: &Place<'a>, buffers: &Buffers) -> Result<Option<Self>> {
         let Some(place) = primitive.extension("KHR_draco_mesh_compression")? else { return Ok(None) };
         let view =
             buffers.view(&place, "bufferView")?.ok_or_else(|| place.invalid("`bufferView` is missing"))?;
@@ -37,13 +32,12 @@ impl<'a> Packed<'a> {
                 id.ok_or_else(|| attributes.invalid_member(name, "this is no number of an attribute"))?;
             ids.insert(name.clone(), id);
         }
-        // The accessors say how much there is, and attributes have at most 16 bytes for each
-        // vertex.
-        let bytes = 16 * (vertices as u64) * ids.len() as u64;
-        buffers.spend(&place, bytes + 12 * indices as u64)?;
+        // The stream says how much there is, whatever the accessors say, within what the file may
+        // take: at least 4 bytes for each vertex and 12 for each triangle.
+        let bytes = buffers.left();
         let limits = DecodeLimits::default()
-            .with_max_points(vertices as u64)
-            .with_max_faces(indices as u64 / 3)
+            .with_max_points(bytes / 4)
+            .with_max_faces(bytes / 12)
             .with_max_decoded_bytes(bytes);
         let unpack = || {
             let mut mesh = Mesh::new();
@@ -56,20 +50,20 @@ impl<'a> Packed<'a> {
             // A panic in another crate must not end a render.
             Err(_) => return Err(place.invalid("the packed primitive is damaged")),
         };
-        if mesh.num_points() != vertices || 3 * mesh.num_faces() != indices {
-            let message = format!(
-                "{} vertices and {} indices are packed, where the accessors say {vertices} and {indices}",
-                mesh.num_points(),
-                3 * mesh.num_faces()
-            );
-            return Err(place.invalid(message));
-        }
+        // Attributes have at most 16 bytes for each vertex.
+        let bytes = 16 * mesh.num_points() as u64 * ids.len() as u64;
+        buffers.spend(&place, bytes + 12 * mesh.num_faces() as u64)?;
         Ok(Some(Self { place, mesh, ids }))
     }
 
-    /// The corners of the triangles.
-    pub fn indices(&self) -> Vec<u32> {
-        self.mesh.faces().iter().flatten().map(|corner| corner.0).collect()
+    /// The numbers of vertices and of indices.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.mesh.num_points(), 3 * self.mesh.num_faces()]
+    }
+
+    /// The triangles, which are no strips or fans, whatever the mode of the primitive.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.mesh.faces().iter().map(|face| face.map(|corner| corner.0)).collect()
     }
 
     /// The bytes of an attribute as an accessor has them without packing; `None` if it is not

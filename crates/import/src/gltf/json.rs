@@ -122,11 +122,12 @@ impl<'a> Place<'a> {
         self.get(key).map(|place| place.as_number()).transpose()
     }
 
-    /// A number of a range, with its value if it is absent.
+    /// A number of a range, with its value if it is absent. One that is outside by rounding is the
+    /// end of the range.
     pub fn number_in(&self, key: &str, default: f64, [least, most]: [f64; 2]) -> Result<f32> {
         let number = self.number(key)?.unwrap_or(default);
-        if (least..=most).contains(&number) {
-            return Ok(number as f32);
+        if let Some(number) = rounded_into(number, [least, most]) {
+            return Ok(number);
         }
         let range = match most {
             f64::INFINITY => format!("{least} or more"),
@@ -162,11 +163,22 @@ impl<'a> Place<'a> {
     /// A colour whose components lie in a range.
     pub fn color<const N: usize>(&self, key: &str, default: [f32; N], most: f64) -> Result<[f32; N]> {
         let Some(numbers) = self.numbers::<N>(key)? else { return Ok(default) };
-        if let Some(number) = numbers.iter().find(|number| !(0.0..=most).contains(*number)) {
-            return Err(self.invalid_member(key, format!("{number} is out of the range of a colour")));
+        let mut color = [0.0; N];
+        for (component, number) in color.iter_mut().zip(numbers) {
+            *component = rounded_into(number, [0.0, most]).ok_or_else(|| {
+                self.invalid_member(key, format!("{number} is out of the range of a colour"))
+            })?;
         }
-        Ok(numbers.map(|number| number as f32))
+        Ok(color)
     }
+}
+
+/// A number of a range, or the end of the range that it misses by no more than a few roundings in
+/// single precision; `None` outside.
+fn rounded_into(number: f64, [least, most]: [f64; 2]) -> Option<f32> {
+    let slack = |end: f64| 1e-6 * end.abs().max(1.0);
+    let range = least - slack(least)..=most + slack(most);
+    range.contains(&number).then(|| number.clamp(least, most) as f32)
 }
 
 #[cfg(test)]
@@ -188,5 +200,25 @@ mod tests {
         assert_eq!(root.object("n").unwrap_err().place, "/n");
         assert_eq!(root.required("q").unwrap_err().message, "`q` is missing");
         assert_eq!(root.number_in("q", 0.5, [0.0, 1.0]), Ok(0.5));
+    }
+
+    #[test]
+    fn what_single_precision_rounds_out_of_a_range_is_its_end() {
+        use std::f64::consts::FRAC_PI_2;
+        for (number, range, end) in [
+            (1.570_796_370_506_286_6, [0.0, FRAC_PI_2], FRAC_PI_2 as f32),
+            (1.570_796_4, [0.0, FRAC_PI_2], FRAC_PI_2 as f32),
+            (1.000_000_119_209_289_6, [0.0, 1.0], 1.0),
+            (-5.96e-8, [0.0, f64::INFINITY], 0.0),
+            (0.999_999_94, [1.0, f64::INFINITY], 1.0),
+            (7.5, [0.0, f64::INFINITY], 7.5),
+        ] {
+            assert_eq!(rounded_into(number, range), Some(end), "{number}");
+        }
+        for (number, range) in [(1.0001, [0.0, 1.0]), (-0.001, [0.0, 1.0]), (1.571, [0.0, FRAC_PI_2])] {
+            assert_eq!(rounded_into(number, range), None, "{number}");
+        }
+        let value: Value = serde_json::from_str(r#"{"c": [1.0000001192092896, 0, 0.5]}"#).unwrap();
+        assert_eq!(Place::root(&value).color("c", [0.0; 3], 1.0), Ok([1.0, 0.0, 0.5]));
     }
 }

@@ -55,11 +55,15 @@ impl Light {
                 let half = std::f64::consts::FRAC_PI_2;
                 let outer = spot.number_in("outerConeAngle", half / 2.0, [0.0, half])?;
                 let inner = spot.number_in("innerConeAngle", 0.0, [0.0, half])?;
-                if inner >= outer {
-                    let message = "the inner angle of a cone is smaller than the outer one";
+                if outer == 0.0 {
+                    return Err(spot.invalid_member("outerConeAngle", "the angle of a cone is above 0"));
+                }
+                // Equal angles are a sharp edge.
+                if inner > outer * (1.0 + 1e-6) {
+                    let message = "the inner angle of a cone is at most the outer one";
                     return Err(spot.invalid_member("innerConeAngle", message));
                 }
-                Kind::Spot { inner, outer }
+                Kind::Spot { inner: inner.min(outer), outer }
             }
             Some(kind) => {
                 return Err(place.invalid_member("type", format!("`{kind}` is not a kind of light")));

@@ -182,11 +182,11 @@ impl Material {
             emissive.factor = emissive.factor.map(|v| v * strength);
         }
         let or_empty = |name: &str| Ok(place.extension(name)?.unwrap_or_else(empty));
-        let ior = or_empty("KHR_materials_ior")?.number("ior")?.unwrap_or(1.5);
-        if ior != 0.0 && ior < 1.0 {
-            let message = format!("an index of refraction is 1 or more, not {ior}");
-            return Err(place.invalid_member("extensions", message));
-        }
+        let ior = or_empty("KHR_materials_ior")?;
+        let ior = match ior.number("ior")? {
+            Some(0.0) => 0.0,
+            _ => ior.number_in("ior", 1.5, [1.0, f64::INFINITY])?,
+        };
         let dispersion = or_empty("KHR_materials_dispersion")?.number_in("dispersion", 0.0, POSITIVE)?;
         let specular = or_empty("KHR_materials_specular")?;
         let sheen = or_empty("KHR_materials_sheen")?;
@@ -233,7 +233,7 @@ impl Material {
             metallic_roughness: reader.texture(&pbr, "metallicRoughnessTexture")?,
             normals,
             emissive,
-            ior: ior as f32,
+            ior,
             dispersion,
             specular: reader.number(&specular, ["specularFactor", "specularTexture"], 1.0)?,
             specular_color: reader.color(

@@ -81,6 +81,7 @@ fn fill(
     for accessor in document.items("accessors") {
         log.keep(Accessor::parse(accessor));
     }
+    texture::check(&document, log);
     let mut materials = all(&document, "materials", log, |place| Material::parse(&document, place));
     materials.push(Some(Material::unnamed(&document)));
     let cameras = all(&document, "cameras", log, Camera::parse);

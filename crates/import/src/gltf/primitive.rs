@@ -48,20 +48,41 @@ impl<'r, 'a> Reader<'r, 'a> {
     pub fn new(document: &'r Document<'a>, buffers: &'r Buffers, place: &Place<'a>) -> Result<Self> {
         let attributes =
             place.object("attributes")?.ok_or_else(|| place.invalid("`attributes` is missing"))?;
-        let (positions, indices) =
-            (Accessor::of(document, &attributes, "POSITION")?, Accessor::of(document, place, "indices")?);
-        let packed = match (positions, indices) {
-            (Some(positions), Some(indices)) if !positions.has_data() => {
-                Packed::of(place, buffers, positions.count, indices.count)?
-            }
+        let packed = match Accessor::of(document, &attributes, "POSITION")? {
+            Some(positions) if !positions.has_data() => Packed::of(place, buffers)?,
             _ => None,
         };
         Ok(Self { document, buffers, packed })
     }
 
+    /// Where packed data are not as many as the accessors say, and how many there are.
+    pub fn stale_counts(&self, place: &Place) -> Result<Option<(String, String)>> {
+        let Some(packed) = &self.packed else { return Ok(None) };
+        let attributes = place.object("attributes")?;
+        let positions =
+            attributes.map_or(Ok(None), |attributes| Accessor::of(self.document, &attributes, "POSITION"))?;
+        let indices = Accessor::of(self.document, place, "indices")?;
+        let said = [positions, indices].map(|accessor| accessor.map_or(0, |accessor| accessor.count));
+        let [vertices, corners] = packed.counts();
+        // A strip has fewer indices than its triangles have corners.
+        let is_strip = place.integer("mode")?.is_some_and(|mode| mode != TRIANGLES);
+        if said[0] == vertices && (is_strip || said[1] == corners) {
+            return Ok(None);
+        }
+        let message = format!(
+            "the accessors say {} vertices and {} indices; drawn are those that are packed, {vertices} and {corners}",
+            said[0], said[1]
+        );
+        Ok(Some((packed.place.pointer.clone(), message)))
+    }
+
     /// The accessor of an attribute; `None` if it is absent.
     fn accessor(&self, attributes: &Place, name: &str) -> Result<Option<Accessor<'a>>> {
-        let Some(accessor) = Accessor::of(self.document, attributes, name)? else { return Ok(None) };
+        let Some(mut accessor) = Accessor::of(self.document, attributes, name)? else { return Ok(None) };
+        // The integers of colours are always normalised.
+        if name == "COLOR_0" {
+            accessor = accessor.with_normalized();
+        }
         let unpacked = match &self.packed {
             Some(packed) if !accessor.has_data() => packed.attribute(name, &accessor)?,
             _ => None,
@@ -83,11 +104,13 @@ impl<'r, 'a> Reader<'r, 'a> {
         let positions =
             points(accessor.vectors(self.buffers).map_err(|fault| within(&attributes, "POSITION", fault))?);
         let count = positions.len();
+        let (colors, opacities) = self.colors(&attributes, count)?;
         let mut primitive = Primitive {
             normals: points(self.attribute(&attributes, "NORMAL", count)?),
             tangents: self.attribute(&attributes, "TANGENT", count)?,
             uvs: self.coordinates(&attributes, set, count)?,
-            colors: self.colors(&attributes, count)?,
+            colors,
+            opacities,
             influences: self.influences(&attributes, count)?,
             positions,
             ..Primitive::default()
@@ -133,14 +156,15 @@ impl<'r, 'a> Reader<'r, 'a> {
         Ok(uvs.into_iter().map(|[u, v]| Point2::new(u, v)).collect())
     }
 
-    fn colors(&self, attributes: &Place, count: usize) -> Result<Vec<[f32; 3]>> {
+    /// Colours, and opacities where there are any.
+    fn colors(&self, attributes: &Place, count: usize) -> Result<(Vec<[f32; 3]>, Vec<f32>)> {
         match self.accessor(attributes, "COLOR_0")? {
             Some(accessor) if accessor.width == 4 => {
                 let colors = self.attribute(attributes, "COLOR_0", count)?;
-                Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+                Ok(colors.into_iter().map(|[r, g, b, a]: [f32; 4]| ([r, g, b], a)).unzip())
             }
-            Some(_) => self.attribute(attributes, "COLOR_0", count),
-            None => Ok(Vec::new()),
+            Some(_) => Ok((self.attribute(attributes, "COLOR_0", count)?, Vec::new())),
+            None => Ok((Vec::new(), Vec::new())),
         }
     }
 
@@ -161,14 +185,17 @@ impl<'r, 'a> Reader<'r, 'a> {
     }
 
     fn triangles(&self, place: &Place, count: usize) -> Result<Vec<[u32; 3]>> {
-        let indices: Vec<u32> = match (&self.packed, Accessor::of(self.document, place, "indices")?) {
-            (Some(packed), Some(accessor)) if !accessor.has_data() => packed.indices(),
-            (_, Some(accessor)) => {
+        let accessor = Accessor::of(self.document, place, "indices")?;
+        let packed = self.packed.as_ref().filter(|_| !accessor.as_ref().is_some_and(Accessor::has_data));
+        let packed = packed.map(Packed::triangles);
+        let indices: Vec<u32> = match (&packed, accessor) {
+            (Some(triangles), _) => triangles.as_flattened().to_vec(),
+            (None, Some(accessor)) => {
                 let indices =
                     accessor.integers::<1>(self.buffers).map_err(|fault| within(place, "indices", fault))?;
                 indices.into_iter().map(|[index]| index).collect()
             }
-            (_, None) => {
+            (None, None) => {
                 self.buffers.spend(place, 16 * count as u64)?;
                 (0..count as u32).collect()
             }
@@ -177,7 +204,8 @@ impl<'r, 'a> Reader<'r, 'a> {
             let message = format!("there is no vertex {index} of {count}");
             return Err(place.invalid_member("indices", message));
         }
-        let mut triangles: Vec<[u32; 3]> = match place.integer("mode")?.unwrap_or(TRIANGLES) {
+        let mode = if packed.is_some() { TRIANGLES } else { place.integer("mode")?.unwrap_or(TRIANGLES) };
+        let mut triangles: Vec<[u32; 3]> = match mode {
             STRIP => {
                 let turned = |(i, v): (usize, &[u32])| {
                     if i % 2 == 0 { [v[0], v[1], v[2]] } else { [v[0], v[2], v[1]] }

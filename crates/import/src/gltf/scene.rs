@@ -11,12 +11,12 @@ use super::charts::Chart;
 use super::document::Document;
 use super::json::{Place, Result};
 use super::light::Light;
-use super::material::Material;
+use super::material::{AlphaMode, Material};
 use super::node::{Nodes, Trs};
 use super::pictures::Pictures;
 use super::primitive::{self, Reader};
 use super::skin::Skin;
-use super::surface::{Builder, coordinates};
+use super::surface::{Builder, Painted, coordinates};
 use crate::log::Log;
 use crate::look::{self, Look, Primitive, Surface, Vertices};
 
@@ -302,9 +302,17 @@ impl<'s, 'a> Assembly<'s, 'a> {
             others.sort_unstable();
             others.dedup();
             others.retain(|&other| other != set);
-            let reader = Reader::new(&drawn.document, drawn.buffers, &place);
-            let primitive = match reader.and_then(|reader| reader.primitive(&place, set, &others)) {
-                Ok(primitive) => primitive,
+            let read = Reader::new(&drawn.document, drawn.buffers, &place).and_then(|reader| {
+                let stale = reader.stale_counts(&place)?;
+                Ok((reader.primitive(&place, set, &others)?, stale))
+            });
+            let primitive = match read {
+                Ok((primitive, stale)) => {
+                    if let Some((pointer, message)) = stale {
+                        self.log.warn("stale-count", pointer, message);
+                    }
+                    primitive
+                }
                 Err(fault) => {
                     self.log.fault(fault);
                     continue;
@@ -332,20 +340,23 @@ impl<'s, 'a> Assembly<'s, 'a> {
         (index, material): (usize, &Material),
         mut vertices: Vertices,
     ) -> Vec<ShapeDesc> {
-        let colors = &vertices.start.colors;
-        let first = colors.iter().find(|color| **color != [1.0; 3]).copied();
-        let (mut tinted, mut image) = (None, None);
-        if let Some(first) = first {
+        if material.alpha_mode == AlphaMode::Opaque {
+            vertices.start.opacities.clear();
+        }
+        let (colors, opacities) = (&vertices.start.colors, &vertices.start.opacities);
+        let (mut tinted, mut painted) = (None, None);
+        if colors.iter().any(|color| *color != [1.0; 3]) || opacities.iter().any(|opacity| *opacity != 1.0) {
             let tinted = tinted.insert(material.clone());
-            if colors.iter().all(|color| *color == first) {
-                tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * first[i]);
+            let color = colors.iter().all(|color| *color == colors[0]).then(|| colors[0]);
+            let opacity = opacities.iter().all(|opacity| *opacity == opacities[0]);
+            let opacity = opacity.then(|| opacities.first().copied().unwrap_or(1.0));
+            if let (Some(color), Some(opacity)) = (color, opacity) {
+                tinted.base.factor = std::array::from_fn(|i| tinted.base.factor[i] * color[i]);
+                tinted.opacity *= opacity;
             } else if material.textures().is_empty() {
-                let (start, picture) = look::unwrapped(&vertices.start, material.base.factor);
-                vertices.end = vertices.end.map(|end| look::unwrapped(&end, [1.0; 3]).0);
-                vertices.start = start;
-                let name = place.pointer_to("attributes/COLOR_0");
-                image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
+                painted = Some(self.paint(place, material, &mut vertices));
             } else {
+                tinted.opacity *= opacity.unwrap_or(1.0);
                 let message = "colours of vertices are not drawn on surfaces with textures";
                 self.log.warn("not-drawn", format!("{}/attributes/COLOR_0", place.pointer), message);
             }
@@ -361,7 +372,7 @@ impl<'s, 'a> Assembly<'s, 'a> {
                 None if maps.is_empty() => self.surfaces(index, material),
                 _ => {
                     let material = tinted.as_ref().unwrap_or(material);
-                    self.builder(&maps).both(material, image)
+                    self.builder(&maps).both(material, painted)
                 }
             };
             (triangles, surfaces)
@@ -369,6 +380,24 @@ impl<'s, 'a> Assembly<'s, 'a> {
         let parts = parts.collect();
         let (has_normals, is_stretched) = (material.has_normal_map(), material.anisotropy.is_some());
         Look { has_normals, is_stretched, parts }.shapes(&vertices, self.desc)
+    }
+
+    /// The colours of vertices as images, to which their triangles are mapped.
+    fn paint(&mut self, place: &Place, material: &Material, vertices: &mut Vertices) -> Painted {
+        let opacities = std::mem::take(&mut vertices.start.opacities);
+        let opacity = (!opacities.is_empty()).then(|| {
+            let colors = opacities.iter().map(|&opacity| [opacity; 3]).collect();
+            let grey = Primitive { colors, ..vertices.start.clone() };
+            look::unwrapped(&grey, [material.opacity; 3]).1
+        });
+        let (start, color) = look::unwrapped(&vertices.start, material.base.factor);
+        vertices.end = vertices.end.take().map(|end| look::unwrapped(&end, [1.0; 3]).0);
+        vertices.start = start;
+        let mut add = |image: image::Image| {
+            let name = place.pointer_to("attributes/COLOR_0");
+            self.desc.images.push(ImageDesc { name, image: image.into() })
+        };
+        Painted { color: add(color), opacity: opacity.map(add) }
     }
 
     /// Makes surfaces of triangles with maps between sets of texture coordinates.
@@ -392,6 +421,21 @@ impl<'s, 'a> Assembly<'s, 'a> {
         if let Some(attribute) = attributes.get("JOINTS_1") {
             let message = "more than four joints of a vertex are not followed";
             self.log.warn("not-drawn", attribute.pointer, message);
+        }
+        if let Ok(Some(colors)) = Accessor::of(&self.drawn.document, &attributes, "COLOR_0")
+            && !colors.is_float()
+            && !colors.is_normalized()
+        {
+            let message = "integers of colours are normalised, though the accessor does not say so";
+            self.log.warn("not-drawn", attributes.pointer_to("COLOR_0"), message);
+        }
+        for target in place.array("targets").unwrap_or_default() {
+            let names = target.value.as_object().into_iter().flat_map(|target| target.keys());
+            let is_drawn = |name: &String| matches!(name.as_str(), "POSITION" | "NORMAL" | "TANGENT");
+            if let Some(name) = names.into_iter().find(|name| !is_drawn(name)) {
+                let message = "colours and texture coordinates of morph targets are not drawn";
+                self.log.warn("not-drawn", target.pointer_to(name), message);
+            }
         }
         let mut missing: Vec<_> = material.textures().iter().map(|(texture, _)| texture.set).collect();
         let is_there = |wanted: usize| match wanted == set {

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use description::{
     AreaLightDesc, CoefficientsDesc, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc,
     MappingDesc, MaterialDesc, MaterialKind, MediumDesc, MediumInterface, MediumKind, SceneDesc,
-    SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
+    SpectrumDesc, SpectrumParameter, TextureDesc, TextureFilter, TextureKind, TransformDesc, UvImageDesc,
+    WrapMode,
 };
-use math::DAffine2;
+use math::{DAffine2, DVec2};
 use spectrum::{LAMBDA_MAX, LAMBDA_MIN, RgbAlbedoSpectrum, RgbColorSpace};
 
 use super::material::{AlphaMode, Color, Material, Number};
@@ -17,8 +18,8 @@ use super::texture::TextureRef;
 use crate::log::Log;
 use crate::look::{Coordinates, Principled, Surface};
 
-/// Which texture coordinates of a file the meshes of a material have. Normal maps and emission are
-/// looked up at the coordinates of the mesh; other textures have mappings from there.
+/// Which texture coordinates of a file the meshes of a material have: those of normal maps, whose
+/// directions they are, or of emission. Other textures have mappings from there.
 pub(super) fn coordinates(material: &Material) -> Coordinates {
     let normals = material.normals.as_ref().or(material.coat_normals()).map(|(texture, _)| texture);
     let emission = if material.is_unlit { &material.base } else { &material.emissive };
@@ -34,6 +35,15 @@ fn is_regular(texture: &TextureRef) -> bool {
     texture.transform.inverse().is_finite()
 }
 
+/// Images of colours of vertices, to which meshes are mapped.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Painted {
+    /// In place of the base colour.
+    pub color: Handle<ImageDesc>,
+    /// In place of opacity.
+    pub opacity: Option<Handle<ImageDesc>>,
+}
+
 /// Makes surfaces of materials.
 pub(super) struct Builder<'a> {
     pub desc: &'a mut SceneDesc,
@@ -46,7 +56,7 @@ pub(super) struct Builder<'a> {
 impl Builder<'_> {
     /// The surface of a material, and that where texture coordinates are mirrored, which is the
     /// same unless it has a normal map.
-    pub fn both(&mut self, material: &Material, colors: Option<Handle<ImageDesc>>) -> [Surface; 2] {
+    pub fn both(&mut self, material: &Material, colors: Option<Painted>) -> [Surface; 2] {
         let surface = self.surface(material, false, colors);
         let mirrored = match material.has_normal_map() {
             true => Surface { area_light: surface.area_light, ..self.surface(material, true, colors) },
@@ -56,17 +66,13 @@ impl Builder<'_> {
     }
 
     /// A surface. Where texture coordinates are mirrored, so is green of normal maps.
-    /// An image of `colors` takes the place of the base colour.
-    fn surface(
-        &mut self,
-        material: &Material,
-        is_mirrored: bool,
-        colors: Option<Handle<ImageDesc>>,
-    ) -> Surface {
+    fn surface(&mut self, material: &Material, is_mirrored: bool, colors: Option<Painted>) -> Surface {
         let coordinates = coordinates(material);
         let mut part = Part { builder: self, material, coordinates, colors };
         let alpha = part.alpha();
-        let area_light = part.area_light();
+        // What is cut out everywhere is not seen, and shines no light.
+        let is_seen = alpha.as_ref().and_then(FloatParameter::value).is_none_or(|&alpha| alpha > 0.0);
+        let area_light = if is_seen { part.area_light() } else { None };
         let (kind, tangent_rotation) = part.kind(is_mirrored);
         let media = part.media();
         let normal_map = part.normal_map(material.normals.as_ref(), is_mirrored);
@@ -93,7 +99,7 @@ struct Part<'b, 'a, 'm> {
     builder: &'b mut Builder<'a>,
     material: &'m Material,
     coordinates: Coordinates,
-    colors: Option<Handle<ImageDesc>>,
+    colors: Option<Painted>,
 }
 
 impl Part<'_, '_, '_> {
@@ -108,16 +114,27 @@ impl Part<'_, '_, '_> {
         Coordinates { set, transform: map.map_or(texture.transform, |map| texture.transform * *map) }
     }
 
+    /// From the coordinates of meshes to those of a texture.
+    fn from_mesh(&self, texture: &TextureRef) -> DAffine2 {
+        let placed = self.placed(texture);
+        match placed == self.coordinates {
+            true => DAffine2::IDENTITY,
+            false => placed.transform * self.coordinates.transform.inverse(),
+        }
+    }
+
+    /// An image over (u, v); `None` if it cannot be decoded.
+    fn uv_image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<UvImageDesc> {
+        let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
+        let columns = self.from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
+        let is_nearest = texture.filter == TextureFilter::Point;
+        Some(UvImageDesc { image, columns, wrap: texture.wrap, is_nearest })
+    }
+
     /// An image as a texture; `None` if it cannot be decoded.
     fn image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<ImageTextureDesc> {
         let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
-        if texture.wraps_unevenly {
-            self.warn(
-                &texture.pointer,
-                "a texture that is clamped in one direction only is repeated in both",
-            );
-        }
-        let from_mesh = self.placed(texture).transform * self.coordinates.transform.inverse();
+        let from_mesh = self.from_mesh(texture);
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {
             MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
@@ -175,7 +192,7 @@ impl Part<'_, '_, '_> {
 
     fn base(&mut self) -> SpectrumParameter {
         match self.colors {
-            Some(image) => self.spectrum(ImageTextureDesc::new(image)),
+            Some(painted) => self.spectrum(ImageTextureDesc::new(painted.color)),
             None => self.color(&self.material.base, [1.0; 3]),
         }
     }
@@ -189,9 +206,15 @@ impl Part<'_, '_, '_> {
         if material.alpha_mode == AlphaMode::Opaque {
             return None;
         }
-        let image = material.base.texture.as_ref().and_then(|texture| {
-            self.channel(texture, Encoding::Color, Edit::None, (ImageChannel::Alpha, material.opacity))
-        });
+        let painted = self.colors.and_then(|painted| painted.opacity);
+        let image = match painted {
+            Some(image) => {
+                Some(ImageTextureDesc { channel: Some(ImageChannel::Red), ..ImageTextureDesc::new(image) })
+            }
+            None => material.base.texture.as_ref().and_then(|texture| {
+                self.channel(texture, Encoding::Color, Edit::None, (ImageChannel::Alpha, material.opacity))
+            }),
+        };
         let opacity = self.float(image, material.opacity);
         Some(match (material.alpha_mode, opacity) {
             (AlphaMode::Mask(cutoff), FloatParameter::Value(opacity)) => {
@@ -205,14 +228,11 @@ impl Part<'_, '_, '_> {
         })
     }
 
-    fn normal_map(
-        &mut self,
-        normals: Option<&(TextureRef, f32)>,
-        is_mirrored: bool,
-    ) -> Option<Handle<ImageDesc>> {
+    fn normal_map(&mut self, normals: Option<&(TextureRef, f32)>, is_mirrored: bool) -> Option<UvImageDesc> {
         let (texture, scale) = normals?;
-        if self.placed(texture) != self.coordinates {
-            let message = "a normal map at other texture coordinates than another one is drawn at the same";
+        let [x, y] = [DVec2::X, DVec2::Y].map(|axis| self.from_mesh(texture).transform_vector2(axis));
+        if !(x.x > 0.0 && y.y > 0.0 && x.y == 0.0 && y.x == 0.0) {
+            let message = "a normal map that is turned against another one bends surfaces in its directions";
             self.warn(&texture.pointer, message);
         }
         let is_color = self.builder.pictures.image(texture, Encoding::Data)?.is_color();
@@ -220,7 +240,7 @@ impl Part<'_, '_, '_> {
             (1.0, false) if is_color => Edit::None,
             (scale, is_mirrored) => Edit::Normals([scale, if is_mirrored { -scale } else { scale }]),
         };
-        self.builder.pictures.add(texture, Encoding::Data, edit, &mut self.builder.desc.images)
+        self.uv_image(texture, Encoding::Data, edit)
     }
 
     /// What the surface emits, in cd/m²; an unlit one emits its colour.
@@ -228,10 +248,10 @@ impl Part<'_, '_, '_> {
         let material = self.material;
         let color = if material.is_unlit { &material.base } else { &material.emissive };
         let group = (!material.name.is_empty()).then(|| material.name.clone());
-        if let Some(image) = self.colors.filter(|_| material.is_unlit) {
-            let light = AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0));
-            let light =
-                AreaLightDesc { image: Some(image), two_sided: material.is_two_sided, group, ..light };
+        if let Some(painted) = self.colors.filter(|_| material.is_unlit) {
+            let mut light = AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0));
+            light.image = Some(UvImageDesc::new(painted.color, WrapMode::Clamp));
+            (light.two_sided, light.group) = (material.is_two_sided, group);
             return Some(self.builder.desc.area_lights.push(light));
         }
         let scale = color.factor.into_iter().fold(0.0, f32::max);
@@ -244,13 +264,7 @@ impl Part<'_, '_, '_> {
         if let Some(texture) = &color.texture {
             let image = self.builder.pictures.image(texture, Encoding::Color)?;
             let edit = if tint == [1.0; 3] && image.is_color() { Edit::None } else { Edit::Tint(tint) };
-            if self.placed(texture) != self.coordinates {
-                let message =
-                    "emission at other texture coordinates than those of the normal map is drawn at the same";
-                self.warn(&texture.pointer, message);
-            }
-            light.image =
-                self.builder.pictures.add(texture, Encoding::Color, edit, &mut self.builder.desc.images);
+            light.image = self.uv_image(texture, Encoding::Color, edit);
         }
         Some(self.builder.desc.area_lights.push(light))
     }

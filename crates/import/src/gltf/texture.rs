@@ -1,10 +1,11 @@
 //! References of materials to textures: the image, how it is sampled, and at which coordinates.
 
-use description::{TextureFilter, WrapMode};
+use description::{EdgeMode, TextureFilter, WrapMode};
 use math::{DAffine2, DMat2, DVec2};
 
 use super::document::Document;
 use super::json::{Place, Result};
+use crate::log::Log;
 
 /// A texture as one use of a material has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,14 +23,13 @@ pub(super) struct TextureRef {
     pub wrap: WrapMode,
     /// How texels are filtered.
     pub filter: TextureFilter,
-    /// Whether one axis is repeated and the other clamped, which is not drawn.
-    pub wraps_unevenly: bool,
     /// The place of the reference.
     pub pointer: String,
 }
 
 impl TextureRef {
-    /// The texture that a member of an object refers to; `None` if it is absent.
+    /// The texture that a member of an object refers to; `None` if it is absent, or has no image
+    /// that is read.
     pub fn parse(document: &Document, place: &Place, key: &str) -> Result<Option<Self>> {
         let Some(info) = place.object(key)? else { return Ok(None) };
         let Some(index) = document.index(&info, "index", "textures")? else {
@@ -47,24 +47,30 @@ impl TextureRef {
             let scale = DMat2::from_diagonal(DVec2::new(width, height));
             transform = DAffine2::from_mat2_translation(turn * scale, DVec2::new(x, y));
         }
+        if !transform.is_finite() || transform.to_cols_array().iter().any(|number| number.abs() > 1e30) {
+            return Err(info.invalid("the numbers of the transform are too large"));
+        }
         let texture = item(document, "textures", index, &info)?;
+        let Some(image) = image(document, &texture)? else { return Ok(None) };
         let sampler = match document.index(&texture, "sampler", "samplers")? {
             Some(index) => Sampler::parse(&item(document, "samplers", index, &texture)?)?,
             None => Sampler { wraps: [REPEAT; 2], is_nearest: false },
         };
         let mirrored = sampler.wraps.map(|wrap| wrap == MIRRORED_REPEAT);
-        let clamps = sampler.wraps.map(|wrap| wrap == CLAMP_TO_EDGE);
+        let edges = sampler.wraps.map(|wrap| match wrap {
+            CLAMP_TO_EDGE => EdgeMode::Clamp,
+            _ => EdgeMode::Repeat,
+        });
         // v is up from here on.
         let flip = DAffine2::from_scale_angle_translation(DVec2::new(1.0, -1.0), 0.0, DVec2::Y);
         let scale = DVec2::new(if mirrored[0] { 0.5 } else { 1.0 }, if mirrored[1] { 0.5 } else { 1.0 });
         Ok(Some(Self {
-            image: image(document, &texture)?,
+            image,
             set,
             transform: DAffine2::from_scale(scale) * flip * transform * flip,
             mirrored,
-            wrap: if clamps == [true; 2] { WrapMode::Clamp } else { WrapMode::Repeat },
+            wrap: WrapMode::of_axes(edges),
             filter: if sampler.is_nearest { TextureFilter::Point } else { TextureFilter::Bilinear },
-            wraps_unevenly: clamps[0] != clamps[1],
             pointer: info.pointer,
         }))
     }
@@ -74,19 +80,35 @@ fn item<'a>(document: &Document<'a>, array: &str, index: usize, user: &Place) ->
     document.item(array, index).ok_or_else(|| user.invalid(format!("/{array}/{index} is no object")))
 }
 
-/// The image of a texture: of those in several formats the one that is read.
-fn image(document: &Document, texture: &Place) -> Result<usize> {
+/// Says which textures have no image that is read, so that they are left out.
+pub(super) fn check(document: &Document, log: &mut Log) {
+    for texture in document.items("textures") {
+        // What is wrong with a reference is reported by those who use it.
+        let Ok(None) = image(document, &texture) else { continue };
+        let names = texture.get("extensions").and_then(|extensions| extensions.value.as_object());
+        let names: Vec<_> = names.into_iter().flat_map(|names| names.keys()).map(String::as_str).collect();
+        let reason = match names.as_slice() {
+            [] => "it has no image".to_owned(),
+            names => format!("its image is in `{}`, which is not read", names.join("`, `")),
+        };
+        let message = format!("this texture is left out, and its factor is drawn alone: {reason}");
+        log.warn("not-drawn", texture.pointer, message);
+    }
+}
+
+/// The image of a texture: of those in several formats the one that is read; `None` if there is
+/// none.
+fn image(document: &Document, texture: &Place) -> Result<Option<usize>> {
     if let Some(webp) = texture.extension("EXT_texture_webp")?
         && let Some(index) = document.index(&webp, "source", "images")?
     {
-        return Ok(index);
+        return Ok(Some(index));
     }
     if let Some(index) = document.index(texture, "source", "images")? {
-        return Ok(index);
+        return Ok(Some(index));
     }
     let packed = texture.extension("KHR_texture_basisu")?;
-    let index = packed.map_or(Ok(None), |packed| document.index(&packed, "source", "images"))?;
-    index.ok_or_else(|| texture.invalid("`source` is missing"))
+    packed.map_or(Ok(None), |packed| document.index(&packed, "source", "images"))
 }
 
 const CLAMP_TO_EDGE: usize = 33071;

@@ -16,6 +16,8 @@ pub(crate) struct Primitive {
     pub other_uvs: Vec<(usize, Vec<Point2>)>,
     /// Linear colours.
     pub colors: Vec<[f32; 3]>,
+    /// Opacities.
+    pub opacities: Vec<f32>,
     /// The joints that move each vertex, with their weights.
     pub influences: Vec<[(u32, f32); 4]>,
     /// What is added to positions and normals with the weight of each target.

@@ -34,9 +34,10 @@ impl Look {
         let primitive = &vertices.start;
         let Some((_, [surface, _])) = self.parts.first() else { return Vec::new() };
         let uvs = mapped(&primitive.uvs, &surface.coordinates);
+        // Parts have the same image, which may be mapped to each in another way.
         let emission = surface.area_light.and_then(|light| desc.area_lights[light].image);
-        let emitting =
-            emission.filter(|_| !uvs.is_empty()).map(|image| Emitting::of(&desc.images[image].image));
+        let emission = emission.filter(|_| !uvs.is_empty());
+        let emitting = emission.map(|map| (Emitting::of(&desc.images[map.image].image), desc));
         let shared = self.mesh(vertices, uvs.clone(), surface.tangent_rotation);
         let parts = self.parts.iter();
         parts.flat_map(|part| self.part(part, primitive, &uvs, emitting.as_ref(), &shared)).collect()
@@ -48,15 +49,17 @@ impl Look {
         (triangles, surfaces): &(Vec<[u32; 3]>, [Surface; 2]),
         primitive: &Primitive,
         uvs: &[Point2],
-        emitting: Option<&Emitting>,
+        emitting: Option<&(Emitting, &SceneDesc)>,
         shared: &MeshDesc,
     ) -> Vec<ShapeDesc> {
+        let emitting = emitting
+            .and_then(|(emitting, desc)| Some((emitting, desc.area_lights[surfaces[0].area_light?].image?)));
         let mut parts = [const { Vec::new() }; 4];
         for triangle in triangles {
             let corners = (!uvs.is_empty()).then(|| triangle.map(|vertex| uvs[vertex as usize]));
             let is_mirrored = self.has_normals && is_mirrored(primitive, triangle, corners);
-            let is_dark = match (emitting, corners) {
-                (Some(emitting), Some(corners)) => !emitting.is_met(corners),
+            let is_dark = match (&emitting, corners) {
+                (Some((emitting, map)), Some(corners)) => !emitting.is_met(map, corners),
                 _ => false,
             };
             parts[usize::from(is_mirrored) + 2 * usize::from(is_dark)].push(*triangle);

@@ -11,10 +11,11 @@ use description::{Diagnostic, FileId, SourceMap, Span, Spanned};
 
 use super::names;
 use super::parameter::{is_directive, skip_to_directive};
+use super::search::find;
 use super::state::{Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
 use super::statement::{ObjectStatement, Statements};
 use super::token::{Token, TokenKind, Tokens};
-use crate::assets::{AssetSource, read_unpacked, resolve};
+use crate::assets::{AssetSource, read_unpacked};
 use crate::foreign;
 use crate::number;
 use crate::report::Report;
@@ -101,7 +102,9 @@ pub(crate) struct Interpreter<'a> {
 
 impl<'a> Interpreter<'a> {
     const DEEPEST_INCLUDE: usize = 64;
-    const MOST_INCLUDES: usize = 10_000;
+    const MOST_FILES: usize = 10_000;
+    /// Files may be included again and again, but a few that double each other would not end.
+    const MOST_INCLUDES: usize = 1_000_000;
     const DEEPEST_BLOCK: usize = 10_000;
 
     pub(crate) fn new(assets: &'a dyn AssetSource) -> Self {
@@ -333,12 +336,12 @@ impl<'a> Interpreter<'a> {
         }
         self.included += 1;
         if self.included > Self::MOST_INCLUDES {
-            let message = format!("more than {} files are included", Self::MOST_INCLUDES);
+            let message = format!("files are included more than {} times", Self::MOST_INCLUDES);
             self.report.error("include-limit", message, name.span);
             return None;
         }
         let naming_file = self.sources.name(name.span.file);
-        let path = resolve(self.assets, &name.value, naming_file, self.sources.name(FileId(0)));
+        let path = find(self.assets, &name.value, naming_file, self.sources.name(FileId(0)));
         let file = self.open(&path, name.span)?;
         if let Some(first) = self.reading.iter().position(|&reading| reading == file) {
             let cycle: Vec<_> =
@@ -353,6 +356,11 @@ impl<'a> Interpreter<'a> {
     fn open(&mut self, path: &Path, span: Span) -> Option<FileId> {
         if let Some(&file) = self.files.get(path) {
             return Some(file);
+        }
+        if self.files.len() > Self::MOST_FILES {
+            let message = format!("more than {} different files are included", Self::MOST_FILES);
+            self.report.error("include-limit", message, span);
+            return None;
         }
         let shown = path.to_string_lossy().into_owned();
         match read_unpacked(self.assets, path) {
@@ -383,7 +391,7 @@ impl<'a> Interpreter<'a> {
             return self.unexpected(tokens, token, &format!("{what} in quotes"));
         }
         tokens.next();
-        Ok(Spanned::new(tokens.string(token), tokens.span(token)))
+        Ok(Spanned::new(tokens.string(token, &mut self.report), tokens.span(token)))
     }
 
     /// Takes numbers, with or without brackets around them.

@@ -10,6 +10,7 @@ mod declarations;
 mod interpreter;
 mod names;
 mod parameter;
+mod search;
 mod state;
 mod statement;
 mod token;
@@ -24,6 +25,7 @@ use crate::assets::AssetSource;
 
 /// Reads a scene.
 pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
+    let assets = &search::SceneFiles::new(assets, path);
     let mut interpreter = interpreter::Interpreter::new(assets);
     interpreter.run(path);
     let (report, sources, statements) = (interpreter.report, interpreter.sources, interpreter.statements);

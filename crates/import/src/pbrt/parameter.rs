@@ -187,7 +187,7 @@ pub(crate) fn parameter(
         report.error("unterminated-string", "this string has no closing quote on its line", span);
         return None;
     }
-    let text = tokens.string(declaration);
+    let text = tokens.string(declaration, report);
     let mut words = text.split_ascii_whitespace();
     let (Some(type_name), Some(name), None) = (words.next(), words.next(), words.next()) else {
         report.push(
@@ -367,7 +367,7 @@ fn push_value(tokens: &Tokens, token: Token, values: &mut Read, report: &mut Rep
         Read::Strings(values) => {
             let quoted = token.kind == TokenKind::Quoted;
             if quoted {
-                values.push(Spanned::new(tokens.string(token), tokens.span(token)));
+                values.push(Spanned::new(tokens.string(token, report), tokens.span(token)));
             }
             quoted
         }

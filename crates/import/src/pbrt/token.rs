@@ -4,7 +4,9 @@
 //! numbers, `true`, `false`). A `#` outside a string begins a comment that ends with its line. The
 //! tokenizer works on bytes and allocates nothing: comments may be in any encoding.
 
-use description::{FileId, Span};
+use description::{Diagnostic, FileId, Span};
+
+use crate::report::Report;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,27 +111,38 @@ impl<'a> Tokens<'a> {
         Span::new(self.file, token.start as u32, token.end as u32)
     }
 
-    /// The content of a quoted string, with its escapes resolved.
-    pub(crate) fn string(&self, token: Token) -> String {
+    /// The content of a quoted string, with its escapes resolved. Those that the format does not
+    /// have are reported, and kept.
+    pub(crate) fn string(&self, token: Token, report: &mut Report) -> String {
         let inside = &self.text[token.start + 1..token.end - 1];
         if !inside.contains(&b'\\') {
             return String::from_utf8_lossy(inside).into_owned();
         }
         let mut unescaped = Vec::with_capacity(inside.len());
-        let mut bytes = inside.iter().copied();
-        while let Some(byte) = bytes.next() {
-            unescaped.push(match byte {
-                b'\\' => match bytes.next() {
-                    Some(b'n') => b'\n',
-                    Some(b't') => b'\t',
-                    Some(b'r') => b'\r',
-                    Some(b'b') => 8,
-                    Some(b'f') => 12,
-                    Some(other) => other,
-                    None => b'\\',
-                },
-                byte => byte,
-            });
+        let mut bytes = inside.iter().copied().enumerate();
+        while let Some((at, byte)) = bytes.next() {
+            if byte != b'\\' {
+                unescaped.push(byte);
+                continue;
+            }
+            match bytes.next() {
+                Some((_, b'n')) => unescaped.push(b'\n'),
+                Some((_, b't')) => unescaped.push(b'\t'),
+                Some((_, b'r')) => unescaped.push(b'\r'),
+                Some((_, b'b')) => unescaped.push(8),
+                Some((_, b'f')) => unescaped.push(12),
+                Some((_, known @ (b'\\' | b'\'' | b'"'))) => unescaped.push(known),
+                other => {
+                    let at = (token.start + 1 + at) as u32;
+                    let message = "this backslash begins no escape of the format";
+                    report.push(
+                        Diagnostic::error("unknown-escape", message, Span::new(self.file, at, at + 1))
+                            .with_help("write `/` between folders, and `\\\\` for a backslash"),
+                    );
+                    unescaped.push(b'\\');
+                    unescaped.extend(other.map(|(_, byte)| byte));
+                }
+            }
         }
         String::from_utf8_lossy(&unescaped).into_owned()
     }
@@ -178,9 +191,16 @@ mod tests {
 
     #[test]
     fn escapes_are_undone() {
-        let text = br#""a\"b\\c\nd""#;
-        let mut tokens = Tokens::new(text, FileId(0));
-        let token = tokens.next();
-        assert_eq!(tokens.string(token), "a\"b\\c\nd");
+        let string = |text: &[u8]| {
+            let (mut tokens, mut report) = (Tokens::new(text, FileId(0)), Report::default());
+            let token = tokens.next();
+            (tokens.string(token, &mut report), report.finish())
+        };
+        let (text, messages) = string(br#""a\"b\\c\nd\'\b\f\r\t""#);
+        assert_eq!((text.as_str(), messages.len()), ("a\"b\\c\nd'\u{8}\u{c}\r\t", 0));
+        // As in a path of Windows.
+        let (text, messages) = string(br#""textures\metal.png""#);
+        assert_eq!((text.as_str(), messages.len()), ("textures\\metal.png", 1));
+        assert_eq!((messages[0].code, messages[0].span().start), ("unknown-escape", 9));
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use description::{
     AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, MeshDesc, SceneDesc, ShapeDesc, ShapeKind,
-    SpectrumDesc, TransformDesc,
+    SpectrumDesc, TransformDesc, UvImageDesc, WrapMode,
 };
 use image::Image;
 use math::{DAffine2, DMat4, DVec3, Point2, Vec3};
@@ -144,6 +144,7 @@ pub(super) fn read(
             }
             let image = texture.filter(|_| kind == "RectLight");
             let image = image.and_then(|texture| materials.light_image(&texture, desc, log));
+            let image = image.map(|image| UvImageDesc::new(image, WrapMode::Clamp));
             let area_light = AreaLightDesc {
                 image,
                 scale: scale as f32,
@@ -255,7 +256,6 @@ fn texture(prim: &Prim) -> Result<Option<Texture>> {
         transform: DAffine2::IDENTITY,
         mirrored: [false; 2],
         wrap: description::WrapMode::Clamp,
-        wraps_unevenly: false,
         place: prim.path().to_owned(),
     }))
 }

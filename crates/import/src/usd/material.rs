@@ -4,8 +4,9 @@
 use std::collections::HashMap;
 
 use description::{
-    AreaLightDesc, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc, MappingDesc,
+    AreaLightDesc, EdgeMode, FloatParameter, Handle, ImageChannel, ImageDesc, ImageTextureDesc, MappingDesc,
     MaterialDesc, MaterialKind, SceneDesc, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind,
+    UvImageDesc, WrapMode,
 };
 use math::DAffine2;
 
@@ -181,7 +182,13 @@ impl Builder<'_, '_> {
                 true => Edit::Normals([2.0; 3], [-1.0; 3], true),
                 false => Edit::Normals(scale, bias, is_mirrored),
             };
-            self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))
+            let map = self.uv_image(texture, edit)?;
+            // Black is no normal.
+            let is_black = match map.wrap {
+                WrapMode::Axes(axes) => axes.contains(&EdgeMode::Black),
+                wrap => wrap == WrapMode::Black,
+            };
+            Some(UvImageDesc { wrap: if is_black { WrapMode::Repeat } else { map.wrap }, ..map })
         });
         let coordinates = self.coordinates;
         let surfaces = normal_maps.map(|normal_map| {
@@ -242,13 +249,25 @@ impl Builder<'_, '_> {
         self.pictures.image(texture, self.files, self.log)
     }
 
+    /// From the coordinates of meshes to those of a texture.
+    fn from_mesh(&self, texture: &Texture) -> DAffine2 {
+        match texture.transform == self.coordinates.transform {
+            true => DAffine2::IDENTITY,
+            false => texture.transform * self.coordinates.transform.inverse(),
+        }
+    }
+
+    /// An image over (u, v).
+    fn uv_image(&mut self, texture: &Texture, edit: Edit) -> Option<UvImageDesc> {
+        let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
+        let columns = self.from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
+        Some(UvImageDesc { image, columns, wrap: texture.wrap, is_nearest: false })
+    }
+
     /// An image as a texture.
     fn texture(&mut self, texture: &Texture, edit: Edit) -> Option<ImageTextureDesc> {
         let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
-        if texture.wraps_unevenly {
-            self.warn("a texture that goes on differently in its two directions goes on as in the first");
-        }
-        let from_mesh = texture.transform * self.coordinates.transform.inverse();
+        let from_mesh = self.from_mesh(texture);
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {
             MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
@@ -425,7 +444,7 @@ impl Builder<'_, '_> {
             let is_even = bias == [0.0; 3] && scale == [scale[0]; 3] && scale[0] >= 0.0;
             let edit = if is_even { Edit::None } else { Edit::Color(scale, bias) };
             light.scale = if is_even { scale[0] as f32 } else { 1.0 };
-            light.image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log));
+            light.image = self.uv_image(texture, edit);
         }
         (light.scale > 0.0).then(|| self.desc.area_lights.push(light))
     }

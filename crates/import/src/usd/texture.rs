@@ -1,7 +1,7 @@
 //! Textures of shading networks: the image, which numbers of it are meant, and at which
 //! coordinates.
 
-use description::WrapMode;
+use description::{EdgeMode, WrapMode};
 use math::{DAffine2, DMat2, DVec2};
 
 use super::stage::Prim;
@@ -37,8 +37,6 @@ pub(super) struct Texture {
     /// Whether the image is followed by its mirror image, to the right and above.
     pub mirrored: [bool; 2],
     pub wrap: WrapMode,
-    /// Whether the two directions go on differently beyond the image, which is not drawn.
-    pub wraps_unevenly: bool,
     /// The path of the shader.
     pub place: String,
 }
@@ -117,11 +115,11 @@ impl Texture {
         };
         let wraps = [word("wrapS")?, word("wrapT")?].map(|word| word.unwrap_or_default());
         let mirrored = [0, 1].map(|axis: usize| wraps[axis] == "mirror");
-        let wrap = |word: &str| match word {
-            "repeat" | "mirror" => WrapMode::Repeat,
-            "clamp" => WrapMode::Clamp,
-            _ => WrapMode::Black,
-        };
+        let edges = [0, 1].map(|axis: usize| match wraps[axis].as_str() {
+            "repeat" | "mirror" => EdgeMode::Repeat,
+            "clamp" => EdgeMode::Clamp,
+            _ => EdgeMode::Black,
+        });
         let (prim, property) = end(node, "inputs:file")?;
         let file = match prim.file(&property)? {
             Some((Some(found), _)) => Ok(found),
@@ -145,8 +143,7 @@ impl Texture {
             set,
             transform: DAffine2::from_scale(DVec2::from(scale)) * transform,
             mirrored,
-            wrap: wrap(&wraps[0]),
-            wraps_unevenly: wrap(&wraps[0]) != wrap(&wraps[1]),
+            wrap: WrapMode::of_axes(edges),
             place: node.path().to_owned(),
         })
     }

@@ -14,6 +14,44 @@ fn read_with(assets: MemoryAssets, text: &str) -> Imported {
     imported
 }
 
+/// Includes, meshes, images and spectra are looked for beside the first file, then in the current
+/// folder, and at last beside the file that names them.
+#[test]
+fn files_are_looked_for_where_pbrt_does() {
+    const QUAD: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+    let part = r#"Include "camera.pbrt" Shape "plymesh" "string filename" "a.ply"
+        Texture "t" "spectrum" "imagemap" "string filename" "a.pfm"
+        LightSource "point" "spectrum I" "a.spd""#;
+    let pixel = [b"Pf\n1 1\n-1\n".as_slice(), &1.0_f32.to_le_bytes()].concat();
+    let files: [(&str, Vec<u8>); 4] = [
+        ("camera.pbrt", b"Shape \"sphere\"".to_vec()),
+        ("a.ply", QUAD.into()),
+        ("a.pfm", pixel),
+        ("a.spd", b"400 1 700 1".to_vec()),
+    ];
+    // Of two places where the files are, the first is right; in the second they are damaged.
+    for places in [["s/", ""], ["s/", "s/parts/"], ["", "s/parts/"], ["s/parts/", "elsewhere/"]] {
+        let assets = MemoryAssets::default()
+            .with("s/scene.pbrt", "WorldBegin Include \"parts/list.pbrt\"")
+            .with("s/parts/list.pbrt", part);
+        let assets = files.iter().fold(assets, |assets, (name, content)| {
+            let [right, wrong] = places.map(|folder| format!("{folder}{name}"));
+            assets.with(right, content.clone()).with(wrong, "wrong")
+        });
+        let imported = import("s/scene.pbrt", &assets);
+        assert!(!imported.has_errors(), "{places:?}\n{:#?}", imported.diagnostics);
+        assert_eq!(imported.desc.shapes.len(), 2);
+    }
+    // Where a file is missing, all places are told.
+    let assets = MemoryAssets::default().with("s/scene.pbrt", "Include \"x/none.pbrt\" WorldBegin");
+    let message = import("s/scene.pbrt", &assets).diagnostics[0].message.clone();
+    let expected =
+        "cannot read `s/x/none.pbrt`: no such file; nor is there `x/none.pbrt` in the current folder";
+    assert!(message.starts_with(expected), "{message}");
+}
+
 fn read(text: &str) -> SceneDesc {
     read_with(MemoryAssets::default(), text).desc
 }

@@ -5,7 +5,12 @@ use description::Severity;
 
 /// Imports a text and shows its messages as `line:column severity[code] message (help)`.
 fn messages(text: &str) -> Vec<String> {
-    let assets = MemoryAssets::default()
+    messages_among(MemoryAssets::default(), text)
+}
+
+/// [`messages`] beside other files.
+fn messages_among(assets: MemoryAssets, text: &str) -> Vec<String> {
+    let assets = assets
         .with("scene.pbrt", text)
         .with("self.pbrt", "Include \"self.pbrt\"")
         .with("a.pbrt", "Include \"b.pbrt\"")
@@ -400,13 +405,49 @@ fn all_errors_of_a_scene_are_found_in_one_run() {
 
 #[test]
 fn too_many_included_files_are_cut_off() {
-    for (file, message) in [("deep0", "more than 64 deep"), ("wide", "more than 10000 files are included")] {
-        let found = messages(&format!("Include \"{file}.pbrt\"\nWorldBegin"));
+    for (text, message) in [
+        (r#"Include "deep0.pbrt""#.to_owned(), "more than 64 deep"),
+        (r#"Include "double0.pbrt""#.to_owned(), "files are included more than 1000000 times"),
+        (
+            (0..=10_000).map(|i| format!("Include \"part{i}.pbrt\" ")).collect(),
+            "more than 10000 different files",
+        ),
+    ] {
+        let double = |i: u32| format!("Include \"double{0}.pbrt\" ", i + 1).repeat(2);
+        let assets = (0..40).map(|i| (format!("double{i}.pbrt"), double(i)));
+        let assets = assets.chain([("double40.pbrt".to_owned(), String::new())]);
+        let assets = assets.chain((0..=10_000).map(|i| (format!("part{i}.pbrt"), String::new())));
+        let assets = assets.fold(MemoryAssets::default(), |all, (name, text)| all.with(name, text));
+        let found = messages_among(assets, &format!("{text}\nWorldBegin"));
         assert!(
             found.iter().any(|found| found.contains("[include-limit]") && found.contains(message)),
             "{found:#?}"
         );
     }
+}
+
+/// Backslashes of Windows are escapes of the format, or errors where they begin.
+#[test]
+fn backslashes_that_are_no_escapes_are_errors_at_their_place() {
+    let expected = "error[unknown-escape] this backslash begins no escape of the format \
+        (write `/` between folders, and `\\\\` for a backslash)";
+    let found = messages("Include \"empty\\mpty.pbrt\"\nWorldBegin");
+    assert!(found.contains(&format!("1:15 {expected}")), "{found:?}");
+    let found = messages("WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"a\\.pfm\"");
+    assert!(found.contains(&format!("2:52 {expected}")), "{found:?}");
+    // What is an escape is told where the file is not found.
+    let found = messages("Include \"parts\\new.pbrt\"\nWorldBegin");
+    assert!(found[0].contains("its name has escapes such as `\\n`: write `/` between folders"), "{found:?}");
+    // A backslash that is written as one is that of a path.
+    let assets = MemoryAssets::default().with("parts/metal.pbrt", "");
+    assert_eq!(messages_among(assets, "Include \"parts\\\\metal.pbrt\"\nWorldBegin"), [""; 0]);
+}
+
+#[test]
+fn the_same_file_may_be_included_many_times() {
+    let found =
+        messages(&format!("{}\nWorldBegin", "Include \"empty.pbrt\" Include \"wide.pbrt\"\n".repeat(2)));
+    assert_eq!(found, [""; 0]);
 }
 
 #[test]

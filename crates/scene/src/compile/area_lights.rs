@@ -10,7 +10,7 @@ use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, Scene
 use crate::material::Material;
 use crate::medium::MediumInterface;
 use crate::scene::InstanceEntry;
-use crate::texture::FloatTextureId;
+use crate::texture::{FloatTextureId, UvLookup};
 use description::{AreaLightDesc, MaterialKind, Origin, ShapeDesc, Span, Stated};
 use geometry::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, World};
 
@@ -87,10 +87,11 @@ impl Compiler<'_> {
         self.check_brightness(origin, &[("scale", Some(desc.scale)), ("power", desc.power)]);
         let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
         let mut image = None;
-        if let Some(handle) = desc.image {
-            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
+        if let Some(map) = desc.image {
+            let span = origin.parameter("filename");
+            let (pixels, scale) = self.emission_image(map.image, desc.scale, span)?;
             radiance.scale = scale;
-            image = Some(pixels);
+            image = Some((pixels, UvLookup::new(&map)));
         }
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided })
     }

@@ -7,12 +7,12 @@ use crate::material::{
     HairMaterial, Material, MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap,
     OpenPbrMaterial, Roughness, SubsurfaceMaterial, ThinDielectricMaterial,
 };
-use crate::texture::{SpectrumType, compile_spectrum};
+use crate::texture::{SpectrumType, UvLookup, compile_spectrum};
 use crate::traits::Occurrence;
 use description::{
-    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, ImageDesc, LayersDesc,
-    MaterialDesc, MaterialKind, OpenPbrDesc, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter,
-    SubsurfaceScattering,
+    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc,
+    MaterialKind, OpenPbrDesc, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    UvImageDesc,
 };
 use scattering::inner_reflectance;
 use spectrum::Spectrum;
@@ -92,18 +92,14 @@ impl Compiler<'_> {
         MaterialEntry { material, normal_map, bump_map, span: origin.span }
     }
 
-    fn normal_map(
-        &mut self,
-        image: Option<Handle<ImageDesc>>,
-        name: &str,
-        origin: &Origin,
-    ) -> Option<NormalMap> {
-        let image = self.desc.images[image?].image.clone();
+    fn normal_map(&mut self, map: Option<UvImageDesc>, name: &str, origin: &Origin) -> Option<NormalMap> {
+        let map = map?;
+        let image = self.desc.images[map.image].image.clone();
         if !image.is_color() {
             self.error("image-channels", "a normal map needs red, green and blue", origin.parameter(name));
             return None;
         }
-        Some(NormalMap { image })
+        Some(NormalMap { image, lookup: UvLookup::new(&map) })
     }
 
     fn material_kind(&mut self, kind: &MaterialKind, origin: &Origin) -> Material {

@@ -18,8 +18,7 @@ use super::{
 };
 use crate::texture::{FloatTextureId, TextureContext};
 use geometry::{GeometryId, InstancePath, ShapeSample, World};
-use image::WrapMode;
-use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
+use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vector3};
 use sampling::{hash_float, warp};
 use spectrum::{Rgb, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -82,7 +81,7 @@ impl AreaLight {
         let emission = part.emission(self.emission);
         match &emission.image {
             None => emission.radiance.spectrum.sample(lambda),
-            Some(image) => {
+            Some((image, _)) => {
                 let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
                 for rgb in image.pixels() {
                     sum += image.sample(rgb, lambda);
@@ -137,10 +136,7 @@ impl LightModel for AreaLight {
         }
         let spectrum = match &emission.image {
             None => emission.radiance.spectrum.sample(lambda),
-            Some(image) => {
-                let st = Vec2::new(uv.x, 1.0 - uv.y);
-                image.sample(Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)), lambda)
-            }
+            Some((image, lookup)) => image.sample(Rgb::from(lookup.rgb(&image.image, uv)), lambda),
         };
         spectrum * self.scale(part)
     }
@@ -235,7 +231,7 @@ impl LightModel for AreaLight {
         let (emission, scale) = (part.emission(self.emission), self.scale(part));
         let peak = match &emission.image {
             None => emission.radiance.spectrum.max_value() * scale,
-            Some(image) => image.mean() * scale,
+            Some((image, _)) => image.mean() * scale,
         };
         let normals = if self.is_moving(part.world()) {
             DirectionCone::ENTIRE_SPHERE

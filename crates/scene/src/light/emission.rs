@@ -1,5 +1,6 @@
 //! Emission of lights: a spectrum and its scale; on surfaces, also an image.
 
+use crate::texture::UvLookup;
 use image::Image;
 use lanes::Real;
 use math::{Normal3, Vector3};
@@ -36,7 +37,7 @@ pub struct AreaEmission {
     /// Radiance; with an image, only its scale is used.
     pub radiance: Emission,
     /// Colours over (u, v).
-    pub image: Option<EmissionImage>,
+    pub image: Option<(EmissionImage, UvLookup)>,
     /// Whether the side opposite to the normal emits, too.
     pub two_sided: bool,
 }
@@ -104,7 +105,7 @@ impl AreaEmission {
     /// The scale with which a primitive of `area` emits `power`; 0 where it cannot emit.
     pub fn scale_for_power(&self, power: f32, area: f32) -> f32 {
         let sides = if self.two_sided { 2.0 } else { 1.0 };
-        let mean = self.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
+        let mean = self.image.as_ref().map_or(1.0, |(image, _)| image.mean_luminance());
         let unscaled = mean * sides * area * PI;
         self.radiance.scale * if unscaled > 0.0 { power / unscaled } else { 0.0 }
     }

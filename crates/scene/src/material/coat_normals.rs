@@ -15,7 +15,7 @@ pub struct CoatNormals {
 impl CoatNormals {
     /// `None` if both have the same normals.
     pub fn new(coat: Option<NormalMap>, base: Option<NormalMap>) -> Option<Self> {
-        let image = |map: &Option<NormalMap>| map.as_ref().map(|map| Arc::as_ptr(&map.image));
+        let image = |map: &Option<NormalMap>| map.as_ref().map(|map| (Arc::as_ptr(&map.image), map.lookup));
         (image(&coat) != image(&base)).then_some(Self { coat, base })
     }
 
@@ -50,13 +50,14 @@ impl CoatNormals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::Image;
+    use crate::texture::UvLookup;
+    use image::{Image, WrapMode};
 
     /// A map of one normal.
     fn map(normal: Vec3) -> Option<NormalMap> {
         let pixel = normal.to_array().map(|v| 0.5 * v + 0.5);
         let image = Image::from_fn(1, 1, ["R", "G", "B"], |_, _| pixel);
-        Some(NormalMap { image: Arc::new(image) })
+        Some(NormalMap { image: Arc::new(image), lookup: UvLookup::at_uv(WrapMode::Repeat) })
     }
 
     #[test]

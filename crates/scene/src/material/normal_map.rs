@@ -4,17 +4,20 @@
 //! The shading frame is rotated to the new normal; its tangents keep their lengths. Sources: [Pharr
 //! 2023 §10.5.2].
 
+use crate::texture::UvLookup;
 use geometry::{Shading, SurfacePoint};
-use image::{Image, WrapMode};
+use image::Image;
 use lanes::Real;
-use math::{Frame, Point2, Vec2, Vec3, Vector3, face_forward};
+use math::{Frame, Point2, Vec3, Vector3, face_forward};
 use std::sync::Arc;
 
 /// A tangent-space normal map.
 #[derive(Clone, Debug)]
 pub struct NormalMap {
-    /// The image, in linear encoding; v = 0 is its bottom row.
+    /// The image, in linear encoding.
     pub image: Arc<Image>,
+    /// Where it is looked up.
+    pub lookup: UvLookup,
 }
 
 impl NormalMap {
@@ -22,7 +25,7 @@ impl NormalMap {
     #[inline(always)]
     pub fn normal<R: Real>(&self, uv: Point2<R>) -> Vector3<R> {
         let (one, two) = (R::one(), R::splat(2.0));
-        let [r, g, b] = self.image.bilerp_rgb(Vec2::new(uv.x, one - uv.y), WrapMode::Repeat);
+        let [r, g, b] = self.lookup.rgb(&self.image, uv);
         let (n, is_regular) = Vec3::new(two * r - one, two * g - one, two * b - one).normalize_masked();
         Vec3::select(is_regular, n, Vec3::broadcast(Vec3::Z))
     }

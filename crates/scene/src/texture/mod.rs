@@ -44,6 +44,7 @@ mod pyramids;
 mod spectrum_type;
 #[cfg(test)]
 mod tests;
+mod uv_lookup;
 
 pub use compile::TextureCompiler;
 pub use context::TextureContext;
@@ -55,6 +56,7 @@ pub use marble::Marble;
 pub(crate) use noise::noise;
 pub use program::{Code, MAX_SLOTS, Operation, Program, Textures};
 pub use spectrum_type::{SpectrumType, color_space, compile_spectrum};
+pub use uv_lookup::UvLookup;
 
 /// Index of the program of a texture of numbers in [`Textures::programs`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

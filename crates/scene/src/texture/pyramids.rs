@@ -1,9 +1,11 @@
 //! The image pyramids of a scene, each built once.
 
 use description::{Arena, ImageChannel, ImageDesc, ImageTextureDesc, TextureFilter};
-use image::{Image, ImageError, Pixels, Pyramid, WrapMode};
+use image::{Image, ImageError, Pixels, Pyramid};
 use std::collections::HashMap;
 use std::sync::Arc;
+
+use super::uv_lookup::wrap_mode;
 
 /// What a pyramid depends on: the image, the wrap mode and, for numbers, the channel.
 type Key = (usize, description::WrapMode, Option<NumberSource>);
@@ -52,14 +54,8 @@ impl<'a> Pyramids<'a> {
             Some(numbers) => numbers.extract(image)?,
             None => image,
         };
-        let wrap = match texture.wrap {
-            description::WrapMode::Repeat => WrapMode::Repeat,
-            description::WrapMode::Black => WrapMode::Black,
-            description::WrapMode::Clamp => WrapMode::Clamp,
-            description::WrapMode::OctahedralSphere => WrapMode::OctahedralSphere,
-        };
         let index = pyramids.len() as u32;
-        pyramids.push(Arc::new(Pyramid::new(image, wrap)?));
+        pyramids.push(Arc::new(Pyramid::new(image, wrap_mode(texture.wrap))?));
         self.made.insert(key, index);
         Ok(index)
     }

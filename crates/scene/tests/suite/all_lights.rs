@@ -5,7 +5,7 @@ use crate::common::lights::*;
 use crate::common::*;
 use alhazen_scene::Interfaces;
 use alhazen_scene::light::{LightId, LightSampleContext};
-use description::{SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
+use description::{EdgeMode, SceneDesc, ShapeDesc, ShapeKind, TransformDesc, UvImageDesc, WrapMode};
 use image::Projection;
 use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
@@ -214,7 +214,7 @@ fn emission_images_are_upright() {
     let red = |x, y| if (x, y) == (0, 1) { [1.0, 0.0, 0.0] } else { [0.0; 3] };
     let image = desc.images.push(rgb_image(2, 2, red));
     for (_, light) in desc.area_lights.iter_mut() {
-        light.image = Some(image);
+        light.image = Some(UvImageDesc::new(image, WrapMode::Clamp));
     }
     let scene = scene(&desc);
     let at = |u, v| {
@@ -223,6 +223,41 @@ fn emission_images_are_upright() {
     };
     assert!(at(0.1, 0.1) > 0.0);
     assert_eq!([at(0.9, 0.1), at(0.1, 0.9), at(0.9, 0.9)], [0.0; 3]);
+}
+
+/// The lookups of an image whose left half is red.
+#[test]
+fn emission_images_are_wrapped_filtered_and_moved() {
+    use EdgeMode::{Black, Clamp, Repeat};
+    let lit = |change: &dyn Fn(UvImageDesc) -> UvImageDesc| {
+        let mut desc = area(rectangle([0.0, 0.0], [1.0, 1.0]), one_side);
+        let red = |x, _| if x < 2 { [1.0, 0.0, 0.0] } else { [0.0; 3] };
+        let image = desc.images.push(rgb_image(4, 4, red));
+        for (_, light) in desc.area_lights.iter_mut() {
+            light.image = Some(change(UvImageDesc::new(image, WrapMode::Clamp)));
+        }
+        let scene = scene(&desc);
+        move |u, v| {
+            let light = scene.light(LightId(0));
+            light.radiance(Vec3::Z, Vec2::new(u, v), Vec3::Z, &lambda()).max_component() > 0.0
+        }
+    };
+    let wrapped = |wrap: WrapMode| lit(&move |map| UvImageDesc { wrap, ..map });
+    let clamped = wrapped(WrapMode::Clamp);
+    assert!(clamped(-0.7, 3.2) && !clamped(1.2, 0.5));
+    let repeated = wrapped(WrapMode::Repeat);
+    assert!(repeated(1.2, 7.4) && !repeated(-0.3, 0.5));
+    let by_axis = wrapped(WrapMode::Axes([Repeat, Black]));
+    assert!(by_axis(1.2, 0.5) && !by_axis(1.2, 1.3));
+    let by_axis = wrapped(WrapMode::Axes([Clamp, Black]));
+    assert!(by_axis(-0.2, 0.5) && !by_axis(1.2, 0.5) && !by_axis(0.2, -0.3));
+    // Interpolated, red goes on for half a texel.
+    assert!(clamped(0.6, 0.5));
+    let nearest = lit(&|map| UvImageDesc { is_nearest: true, ..map });
+    assert!(nearest(0.49, 0.5) && !nearest(0.51, 0.5));
+    // Turned by a quarter.
+    let turned = lit(&|map| UvImageDesc { columns: [[0.0, 1.0], [1.0, 0.0], [0.0, 0.0]], ..map });
+    assert!(turned(0.9, 0.2) && !turned(0.2, 0.9));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::common::*;
 use alhazen_scene::SurfaceInteraction;
 use description::{
     FloatParameter, FloatTextureDesc, MaterialDesc, SceneDesc, ShapeDesc, ShapeKind, TextureKind,
+    UvImageDesc, WrapMode,
 };
 use math::{Ray, Vec2, Vec3};
 use sampling::Sampler;
@@ -124,7 +125,7 @@ fn a_normal_map_overrides_a_bump_map() {
     let mut desc = raised(sheet(), |desc| ramp(desc, 1.0, 0.0));
     let image = desc.images.push(rgb_image(2, 2, |_, _| [0.5, 0.5, 1.0]));
     for (handle, _) in desc.materials.clone().iter() {
-        desc.materials[handle].normal_map = Some(image);
+        desc.materials[handle].normal_map = Some(UvImageDesc::new(image, WrapMode::Repeat));
     }
     let found = shaded(&desc, above(Vec2::new(0.3, 0.6))).surface;
     assert!((found.shading.n - Vec3::Z).length() < 1e-6);

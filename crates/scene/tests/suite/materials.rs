@@ -5,7 +5,7 @@ use alhazen_scene::{Interfaces, Scene, SurfaceInteraction, View};
 use description::{
     CameraDesc, CameraKind, ConductorDesc, ConductorReflectance, Handle, LensDesc, MaterialDesc,
     MaterialKind, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc,
-    TextureKind, TransformDesc,
+    TextureKind, TransformDesc, UvImageDesc, WrapMode,
 };
 use math::{DMat4, DVec3, Frame, Ray, RayDifferential, Vec2, Vec3, Vector3};
 use sampling::Sampler;
@@ -214,7 +214,10 @@ fn alpha_textures_cut_out() {
 fn mapped(rgb: [f32; 3]) -> (SurfaceInteraction, Frame) {
     let scene = scene(&floor(|desc| {
         let image = desc.images.push(rgb_image(2, 2, |_, _| rgb));
-        MaterialDesc { normal_map: Some(image), ..MaterialDesc::default() }
+        MaterialDesc {
+            normal_map: Some(UvImageDesc::new(image, WrapMode::Repeat)),
+            ..MaterialDesc::default()
+        }
     }));
     let (surface, bsdf) = bsdf_at(&scene, down(1.0, 0.0), &mut lambda());
     (surface, bsdf.expect("a diffuse surface").frame)

@@ -9,10 +9,11 @@ use rayon::prelude::*;
 use scattering::MeasuredTable;
 
 use super::{Builder, Samples};
-use crate::assets::{read_unpacked, resolve};
+use crate::assets::read_unpacked;
 use crate::images;
 use crate::measured;
 use crate::number;
+use crate::pbrt::search::find;
 
 /// The images of the scene, each path and encoding once. They are decoded together, in parallel.
 #[derive(Default)]
@@ -26,7 +27,7 @@ impl Builder<'_> {
     pub(crate) fn path(&self, name: &Spanned<String>) -> PathBuf {
         let naming_file = self.sources.name(name.span.file);
         let first_file = self.sources.name(description::FileId(0));
-        resolve(self.assets, &name.value, naming_file, first_file)
+        find(self.assets, &name.value, naming_file, first_file)
     }
 
     /// An image file, to be decoded later.

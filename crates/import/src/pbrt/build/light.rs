@@ -1,6 +1,8 @@
 //! Lights and area lights.
 
-use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType, SpectrumDesc, Stated};
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType, SpectrumDesc, Stated, WrapMode,
+};
 use math::Vec3;
 
 use super::Builder;
@@ -148,7 +150,8 @@ fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {
         reader.unknown_type("area-light", "area light", &["diffuse"]);
         return None;
     }
-    let image = reader.image("filename", None);
+    let names = ["filename", "wrap", "filter", "columns"];
+    let image = reader.uv_image(names, None, WrapMode::Clamp);
     if image.is_some() && reader.has("L") {
         reader.refuse("L", "an area light takes its colour from `L` or from `filename`, not from both");
     }

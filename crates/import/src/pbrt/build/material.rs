@@ -2,8 +2,8 @@
 
 use description::{
     Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
-    EncodingDesc, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType,
-    OpenPbrDesc, RoughnessDesc, Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
+    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, OpenPbrDesc,
+    RoughnessDesc, Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
 };
 use scattering::SubsurfaceMethod;
 
@@ -67,7 +67,8 @@ fn material(reader: &mut Reader) -> Option<MaterialDesc> {
     let mut surface = (None, None);
     if !matches!(reader.kind.value.as_str(), "mix" | "interface" | "" | "none") {
         let displacement = reader.optional_float_parameter("displacement");
-        surface = (displacement, reader.image("normalmap", Some(EncodingDesc::Linear)));
+        let names = ["normalmap", "normalmap_wrap", "normalmap_filter", "normalmap_columns"];
+        surface = (displacement, reader.normal_map(names));
     }
     let mut desc = MaterialDesc::from(kind(reader)?);
     (desc.displacement, desc.normal_map) = surface;
@@ -263,7 +264,12 @@ fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
         numbers,
         colors,
         subsurface_radius_scale: radius_scale.unwrap_or_else(|| SpectrumDesc::rgb(1.0, 0.5, 0.25).into()),
-        geometry_coat_normal: reader.image("geometry_coat_normal", Some(EncodingDesc::Linear)),
+        geometry_coat_normal: reader.normal_map([
+            "geometry_coat_normal",
+            "geometry_coat_normal_wrap",
+            "geometry_coat_normal_filter",
+            "geometry_coat_normal_columns",
+        ]),
         thin_walled: reader.boolean("geometry_thin_walled", false),
         emission_luminance,
         emission_color: emission_color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space)),

@@ -17,7 +17,7 @@ mod texture;
 mod volume;
 
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use description::{
@@ -269,7 +269,10 @@ impl<'a> Builder<'a> {
             let samples = if self.assets.exists(&path) {
                 self.spectrum_file(&path, name.span)
             } else {
-                let message = format!("`{}` is neither the name of a spectrum nor a file", name.value);
+                let mut message = format!("`{}` is neither the name of a spectrum nor a file", name.value);
+                if path != Path::new(&name.value) {
+                    message += &format!(": there is no `{}`, and none in the current folder", path.display());
+                }
                 let help =
                     closest(&name.value, spectrum::names()).map(|near| format!("did you mean `{near}`?"));
                 let diagnostic = Diagnostic::error("unknown-spectrum", message, name.span);

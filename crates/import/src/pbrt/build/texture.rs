@@ -2,7 +2,7 @@
 
 use description::{
     Arena, EncodingDesc, Handle, ImageChannel, ImageTextureDesc, MappingDesc, Parameter, SceneDesc,
-    SpectrumDesc, Stated, TextureDesc, TextureFilter, TextureKind, WrapMode,
+    SpectrumDesc, Stated, TextureDesc, TextureFilter, TextureKind, UvImageDesc, WrapMode,
 };
 use math::Vec3;
 
@@ -226,16 +226,7 @@ fn image<V: TextureValue>(reader: &mut Reader) -> Option<ImageTextureDesc> {
             ("EWA", TextureFilter::Ewa),
         ],
     );
-    let wrap = reader.choice(
-        "wrap",
-        WrapMode::Repeat,
-        &[
-            ("repeat", WrapMode::Repeat),
-            ("black", WrapMode::Black),
-            ("clamp", WrapMode::Clamp),
-            ("octahedralsphere", WrapMode::OctahedralSphere),
-        ],
-    );
+    let wrap = reader.choice("wrap", WrapMode::Repeat, WrapMode::NAMES);
     let max_anisotropy = reader.positive("maxanisotropy", 8.0);
     let (scale, invert) = (reader.float("scale", 1.0), reader.boolean("invert", false));
     let channel = V::channel(reader);
@@ -291,5 +282,28 @@ fn mapping(reader: &mut Reader) -> MappingDesc {
             axes: [reader.vector3("v1", Vec3::X), reader.vector3("v2", Vec3::Y)],
             delta: delta(reader),
         },
+    }
+}
+
+impl Reader<'_, '_> {
+    /// A normal map, by the names of its file, wrap mode, filter and columns.
+    pub(super) fn normal_map(&mut self, names: [&'static str; 4]) -> Option<UvImageDesc> {
+        self.uv_image(names, Some(EncodingDesc::Linear), WrapMode::Repeat)
+    }
+
+    /// An image over (u, v) by the same names, with its wrap mode if none is given.
+    pub(super) fn uv_image(
+        &mut self,
+        [file, wrap, filter, columns]: [&'static str; 4],
+        encoding: Option<EncodingDesc>,
+        otherwise: WrapMode,
+    ) -> Option<UvImageDesc> {
+        let image = self.image(file, encoding)?;
+        let wrap = self.choice(wrap, otherwise, WrapMode::NAMES);
+        let is_nearest = self.choice(filter, false, &[("bilinear", false), ("point", true)]);
+        let columns = self
+            .float_array(columns)
+            .map_or(UvImageDesc::IDENTITY, |[a, b, c, d, e, f]| [[a, b], [c, d], [e, f]]);
+        Some(UvImageDesc { image, columns, wrap, is_nearest })
     }
 }

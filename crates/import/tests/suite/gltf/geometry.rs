@@ -180,6 +180,94 @@ fn colors_of_vertices_are_drawn() {
     assert!(file.messages(Severity::Warning).iter().all(|message| !message.contains("colours")));
 }
 
+/// The fourth component of colours is opacity, where the material has any.
+#[test]
+fn opacities_of_vertices_multiply_that_of_the_material() {
+    let file = |mode: &str, alphas: [f32; 4]| {
+        let material = json!({"baseColorFactor": [1, 1, 1, 0.5]});
+        let mut file =
+            File::quad(json!({"alphaMode": mode, "alphaCutoff": 0.25, "pbrMetallicRoughness": material}));
+        let colors: Vec<f32> = alphas.iter().flat_map(|&alpha| [1., 1., 1., alpha]).collect();
+        let colors = file.floats("VEC4", &colors);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+        file
+    };
+    let alpha = |mode, alphas| first(&file(mode, alphas).scene()).alpha.clone();
+    assert_eq!(alpha("OPAQUE", [0.0; 4]), None);
+    assert_eq!(alpha("BLEND", [0.5; 4]), Some(0.25.into()));
+    assert_eq!(alpha("BLEND", [0.0; 4]), Some(0.0.into()));
+    assert_eq!(alpha("MASK", [0.4; 4]), Some(0.0.into()));
+    assert_eq!(alpha("MASK", [0.6; 4]), Some(1.0.into()));
+    // Varying: an image of its own, of the same texels as that of colours.
+    let desc = file("BLEND", [1., 0.5, 0., 1.]).scene();
+    let Some(description::Parameter::Texture(alpha)) = first(&desc).alpha else { panic!("no texture") };
+    let description::TextureKind::Image(map) = &desc.float_textures[alpha].kind else { panic!("no image") };
+    let image = &desc.images[map.image].image;
+    assert_eq!([0, 1].map(|x| image.rgb(x, 0)[0]), [0.5, 0.25]);
+    assert_eq!(image.rgb(0, 1)[0], 0.0);
+    let desc = file("MASK", [1., 0.5, 0., 1.]).scene();
+    let Some(description::Parameter::Texture(alpha)) = first(&desc).alpha else { panic!("no texture") };
+    let kind = &desc.float_textures[alpha].kind;
+    assert!(matches!(kind, description::TextureKind::Step { edge: 0.25, .. }), "{kind:?}");
+    // Beside an image one opacity is a factor, and varying ones are told.
+    let textured = |alphas| {
+        let mut file = file("BLEND", alphas).textured(&[[255, 255, 255, 128]]);
+        file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+        file
+    };
+    let desc = textured([0.5; 4]).scene();
+    let Some(description::Parameter::Texture(alpha)) = first(&desc).alpha else { panic!("no texture") };
+    let description::TextureKind::Image(map) = &desc.float_textures[alpha].kind else { panic!("no image") };
+    assert_eq!(map.scale, 0.25);
+    let warnings = textured([1., 0.5, 0., 1.]).messages(Severity::Warning);
+    assert!(
+        warnings.iter().any(|warning| warning.contains("colours of vertices are not drawn")),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn what_is_cut_out_everywhere_does_not_shine() {
+    for (mode, alpha, lights) in [("BLEND", 0.0, 0), ("MASK", 0.2, 0), ("BLEND", 0.2, 1), ("OPAQUE", 0.0, 1)]
+    {
+        let mut file = File::quad(json!({"alphaMode": mode, "extensions": {"KHR_materials_unlit": {}}}));
+        let colors = file.floats("VEC4", &[1., 1., 1., alpha].repeat(4));
+        file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+        assert_eq!(file.scene().area_lights.len(), lights, "{mode} {alpha}");
+    }
+}
+
+/// Bytes and shorts are normalised, also where an accessor forgets to say so.
+#[test]
+fn colors_of_vertices_may_be_integers() {
+    for (component, bytes) in [(5121, vec![255, 51, 0, 102]), (5123, vec![255, 255, 51, 51, 0, 0, 102, 102])]
+    {
+        for normalized in [true, false] {
+            let mut file = File::quad(json!({"alphaMode": "BLEND"}));
+            let view = file.view(&bytes.repeat(4));
+            let accessors = file.json["accessors"].as_array_mut().unwrap();
+            accessors.push(json!({
+                "bufferView": view, "componentType": component, "count": 4, "type": "VEC4",
+                "normalized": normalized,
+            }));
+            let index = accessors.len() - 1;
+            file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(index);
+            let desc = file.scene();
+            let shape = first(&desc);
+            let Some(alpha) = shape.alpha.as_ref().and_then(|alpha| alpha.value()) else {
+                panic!("no alpha")
+            };
+            assert!((alpha - 0.4).abs() < 1e-6, "{alpha}");
+            let kind = &desc.materials[shape.material.expect("a material")].kind;
+            let description::MaterialKind::OpenPbr(surface) = kind else { panic!("no surface") };
+            assert_eq!(surface.colors[0], description::SpectrumDesc::rgb(1.0, 0.2, 0.0).into());
+            let warnings = file.messages(Severity::Warning);
+            let told = warnings.iter().any(|warning| warning.contains("integers of colours are normalised"));
+            assert_eq!(told, !normalized, "{warnings:?}");
+        }
+    }
+}
+
 #[test]
 fn faults_name_their_place() {
     type Change = fn(&mut serde_json::Value);

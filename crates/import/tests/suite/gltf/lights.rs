@@ -1,8 +1,11 @@
 //! Lights, emission, cameras, and what scenes without them get.
 
 use super::{File, mesh};
-use description::{CameraKind, IntegratorDesc, LightKind, MaterialKind, SceneDesc, Severity, SpectrumDesc};
-use math::DVec3;
+use description::{
+    CameraKind, EdgeMode, IntegratorDesc, LightKind, MaterialKind, SceneDesc, Severity, SpectrumDesc,
+    UvImageDesc, WrapMode,
+};
+use math::{DVec3, Point2};
 use serde_json::{Value, json};
 
 /// A quadrilateral in a light at a distance of 2 before it.
@@ -93,6 +96,76 @@ fn only_triangles_on_bright_texels_emit() {
     assert_eq!(emits, [(true, vec![[0, 2, 3]]), (false, vec![[0, 1, 2]])]);
 }
 
+/// Emission and unlit colours by samplers and transforms, as those of other textures.
+#[test]
+fn emission_has_samplers_and_transforms() {
+    let emissive = json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}});
+    let unlit = json!({
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "extensions": {"KHR_materials_unlit": {}},
+    });
+    for material in [emissive, unlit] {
+        let mut file = File::quad(material).textured(&[[255; 4], [0, 0, 0, 255]]);
+        let light = |file: &File| {
+            let desc = file.scene();
+            let map = desc.area_lights.iter().next().expect("a light").1.image.expect("an image");
+            (map, desc.images[map.image].image.width(), mesh(desc.shapes.iter().next().unwrap().1).uvs[2])
+        };
+        // A sampler that says nothing repeats.
+        assert_eq!(light(&file).0.wrap, WrapMode::Repeat);
+        file.json["textures"][0]["sampler"] = json!(0);
+        for (sampler, wrap, is_nearest, width) in [
+            (json!({}), WrapMode::Repeat, false, 2),
+            (json!({"magFilter": 9728}), WrapMode::Repeat, true, 2),
+            (json!({"wrapS": 33071, "wrapT": 33071}), WrapMode::Clamp, false, 2),
+            (json!({"wrapS": 33071}), WrapMode::Axes([EdgeMode::Clamp, EdgeMode::Repeat]), false, 2),
+            (
+                json!({"wrapS": 33648, "wrapT": 33071}),
+                WrapMode::Axes([EdgeMode::Repeat, EdgeMode::Clamp]),
+                false,
+                4,
+            ),
+        ] {
+            file.json["samplers"] = json!([sampler]);
+            let (map, found, _) = light(&file);
+            assert_eq!((map.wrap, map.is_nearest, found), (wrap, is_nearest, width), "{sampler}");
+        }
+        // The transform is of the mesh, if there is no normal map.
+        file.json["samplers"] = json!([{}]);
+        let moved = json!({"KHR_texture_transform": {"scale": [2, 2]}});
+        let material = &mut file.json["materials"][0];
+        let info = match material.get_mut("emissiveTexture") {
+            Some(info) => info,
+            None => &mut material["pbrMetallicRoughness"]["baseColorTexture"],
+        };
+        info["extensions"] = moved;
+        let (map, _, uv) = light(&file);
+        assert_eq!((map.columns, uv), (UvImageDesc::IDENTITY, Point2::new(2.0, 1.0)));
+        // Beside one it is that of the emission alone.
+        file.json["materials"][0]["normalTexture"] = json!({"index": 0});
+        let (map, _, uv) = light(&file);
+        assert_eq!((map.columns, uv), ([[2.0, 0.0], [0.0, 2.0], [0.0, -1.0]], Point2::new(1.0, 1.0)));
+        assert!(file.messages(Severity::Warning).iter().all(|message| !message.contains("emission")));
+    }
+}
+
+#[test]
+fn triangles_on_other_tiles_of_a_bright_image_emit() {
+    let file = |sampler: Value| {
+        let mut file = File::quad(json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}))
+            .textured(&[[0, 0, 0, 255]; 32].into_iter().chain([[255; 4]; 32]).collect::<Vec<_>>());
+        file.json["textures"][0]["sampler"] = json!(0);
+        file.json["samplers"] = json!([sampler]);
+        // In the black half of the image two tiles away, and in the bright one.
+        let uvs = file.floats("VEC2", &[-1.9, 0.1, -1.6, 0.1, -1.6, 0.4, -1.1, 0.9]);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(uvs);
+        let desc = file.scene();
+        desc.shapes.iter().filter(|(_, shape)| shape.area_light.is_some()).count()
+    };
+    assert_eq!(file(json!({})), 1);
+    assert_eq!(file(json!({"wrapS": 33071})), 0, "the column at the left is black");
+}
+
 #[test]
 fn unlit_surfaces_emit_their_color() {
     let desc = File::quad(json!({
@@ -105,6 +178,37 @@ fn unlit_surfaces_emit_their_color() {
     assert_eq!((light.scale, &light.radiance), (0.8, &SpectrumDesc::rgb(0.25, 0.5, 1.0)));
     let material = &desc.materials[shape.material.expect("a material")].kind;
     assert!(matches!(material, MaterialKind::Diffuse { reflectance } if *reflectance == 0.0.into()));
+}
+
+/// Angles as exporters write them: in single precision, and equal ones for a sharp edge.
+#[test]
+fn cones_of_spots_are_taken_as_they_are_rounded() {
+    let cone = |spot: Value| {
+        let file = lit(json!({"type": "spot", "spot": spot}));
+        let desc = file.scene();
+        match only_light(&desc).kind {
+            LightKind::Spot { cone_angle, cone_delta_angle, .. } => (cone_angle, cone_delta_angle),
+            _ => panic!("no spot"),
+        }
+    };
+    for outer in [std::f64::consts::FRAC_PI_2, 1.570_796_370_506_286_6, 1.570_796_4] {
+        assert_eq!(cone(json!({"outerConeAngle": outer})), (90.0, 90.0));
+    }
+    for inner in [0.5, 0.500_000_05] {
+        assert_eq!(cone(json!({"innerConeAngle": inner, "outerConeAngle": 0.5})).1, 0.0);
+    }
+    for (spot, message) in [
+        (
+            json!({"innerConeAngle": 0.6, "outerConeAngle": 0.5}),
+            "/innerConeAngle: the inner angle of a cone is",
+        ),
+        (json!({"outerConeAngle": 1.6}), "/outerConeAngle: this must be between 0 and 1.57"),
+        (json!({"outerConeAngle": 0}), "/outerConeAngle: the angle of a cone is above 0"),
+    ] {
+        let errors = lit(json!({"type": "spot", "spot": spot})).messages(Severity::Error);
+        let place = format!("/extensions/KHR_lights_punctual/lights/0/spot{message}");
+        assert!(errors.len() == 1 && errors[0].starts_with(&place), "{errors:?}");
+    }
 }
 
 /// A quadrilateral seen by a camera 5 units before it.

@@ -2,9 +2,9 @@
 
 use super::{File, mesh};
 use description::{
-    CoefficientsDesc, FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, MediumKind,
-    OpenPbrDesc, Parameter, SceneDesc, Severity, SpectrumDesc, SpectrumParameter, TextureFilter, TextureKind,
-    WrapMode,
+    CoefficientsDesc, EdgeMode, FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind,
+    MediumKind, OpenPbrDesc, Parameter, SceneDesc, Severity, SpectrumDesc, SpectrumParameter, TextureFilter,
+    TextureKind, UvImageDesc, WrapMode,
 };
 use serde_json::{Value, json};
 
@@ -137,9 +137,79 @@ fn samplers_and_transforms_place_textures() {
     assert_eq!(roughness.filter, TextureFilter::Point);
     let picture = &desc.images[roughness.image].image;
     assert_eq!((0..4).map(|x| picture.rgb(x, 0)[0]).collect::<Vec<_>>(), [1.0, 0.0, 0.0, 1.0]);
-    file.json["samplers"] = json!([{"wrapS": 33071, "wrapT": 33071}]);
+    for (wraps, wrap) in [
+        ([33071, 33071], WrapMode::Clamp),
+        ([33071, 10497], WrapMode::Axes([EdgeMode::Clamp, EdgeMode::Repeat])),
+        ([33648, 33071], WrapMode::Axes([EdgeMode::Repeat, EdgeMode::Clamp])),
+    ] {
+        file.json["samplers"] = json!([{"wrapS": wraps[0], "wrapT": wraps[1]}]);
+        let desc = file.scene();
+        assert_eq!(texture(&desc, parameter(&desc, "specular_roughness")).wrap, wrap);
+    }
+}
+
+/// Normal maps of the base and of the coat, each by its own sampler and transform.
+#[test]
+fn normal_maps_have_samplers_and_transforms() {
+    let moved = json!({"KHR_texture_transform": {"scale": [4, 2]}});
+    let mut material = extended(
+        "KHR_materials_clearcoat",
+        json!({
+            "clearcoatFactor": 1,
+            "clearcoatNormalTexture": {"index": 1, "extensions": moved},
+        }),
+    );
+    material["normalTexture"] = json!({"index": 0});
+    let mut file = File::quad(material).textured(&[[128, 128, 255, 255], [255, 128, 128, 255]]);
+    file.json["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 0}]);
+    file.json["samplers"] = json!([{"magFilter": 9728, "wrapS": 33071, "wrapT": 33071}]);
     let desc = file.scene();
-    assert_eq!(texture(&desc, parameter(&desc, "specular_roughness")).wrap, WrapMode::Clamp);
+    let shape = desc.shapes.iter().next().expect("a shape").1;
+    let base = desc.materials[shape.material.expect("a material")].normal_map.expect("a normal map");
+    assert_eq!((base.wrap, base.is_nearest, base.columns), (WrapMode::Clamp, true, UvImageDesc::IDENTITY));
+    let coat = surface(&desc).geometry_coat_normal.expect("a normal map");
+    assert_eq!((coat.wrap, coat.is_nearest), (WrapMode::Repeat, false));
+    assert_eq!(coat.columns, [[4.0, 0.0], [0.0, 2.0], [0.0, -1.0]]);
+}
+
+#[test]
+fn textures_in_extensions_that_are_not_read_are_left_out_with_a_warning() {
+    let mut file = File::quad(json!({
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [0.5, 1, 1, 1]},
+        "normalTexture": {"index": 0},
+    }))
+    .textured(&[[255; 4]]);
+    for (texture, reason) in [
+        (json!({"extensions": {"EXT_texture_avif": {"source": 0}}}), "`EXT_texture_avif`, which is not read"),
+        (json!({}), "it has no image"),
+    ] {
+        file.json["textures"] = json!([texture]);
+        assert_eq!(color(&file.scene(), "base_color"), [0.5, 1.0, 1.0]);
+        let warnings = file.messages(Severity::Warning);
+        let told = |warning: &&String| warning.starts_with("/textures/0: ") && warning.contains(reason);
+        assert_eq!(warnings.iter().filter(told).count(), 1, "{warnings:?}");
+    }
+    // One that is also there in a format that is read is drawn.
+    file.json["textures"] = json!([{"source": 0, "extensions": {"EXT_texture_avif": {"source": 0}}}]);
+    assert!(matches!(surface(&file.scene()).colors[0], Parameter::Texture(_)));
+    // What a reader needs is an error.
+    file.json["extensionsRequired"] = json!(["EXT_texture_avif"]);
+    assert!(file.messages(Severity::Error)[0].contains("requires the extension `EXT_texture_avif`"));
+}
+
+/// Factors that single precision has rounded up are those of the end of their range.
+#[test]
+fn factors_that_are_one_but_for_rounding_are_one() {
+    let mut material = extended("KHR_materials_ior", json!({"ior": 0.999_999_94}));
+    material["pbrMetallicRoughness"] = json!({
+        "metallicFactor": 1.000_000_119_209_289_6, "roughnessFactor": 1.000_000_2,
+        "baseColorFactor": [1.000_000_119_209_289_6, 0.5, -1e-9, 1.000_000_1],
+    });
+    let desc = File::quad(material).scene();
+    for (name, value) in [("base_metalness", 1.0), ("specular_roughness", 1.0), ("specular_ior", 1.0)] {
+        assert_eq!(number(&desc, name), value, "{name}");
+    }
+    assert_eq!(color(&desc, "base_color"), [1.0, 0.5, 0.0]);
 }
 
 #[test]
@@ -214,7 +284,7 @@ fn normal_maps_are_scaled_and_mirrored_with_their_coordinates() {
         let desc = file.scene();
         let shape = desc.shapes.iter().nth(shape).expect("a shape").1;
         let map = desc.materials[shape.material.expect("a material")].normal_map.expect("a normal map");
-        desc.images[map].image.rgb(0, 0)
+        desc.images[map.image].image.rgb(0, 0)
     };
     assert_eq!(normal(&file, 0)[..2], [0.75, 0.75]);
     // Half of the quadrilateral has its texture the other way round.
@@ -251,7 +321,7 @@ fn clear_coats_have_their_own_normals() {
     let normals = json!({"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0, "scale": 0.5}});
     let desc = file(normals).scene();
     let map = surface(&desc).geometry_coat_normal.expect("a normal map");
-    assert_eq!(desc.images[map].image.rgb(0, 0)[1], 0.75);
+    assert_eq!(desc.images[map.image].image.rgb(0, 0)[1], 0.75);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use alhazen_scene::Scene;
 use alhazen_scene::light::{Light, LightId, LightRef, LightSampleContext};
 use description::{
     AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey,
-    ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+    ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc, UvImageDesc, WrapMode,
 };
 use math::{DMat4, DVec3, DVec4, Vec3};
 
@@ -54,7 +54,7 @@ pub fn with_image(shape: ShapeKind) -> SceneDesc {
     let mut desc = area(shape, both_sides);
     let image = desc.images.push(rgb_image(6, 4, colours));
     for (_, light) in desc.area_lights.iter_mut() {
-        light.image = Some(image);
+        light.image = Some(UvImageDesc::new(image, WrapMode::Clamp));
     }
     desc
 }

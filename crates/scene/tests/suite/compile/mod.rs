@@ -10,6 +10,7 @@ use description::{
     AreaLightDesc, CurveBasis, CurveDesc, CurveProfile, Diagnostic, FileId, ImageDesc, InfiniteRadiance,
     InstanceDesc, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, Origin,
     PatchMeshDesc, SceneDesc, Severity, ShapeDesc, ShapeKind, Span, SpectrumDesc, Stated, TransformDesc,
+    UvImageDesc, WrapMode,
 };
 use geometry::GeometryId;
 use image::Image;
@@ -172,7 +173,7 @@ fn unusable_images_are_errors() {
         "an image that is black above cannot be scaled to an illuminance",
     );
     let area = with(|desc| {
-        let image = Some(desc.images.push(gray_image()));
+        let image = Some(UvImageDesc::new(desc.images.push(gray_image()), WrapMode::Clamp));
         let light = AreaLightDesc { image, ..AreaLightDesc::new(1.0.into()) };
         let area_light = Some(desc.area_lights.push_stated(with_parameter(light, "filename", 5)));
         // Reported once for any number of shapes.
@@ -182,7 +183,7 @@ fn unusable_images_are_errors() {
     });
     error(&area, "image-channels", "the image of a light needs red, green and blue");
     let normals = with(|desc| {
-        let normal_map = Some(desc.images.push(gray_image()));
+        let normal_map = Some(UvImageDesc::new(desc.images.push(gray_image()), WrapMode::Repeat));
         let material = MaterialDesc { normal_map, ..MaterialDesc::default() };
         desc.materials.push_stated(with_parameter(material, "normalmap", 5));
     });
