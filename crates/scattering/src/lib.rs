@@ -20,7 +20,7 @@ mod microfacet;
 mod phase;
 
 pub use bsdf::Bsdf;
-pub use bssrdf::{Bssrdf, BssrdfTable, PlainBssrdfTable, Probe, SubsurfaceMethod};
+pub use bssrdf::{Bssrdf, BssrdfTable, PlainBssrdfTable, Probe, Profiles, SubsurfaceMethod};
 pub use bxdf::{
     Body, BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
     Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, OpenPbr, OpenPbrParameters,

@@ -34,13 +34,13 @@ impl Flattener<'_> {
     fn bssrdf_table(&mut self, table: &BssrdfTable, has_gains: bool, has_walks: bool) -> u32 {
         let PlainBssrdfTable { exit_norm, albedos, radii, profile, cdf, effective_albedos } = table.plain();
         let gains = if has_gains { self.slab.add_numbers(table.gains().iter().copied()) } else { 0 };
-        let rows = if has_gains && has_walks { table.of_walks() } else { &[] };
+        let rows = if has_gains && has_walks { table.of_walks() } else { Vec::new() };
         let counts = [albedos.len() as u32, radii.len() as u32, gains, rows.len() as u32];
         let at = self.slab.add([exit_norm.to_bits()].into_iter().chain(counts));
-        for numbers in [albedos, radii, effective_albedos, profile, cdf] {
+        for numbers in [albedos, radii, effective_albedos, &profile, &cdf] {
             self.slab.extend_numbers(numbers.iter().copied());
         }
-        self.slab.extend_numbers(rows.iter().flatten().copied());
+        self.slab.extend_numbers(rows.into_iter().flatten().copied());
         at
     }
 }

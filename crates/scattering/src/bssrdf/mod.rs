@@ -26,6 +26,7 @@ mod table;
 mod walks;
 
 pub use method::SubsurfaceMethod;
+use table::Profile;
 pub use table::{BssrdfTable, PlainBssrdfTable};
 
 use crate::{HenyeyGreenstein, Interior, NormalizedFresnel, TrowbridgeReitz};
@@ -112,8 +113,25 @@ impl<'a> Bssrdf<'a> {
         self.albedo.map(|albedo| self.table.effective_albedo(albedo))
     }
 
+    /// The profiles of the wavelengths.
+    pub fn profiles(&self) -> Profiles<'a> {
+        let Self { table, sigma_t, albedo } = *self;
+        Profiles { table, sigma_t, profiles: albedo.0.map(|albedo| table.profile(albedo)) }
+    }
+}
+
+/// The profiles of four wavelengths, found in the table once for all distances.
+#[derive(Clone, Copy, Debug)]
+pub struct Profiles<'a> {
+    table: &'a BssrdfTable,
+    /// Extinction per unit of length.
+    sigma_t: SampledSpectrum,
+    profiles: [Profile; N],
+}
+
+impl Profiles<'_> {
     /// The profile Sp at a distance, per area.
-    pub fn profile(&self, r: f32) -> SampledSpectrum {
+    pub fn at(&self, r: f32) -> SampledSpectrum {
         self.at_radius(r).0
     }
 
@@ -122,7 +140,7 @@ impl<'a> Bssrdf<'a> {
         let (mut profile, mut density) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
         for i in 0..N {
             let sigma_t = self.sigma_t[i];
-            let (value, pdf) = self.table.profile(self.albedo[i], r * sigma_t);
+            let (value, pdf) = self.table.at_radius(&self.profiles[i], r * sigma_t);
             profile[i] = value * sqr(sigma_t);
             density[i] = pdf * sqr(sigma_t);
         }
@@ -133,7 +151,7 @@ impl<'a> Bssrdf<'a> {
     /// profile.
     pub fn sample_radius(&self, hero: usize, u: f32) -> Option<f32> {
         let sigma_t = self.sigma_t[hero];
-        let radius = self.table.sample_radius(self.albedo[hero], u)? / sigma_t;
+        let radius = self.table.sample_radius(&self.profiles[hero], u)? / sigma_t;
         radius.is_finite().then_some(radius)
     }
 

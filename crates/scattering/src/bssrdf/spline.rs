@@ -5,35 +5,84 @@
 
 use math::find_interval;
 
-/// The nodes on which a value of the spline depends, and their weights. At the ends some nodes are
-/// named twice.
-#[derive(Clone, Copy, Debug)]
+/// Ascending nodes, or a value for each. The first and the last are there twice, so that the four on
+/// which a place of the spline depends follow one another.
+#[derive(Clone, Debug)]
+pub(super) struct Nodes(Vec<f32>);
+
+impl Nodes {
+    /// From the nodes, of which there are two at least.
+    pub fn new(nodes: &[f32]) -> Self {
+        let ends = [nodes[0], nodes[nodes.len() - 1]];
+        Self(ends[..1].iter().chain(nodes).chain(&ends[1..]).copied().collect())
+    }
+
+    /// The nodes.
+    pub fn all(&self) -> &[f32] {
+        &self.0[1..self.0.len() - 1]
+    }
+
+    /// All, with the ends twice.
+    pub fn twice(&self) -> &[f32] {
+        &self.0
+    }
+
+    /// The four nodes around the interval after node `i`.
+    pub fn around(&self, i: usize) -> [f32; 4] {
+        four(&self.0, i)
+    }
+
+    /// The interval of `x`; the first or the last beyond them.
+    fn interval(&self, x: f32) -> usize {
+        let nodes = self.all();
+        let (mut i, mut step) = (0, (nodes.len() - 1).next_power_of_two() / 2);
+        while step > 0 {
+            let next = i + step;
+            // An index instead of a branch, which nobody could predict.
+            i += step * usize::from(next < nodes.len() - 1 && nodes[next] <= x);
+            step /= 2;
+        }
+        i
+    }
+}
+
+/// The four numbers of a table from an index on.
+#[inline]
+pub(super) fn four(table: &[f32], index: usize) -> [f32; 4] {
+    *table[index..].first_chunk().expect("an index inside of the table")
+}
+
+/// Of the four nodes from one on the weights with which a value of the spline depends on them.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Weights {
-    pub nodes: [usize; 4],
+    /// Among the [`Nodes`], the ends of which are there twice.
+    pub first: usize,
     pub weights: [f32; 4],
 }
 
 impl Weights {
-    /// Those at `x`; `None` beyond the first and last of the ascending `nodes`.
-    pub fn at(nodes: &[f32], x: f32) -> Option<Self> {
-        let last = nodes.len() - 1;
-        if !(nodes[0] <= x && x <= nodes[last]) {
+    /// Those at `x`; `None` beyond the first and last of the nodes.
+    pub fn at(nodes: &Nodes, x: f32) -> Option<Self> {
+        let [.., last] = nodes.0[..] else { return None };
+        if !(nodes.0[0] <= x && x <= last) {
             return None;
         }
-        let i = find_interval(nodes.len(), |i| nodes[i] <= x);
-        let width = nodes[i + 1] - nodes[i];
-        let t = (x - nodes[i]) / width;
+        let first = nodes.interval(x);
+        let [before, here, next, after] = nodes.around(first);
+        let width = next - here;
+        let t = (x - here) / width;
         let [near, from_slope, to_slope] =
             [1.0 - t * t * (3.0 - 2.0 * t), t * (1.0 - t) * (1.0 - t), -t * t * (1.0 - t)];
-        let (before, after) = (i.saturating_sub(1), (i + 2).min(last));
-        let from = from_slope * width / (nodes[i + 1] - nodes[before]);
-        let to = to_slope * width / (nodes[after] - nodes[i]);
-        Some(Self { nodes: [before, i, i + 1, after], weights: [-from, near - to, 1.0 - near + from, to] })
+        let from = from_slope * width / (next - before);
+        let to = to_slope * width / (after - here);
+        Some(Self { first, weights: [-from, near - to, 1.0 - near + from, to] })
     }
 
-    /// The sum of the weighted values.
-    pub fn sum(&self, value: impl Fn(usize) -> f32) -> f32 {
-        self.nodes.iter().zip(self.weights).map(|(&node, weight)| weight * value(node)).sum()
+    /// The sum of the weighted values of the four nodes.
+    #[inline]
+    pub fn sum(&self, values: [f32; 4]) -> f32 {
+        let ([a, b, c, d], [p, q, r, s]) = (self.weights, values);
+        a * p + b * q + c * r + d * s
     }
 }
 
@@ -45,13 +94,11 @@ struct Segment {
 }
 
 impl Segment {
-    /// That after node `i`.
-    fn new(nodes: &[f32], i: usize, value: impl Fn(usize) -> f32) -> Self {
-        let (before, after) = (i.saturating_sub(1), (i + 2).min(nodes.len() - 1));
-        let (start, width) = (nodes[i], nodes[i + 1] - nodes[i]);
-        let (f0, f1) = (value(i), value(i + 1));
-        let from = width * (f1 - value(before)) / (nodes[i + 1] - nodes[before]);
-        let to = width * (value(after) - f0) / (nodes[after] - nodes[i]);
+    /// Between the middle ones of four nodes with their values.
+    fn new([before, here, next, after]: [f32; 4], [f_before, f0, f1, f_after]: [f32; 4]) -> Self {
+        let (start, width) = (here, next - here);
+        let from = width * (f1 - f_before) / (next - before);
+        let to = width * (f_after - f0) / (after - here);
         let rise = f1 - f0;
         Self { start, width, c: [f0, from, 3.0 * rise - 2.0 * from - to, from + to - 2.0 * rise] }
     }
@@ -78,10 +125,10 @@ impl Segment {
 }
 
 /// The running integral of the spline at each node.
-pub(super) fn integrate(nodes: &[f32], values: &[f32]) -> Vec<f32> {
+pub(super) fn integrate(nodes: &Nodes, values: &Nodes) -> Vec<f32> {
     let mut sum = 0.0;
-    let segments = (0..nodes.len() - 1).map(|i| {
-        let segment = Segment::new(nodes, i, |i| values[i]);
+    let segments = (0..nodes.all().len() - 1).map(|i| {
+        let segment = Segment::new(nodes.around(i), values.around(i));
         sum += segment.width * segment.integral(1.0);
         sum
     });
@@ -89,33 +136,36 @@ pub(super) fn integrate(nodes: &[f32], values: &[f32]) -> Vec<f32> {
 }
 
 /// Where a spline through ascending `values` has the value `y`; the nearest end if nowhere.
-pub(super) fn invert(nodes: &[f32], values: &[f32], y: f32) -> f32 {
-    let last = nodes.len() - 1;
-    if y.is_nan() || y <= values[0] {
-        return nodes[0];
+pub(super) fn invert(nodes: &Nodes, values: &Nodes, y: f32) -> f32 {
+    let (x, f) = (nodes.all(), values.all());
+    let last = x.len() - 1;
+    if y.is_nan() || y <= f[0] {
+        return x[0];
     }
-    if y >= values[last] {
-        return nodes[last];
+    if y >= f[last] {
+        return x[last];
     }
-    let segment = Segment::new(nodes, find_interval(nodes.len(), |i| values[i] <= y), |i| values[i]);
+    let i = values.interval(y);
+    let segment = Segment::new(nodes.around(i), values.around(i));
     segment.x(solve(y, 0.5, |t| (segment.value(t), segment.slope(t))))
 }
 
-/// A position with the density of a spline, whose running integral is `cdf`; `None` if the spline
-/// has no positive integral.
+/// A position with the density of a spline, whose running integral is `cdf` at each node; `None` if
+/// the spline has no positive integral. `values` are those of the four nodes around an interval.
 pub(super) fn sample(
-    nodes: &[f32],
-    value: impl Fn(usize) -> f32,
+    nodes: &Nodes,
+    values: impl Fn(usize) -> [f32; 4],
     cdf: impl Fn(usize) -> f32,
     u: f32,
 ) -> Option<f32> {
-    let total = cdf(nodes.len() - 1);
+    let count = nodes.all().len();
+    let total = cdf(count - 1);
     if total.is_nan() || total <= 0.0 {
         return None;
     }
     let u = u * total;
-    let i = find_interval(nodes.len(), |i| cdf(i) <= u);
-    let segment = Segment::new(nodes, i, value);
+    let i = find_interval(count, |i| cdf(i) <= u);
+    let segment = Segment::new(nodes.around(i), values(i));
     let u = (u - cdf(i)) / segment.width;
     // Newton's method starts where a straight line would be.
     let (f0, rise) = (segment.value(0.0), segment.value(1.0) - segment.value(0.0));
@@ -153,22 +203,38 @@ mod tests {
 
     #[test]
     fn lines_are_reproduced() {
+        let (nodes, values) = (Nodes::new(&NODES), Nodes::new(&NODES.map(|x| 3.0 - 2.0 * x)));
         for x in [0.0, 0.05, 0.1, 0.2, 0.5, 0.99, 1.5, 2.0] {
-            let weights = Weights::at(&NODES, x).unwrap();
-            assert!((weights.sum(|i| 3.0 - 2.0 * NODES[i]) - (3.0 - 2.0 * x)).abs() < 1e-5, "{x}");
+            let weights = Weights::at(&nodes, x).unwrap();
+            let sum = weights.sum(values.around(weights.first));
+            assert!((sum - (3.0 - 2.0 * x)).abs() < 1e-5, "{x}");
             assert!((weights.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
         }
-        assert!(Weights::at(&NODES, -1e-6).is_none() && Weights::at(&NODES, 2.001).is_none());
-        assert!(Weights::at(&NODES, f32::NAN).is_none());
+        assert!(Weights::at(&nodes, -1e-6).is_none() && Weights::at(&nodes, 2.001).is_none());
+        assert!(Weights::at(&nodes, f32::NAN).is_none());
+    }
+
+    #[test]
+    fn intervals_are_those_of_a_bisection() {
+        for count in 2..40 {
+            let ascending: Vec<f32> = (0..count).map(|i| (i * i) as f32).collect();
+            let nodes = Nodes::new(&ascending);
+            for i in -2..count * count + 2 {
+                let x = i as f32 + if i % 3 == 0 { 0.5 } else { 0.0 };
+                let expected = find_interval(count as usize, |i| ascending[i] <= x);
+                assert_eq!(nodes.interval(x), expected, "{x} of {count}");
+            }
+        }
     }
 
     #[test]
     fn weights_and_segments_are_one_spline() {
-        let values = [0.0, 2.0, 1.0, 4.0, 4.5, 0.5];
+        let (nodes, values) = (Nodes::new(&NODES), Nodes::new(&[0.0, 2.0, 1.0, 4.0, 4.5, 0.5]));
         for i in 0..NODES.len() - 1 {
-            let segment = Segment::new(&NODES, i, |i| values[i]);
+            let segment = Segment::new(nodes.around(i), values.around(i));
             for t in [0.0, 0.2, 0.5, 0.9] {
-                let sum = Weights::at(&NODES, segment.x(t)).unwrap().sum(|i| values[i]);
+                let weights = Weights::at(&nodes, segment.x(t)).unwrap();
+                let sum = weights.sum(values.around(weights.first));
                 assert!((sum - segment.value(t)).abs() < 1e-4, "{i} {t}");
             }
         }
@@ -176,7 +242,7 @@ mod tests {
 
     #[test]
     fn the_integral_of_a_line_is_exact() {
-        let cdf = integrate(&NODES, &NODES.map(|x| 1.0 + x));
+        let cdf = integrate(&Nodes::new(&NODES), &Nodes::new(&NODES.map(|x| 1.0 + x)));
         for (x, sum) in NODES.iter().zip(cdf) {
             assert!((sum - (x + x * x / 2.0)).abs() < 1e-5);
         }
@@ -184,23 +250,23 @@ mod tests {
 
     #[test]
     fn inversion_finds_the_value() {
-        let values = [0.1, 0.2, 0.5, 0.6, 1.5, 1.6];
+        let (nodes, values) = (Nodes::new(&NODES), Nodes::new(&[0.1, 0.2, 0.5, 0.6, 1.5, 1.6]));
         for y in [0.1, 0.15, 0.3, 0.55, 1.0, 1.59] {
-            let x = invert(&NODES, &values, y);
-            assert!((Weights::at(&NODES, x).unwrap().sum(|i| values[i]) - y).abs() < 1e-4, "{y}");
+            let weights = Weights::at(&nodes, invert(&nodes, &values, y)).unwrap();
+            assert!((weights.sum(values.around(weights.first)) - y).abs() < 1e-4, "{y}");
         }
-        assert_eq!([invert(&NODES, &values, 0.0), invert(&NODES, &values, 2.0)], [0.0, 2.0]);
+        assert_eq!([0.0, 2.0].map(|y| invert(&nodes, &values, y)), [0.0, 2.0]);
     }
 
     /// The inverse of the running integral of 1 + x, in closed form.
     #[test]
     fn samples_invert_the_integral() {
-        let values = NODES.map(|x| 1.0 + x);
-        let cdf = integrate(&NODES, &values);
+        let (nodes, values) = (Nodes::new(&NODES), Nodes::new(&NODES.map(|x| 1.0 + x)));
+        let cdf = integrate(&nodes, &values);
         for u in [0.0, 0.01, 0.3, 0.5, 0.999] {
-            let x = sample(&NODES, |i| values[i], |i| cdf[i], u).unwrap();
+            let x = sample(&nodes, |i| values.around(i), |i| cdf[i], u).unwrap();
             assert!((x - ((1.0 + 8.0 * u).sqrt() - 1.0)).abs() < 1e-4, "{u}: {x}");
         }
-        assert_eq!(sample(&NODES, |_| 0.0, |_| 0.0, 0.5), None);
+        assert_eq!(sample(&nodes, |_| [0.0; 4], |_| 0.0, 0.5), None);
     }
 }

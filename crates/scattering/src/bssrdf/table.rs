@@ -2,7 +2,7 @@
 
 use super::boundary::Boundary;
 use super::diffusion::HalfSpace;
-use super::spline::{self, Weights};
+use super::spline::{self, Nodes, Weights};
 use super::{SubsurfaceMethod, walks};
 use crate::TrowbridgeReitz;
 use crate::grid::Place;
@@ -23,23 +23,63 @@ pub struct BssrdfTable {
     g: f32,
     eta: f32,
     exit_norm: f32,
-    albedos: Vec<f32>,
-    radii: Vec<f32>,
-    /// 2πr times the profile, which is its density over r; a row for each albedo.
-    profile: Vec<f32>,
-    /// The running integrals of the rows.
-    cdf: Vec<f32>,
-    /// The integrals of the rows.
-    effective_albedos: Vec<f32>,
+    albedos: Nodes,
+    radii: Nodes,
+    /// 2πr times the profile, which is its density over r.
+    profile: Surface,
+    /// The running integrals over r.
+    cdf: Surface,
+    /// The integrals.
+    effective_albedos: Nodes,
     /// Rough boundaries, once they are asked for.
     boundary: OnceLock<Boundary>,
     /// What random walks return for each roughness and albedo, once it is asked for.
-    of_walks: OnceLock<Vec<Vec<f32>>>,
+    of_walks: OnceLock<Vec<Nodes>>,
+}
+
+/// Values for all albedos and radii. As of [`Nodes`] the first and the last are there twice.
+#[derive(Clone)]
+struct Surface {
+    /// A row for each radius.
+    values: Vec<f32>,
+}
+
+impl Surface {
+    /// The values of a row.
+    const ROW: usize = ALBEDOS + 2;
+
+    /// From a row for each albedo.
+    fn new(rows: &[Vec<f32>]) -> Self {
+        let rows: Vec<Nodes> = rows.iter().map(|row| Nodes::new(row)).collect();
+        let radius = |i: usize| Nodes::new(&rows.iter().map(|row| row.twice()[i]).collect::<Vec<f32>>());
+        Self { values: (0..RADII + 2).flat_map(|i| radius(i).twice().to_vec()).collect() }
+    }
+
+    /// The values of four albedos at a radius, which are those of the nodes around it.
+    #[inline]
+    fn at(&self, albedo: usize, radius: usize) -> [f32; 4] {
+        spline::four(&self.values, radius * Self::ROW + albedo)
+    }
+
+    /// A row for each albedo.
+    fn rows(&self) -> impl Iterator<Item = f32> {
+        let row =
+            move |albedo: usize| (1..=RADII).map(move |radius| self.values[radius * Self::ROW + albedo]);
+        (1..=ALBEDOS).flat_map(row)
+    }
+}
+
+/// The profile of one albedo.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Profile {
+    /// Albedos between which there is none have no weights.
+    at: Weights,
+    total: f32,
 }
 
 /// The numbers of a table, for engines that look them up elsewhere. Profiles are cubic splines
 /// over both albedo and radius.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct PlainBssrdfTable<'a> {
     /// One over the share of uniform light from outside that the surface lets in.
     pub exit_norm: f32,
@@ -48,9 +88,9 @@ pub struct PlainBssrdfTable<'a> {
     /// Ascending radii, in mean free paths.
     pub radii: &'a [f32],
     /// 2πr times the profile; a row for each albedo.
-    pub profile: &'a [f32],
+    pub profile: Vec<f32>,
     /// The running integrals of the rows.
-    pub cdf: &'a [f32],
+    pub cdf: Vec<f32>,
     /// The integrals of the rows.
     pub effective_albedos: &'a [f32],
 }
@@ -58,14 +98,27 @@ pub struct PlainBssrdfTable<'a> {
 impl BssrdfTable {
     /// Its numbers.
     pub fn plain(&self) -> PlainBssrdfTable<'_> {
-        let Self { exit_norm, albedos, radii, profile, cdf, effective_albedos, .. } = self;
-        PlainBssrdfTable { exit_norm: *exit_norm, albedos, radii, profile, cdf, effective_albedos }
+        PlainBssrdfTable {
+            exit_norm: self.exit_norm,
+            albedos: self.albedos.all(),
+            radii: self.radii.all(),
+            profile: self.profile.rows().collect(),
+            cdf: self.cdf.rows().collect(),
+            effective_albedos: self.effective_albedos.all(),
+        }
     }
 
     /// What random walks return, for evenly spaced roughnesses √α of the boundary from 0 to 1; each
     /// row for all albedos.
-    pub fn of_walks(&self) -> &[Vec<f32>] {
-        self.of_walks.get_or_init(|| walks::effective_albedos(self.g, self.boundary(), &self.albedos))
+    pub fn of_walks(&self) -> Vec<&[f32]> {
+        self.walks().iter().map(Nodes::all).collect()
+    }
+
+    fn walks(&self) -> &[Nodes] {
+        self.of_walks.get_or_init(|| {
+            let rows = walks::effective_albedos(self.g, self.boundary(), self.albedos.all());
+            rows.iter().map(|row| Nodes::new(row)).collect()
+        })
     }
 
     /// The gains of isotropic rough boundaries for random walks: rows for evenly spaced roughnesses
@@ -81,30 +134,32 @@ impl BssrdfTable {
         let albedos: Vec<f32> = (0..ALBEDOS).map(|i| (spacing(i) / spacing(ALBEDOS - 1)) as f32).collect();
         let progression = (0..RADII - 1).map(|i| (2.5e-3 * 1.2f64.powi(i as i32)) as f32);
         let radii: Vec<f32> = std::iter::once(0.0).chain(progression).collect();
-        let mut table = Self {
+        let (albedos, radii) = (Nodes::new(&albedos), Nodes::new(&radii));
+        let [mut profile, mut cdf] = [const { Vec::new() }; 2];
+        let mut effective_albedos = Vec::with_capacity(ALBEDOS);
+        for &albedo in albedos.all() {
+            let density = |&r: &f32| TAU * r * medium.profile(f64::from(albedo), f64::from(r)) as f32;
+            let mut row: Vec<f32> = radii.all().iter().map(density).collect();
+            let mut sums = spline::integrate(&radii, &Nodes::new(&row));
+            // Diffusion overestimates media that hardly absorb: no more light leaves than entered.
+            let excess = sums[RADII - 1].max(1.0);
+            row.iter_mut().chain(&mut sums).for_each(|value| *value /= excess);
+            effective_albedos.push(sums[RADII - 1]);
+            profile.push(row);
+            cdf.push(sums);
+        }
+        Self {
             g,
             eta,
             exit_norm: 1.0 / medium.transmitted_from_outside() as f32,
-            profile: Vec::with_capacity(ALBEDOS * RADII),
-            cdf: Vec::with_capacity(ALBEDOS * RADII),
-            effective_albedos: Vec::with_capacity(ALBEDOS),
+            profile: Surface::new(&profile),
+            cdf: Surface::new(&cdf),
+            effective_albedos: Nodes::new(&effective_albedos),
             boundary: OnceLock::new(),
             of_walks: OnceLock::new(),
             albedos,
             radii,
-        };
-        for &albedo in &table.albedos {
-            let density = |&r: &f32| TAU * r * medium.profile(f64::from(albedo), f64::from(r)) as f32;
-            let mut row: Vec<f32> = table.radii.iter().map(density).collect();
-            let mut cdf = spline::integrate(&table.radii, &row);
-            // Diffusion overestimates media that hardly absorb: no more light leaves than entered.
-            let excess = cdf[RADII - 1].max(1.0);
-            row.iter_mut().chain(&mut cdf).for_each(|value| *value /= excess);
-            table.effective_albedos.push(cdf[RADII - 1]);
-            table.profile.extend(row);
-            table.cdf.extend(cdf);
         }
-        table
     }
 
     /// The asymmetry.
@@ -125,18 +180,18 @@ impl BssrdfTable {
     /// The share of the light that entered which leaves again, for an albedo in [0, 1], by the
     /// profile.
     pub fn effective_albedo(&self, albedo: f32) -> f32 {
-        Weights::at(&self.albedos, albedo).map_or(0.0, |at| at.sum(|i| self.effective_albedos[i])).max(0.0)
+        self.profile(albedo).total.max(0.0)
     }
 
     /// The albedo of a medium that returns a share of the light that entered, or the nearest to it
     /// that there is: by the profile, or by random walks, of light from a uniform sky that the
     /// `facets` of the boundary let in.
     pub fn albedo(&self, method: SubsurfaceMethod, facets: &TrowbridgeReitz, effective_albedo: f32) -> f32 {
-        let invert = |values: &[f32]| spline::invert(&self.albedos, values, effective_albedo);
+        let invert = |values: &Nodes| spline::invert(&self.albedos, values, effective_albedo);
         match method {
             SubsurfaceMethod::Diffusion => invert(&self.effective_albedos),
             SubsurfaceMethod::RandomWalk => {
-                let rows = self.of_walks();
+                let rows = self.walks();
                 let place = Place::new(facets.mean_alpha().sqrt(), rows.len());
                 let first = place.index as usize;
                 lerp(place.t, invert(&rows[first]), invert(&rows[first + 1]))
@@ -154,22 +209,32 @@ impl BssrdfTable {
         self.boundary().gain(facets, w)
     }
 
-    /// The profile at a radius, per area, of a medium with an albedo in [0, 1], and its density,
-    /// which has the integral 1 over the plane.
-    pub(super) fn profile(&self, albedo: f32, r: f32) -> (f32, f32) {
-        let at = (Weights::at(&self.albedos, albedo), Weights::at(&self.radii, r));
-        let (Some(at_albedo), Some(at_radius)) = at else { return (0.0, 0.0) };
-        let profile = at_albedo.sum(|row| at_radius.sum(|i| self.profile[row * RADII + i]));
-        let profile = (profile / (TAU * if r > 0.0 { r } else { 1.0 })).max(0.0);
-        let total = at_albedo.sum(|i| self.effective_albedos[i]);
-        (profile, if total > 0.0 { profile / total } else { 0.0 })
+    /// The profile of a medium with an albedo in [0, 1].
+    pub(super) fn profile(&self, albedo: f32) -> Profile {
+        let at = Weights::at(&self.albedos, albedo).unwrap_or_default();
+        Profile { at, total: at.sum(self.effective_albedos.around(at.first)) }
     }
 
-    /// A radius with the density of the profile; `None` if the profile is zero.
-    pub(super) fn sample_radius(&self, albedo: f32, u: f32) -> Option<f32> {
-        let at = Weights::at(&self.albedos, albedo)?;
-        let column = |table: &[f32], i: usize| at.sum(|row| table[row * RADII + i]);
-        spline::sample(&self.radii, |i| column(&self.profile, i), |i| column(&self.cdf, i), u)
+    /// A profile at a radius, per area, and its density, which has the integral 1 over the plane.
+    pub(super) fn at_radius(&self, profile: &Profile, r: f32) -> (f32, f32) {
+        let Some(at) = Weights::at(&self.radii, r) else { return (0.0, 0.0) };
+        let Profile { at: albedo, total } = profile;
+        // The sums over radii, of four albedos at once.
+        let mut sums = [0.0; 4];
+        for (i, weight) in at.weights.into_iter().enumerate() {
+            let values = self.profile.at(albedo.first, at.first + i);
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+        let value = (albedo.sum(sums) / (TAU * if r > 0.0 { r } else { 1.0 })).max(0.0);
+        (value, if *total > 0.0 { value / total } else { 0.0 })
+    }
+
+    /// A radius with the density of a profile; `None` if it is zero.
+    pub(super) fn sample_radius(&self, profile: &Profile, u: f32) -> Option<f32> {
+        let at = &profile.at;
+        let values = |i: usize| [0, 1, 2, 3].map(|node| at.sum(self.profile.at(at.first, i + node)));
+        let cdf = |i: usize| at.sum(self.cdf.at(at.first, i + 1));
+        spline::sample(&self.radii, values, cdf, u)
     }
 }
 

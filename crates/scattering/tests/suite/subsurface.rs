@@ -62,7 +62,7 @@ fn effective_albedos_are_the_integrals_of_profiles() {
         let (mut r, ratio) = (1e-6f32, 1.002f32);
         while r < 100.0 {
             let (middle, width) = (r * ratio.sqrt(), r * (ratio - 1.0));
-            sum += bssrdf.profile(middle) * (TAU * middle * width);
+            sum += bssrdf.profiles().at(middle) * (TAU * middle * width);
             r *= ratio;
         }
         let found = bssrdf.effective_albedo();
@@ -80,7 +80,7 @@ fn a_mean_free_path_scales_the_profile() {
         |mfp: f32| Bssrdf::from_reflectance(&WATER, method, &smooth(), given, SampledSpectrum::splat(mfp));
     let (short, long) = (of(0.5), of(2.0));
     for r in [0.01, 0.2, 1.0, 3.0] {
-        let (a, b) = (short.profile(r), long.profile(4.0 * r) * 16.0);
+        let (a, b) = (short.profiles().at(r), long.profiles().at(4.0 * r) * 16.0);
         for i in 0..4 {
             assert!((a[i] - b[i]).abs() <= 1e-4 * a[i], "{a:?} {b:?}");
             assert!((short.effective_albedo()[i] - given[i]).abs() < 1e-3);
@@ -125,9 +125,9 @@ fn radii_have_the_density_of_the_profile() {
     for (table, hero) in cases {
         let bssrdf = bssrdf(table);
         let albedo = bssrdf.effective_albedo()[hero];
-        let density = |r: f32| f64::from(TAU * r * bssrdf.profile(r)[hero] / albedo);
+        let density = |r: f32| f64::from(TAU * r * bssrdf.profiles().at(r)[hero] / albedo);
         let end = [0.3, 1.0, 1.0, 0.6][hero];
-        let sample = |u| bssrdf.sample_radius(hero, u).filter(|r| *r < end);
+        let sample = |u| bssrdf.profiles().sample_radius(hero, u).filter(|r| *r < end);
         if let Err(difference) = test.interval([0.0, end], sample, density) {
             panic!("{table:?} {hero}: {difference}");
         }
@@ -147,13 +147,14 @@ fn probes_have_their_density() {
         let bssrdf = bssrdf(&WATER);
         let mut random = Random::new(3);
         let sample = |u: [f32; 2]| {
-            let probe = bssrdf.sample_probe(n, hero, random.get_1d(), u.into())?;
+            let probe = bssrdf.profiles().sample_probe(n, hero, random.get_1d(), u.into())?;
             let t = -probe.start.dot(met) / probe.direction.dot(met);
             let d = plane.to_local(probe.start + probe.direction * t);
             let (r, phi) = (d.x.hypot(d.y), d.y.atan2(d.x).rem_euclid(TAU));
             ((0.0..=probe.length).contains(&t) && r < 1.0).then_some([r, phi])
         };
-        let density = |[r, phi]: [f32; 2]| f64::from(r * bssrdf.probe_pdf(n, point(r, phi), met)[hero]);
+        let density =
+            |[r, phi]: [f32; 2]| f64::from(r * bssrdf.profiles().probe_pdf(n, point(r, phi), met)[hero]);
         if let Err(difference) = test.rectangle([[0.0, 1.0], [0.0, TAU]], sample, density) {
             panic!("{hero}: {difference}");
         }
@@ -163,10 +164,13 @@ fn probes_have_their_density() {
 #[test]
 fn nothing_leaves_a_body_that_does_not_scatter() {
     let black = Bssrdf::new(&WATER, SampledSpectrum::ONE, SampledSpectrum::ZERO);
-    assert!(black.effective_albedo().is_black() && black.profile(0.3).is_black());
-    assert!(black.sample_probe(Vec3::Z, 0, 0.7, Vec2::splat(0.5)).is_none());
+    assert!(black.effective_albedo().is_black() && black.profiles().at(0.3).is_black());
+    assert!(black.profiles().sample_probe(Vec3::Z, 0, 0.7, Vec2::splat(0.5)).is_none());
     let empty = Bssrdf::new(&WATER, SampledSpectrum::ZERO, SampledSpectrum::ZERO);
-    assert!(empty.profile(0.0).is_black() && empty.sample_probe(Vec3::Z, 0, 0.7, Vec2::ZERO).is_none());
+    assert!(
+        empty.profiles().at(0.0).is_black()
+            && empty.profiles().sample_probe(Vec3::Z, 0, 0.7, Vec2::ZERO).is_none()
+    );
 }
 
 #[test]

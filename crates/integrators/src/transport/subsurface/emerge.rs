@@ -57,7 +57,7 @@ impl Tracer<'_> {
         let entering = lobe.f(s.shading.n, s.wo, TransportMode::Radiance) * (cosines * PI);
         let (mut surface, value, density) = match body.profile() {
             Some(bssrdf) => {
-                let (surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
+                let (surface, density) = self.probe(entry, &bssrdf.profiles(), heroes.hero)?;
                 (surface, entering, density)
             }
             None => {
@@ -79,7 +79,7 @@ impl Tracer<'_> {
         let there = bsdf.bxdf.body()?;
         let value = value
             * match there.profile() {
-                Some(bssrdf) => bssrdf.profile(surface.p().distance(entry.p())),
+                Some(bssrdf) => bssrdf.profiles().at(surface.p().distance(entry.p())),
                 None => SampledSpectrum::splat(there.eta() * there.eta()),
             };
         bsdf.bxdf.keep_leaving(body.diffuses())?;

@@ -58,8 +58,9 @@ impl Tracer<'_> {
     ) -> Option<Exit<'a>> {
         let (mut surface, value, density) = match body.profile() {
             Some(bssrdf) => {
-                let (surface, density) = self.probe(entry, bssrdf, heroes.hero)?;
-                let value = bssrdf.profile(surface.p().distance(entry.p()));
+                let profiles = bssrdf.profiles();
+                let (surface, density) = self.probe(entry, &profiles, heroes.hero)?;
+                let value = profiles.at(surface.p().distance(entry.p()));
                 (surface, value, density)
             }
             None => {

@@ -1,11 +1,11 @@
 //! Where light leaves a body, by its diffusion profile.
 //!
-//! A probe of the [`Bssrdf`] may meet the body several times; if n, one of the points is chosen
+//! A probe of the [profile](Profiles) may meet the body several times; if n, one of the points is chosen
 //! with probability 1/n.
 
 use math::Ray;
 use sampling::{WeightedReservoir, hash};
-use scattering::Bssrdf;
+use scattering::Profiles;
 use scene::SurfaceInteraction;
 use spectrum::SampledSpectrum;
 
@@ -17,12 +17,12 @@ impl Tracer<'_> {
     pub(super) fn probe(
         &mut self,
         entry: &SurfaceInteraction,
-        bssrdf: &Bssrdf,
+        profiles: &Profiles,
         hero: usize,
     ) -> Option<(SurfaceInteraction, SampledSpectrum)> {
         let (uc, u, seed) = (self.sampler.get_1d(), self.sampler.get_2d(), self.sampler.get_1d());
         let (p, n) = (entry.p(), entry.surface.shading.n);
-        let probe = bssrdf.sample_probe(n, hero, uc, u)?;
+        let probe = profiles.sample_probe(n, hero, uc, u)?;
         let mut ray = Ray::new(p + probe.start, probe.direction, entry.surface.time);
         let end = ray.at(probe.length);
         let mut met = WeightedReservoir::new(hash(&[seed.to_bits()]));
@@ -39,7 +39,7 @@ impl Tracer<'_> {
         }
         let surface = met.sample()?.clone();
         let d = surface.p() - p;
-        let density = bssrdf.probe_pdf(n, d, surface.surface.n) * met.sample_probability();
+        let density = profiles.probe_pdf(n, d, surface.surface.n) * met.sample_probability();
         Some((surface, density))
     }
 }
