@@ -11,10 +11,8 @@ use alhazen::{Job, Overrides};
 use crate::common::{data, files_below};
 use crate::scenes::scenes;
 
-/// The bits of a small picture.
-fn picture(mut desc: SceneDesc) -> Vec<u32> {
-    let small = Overrides { resolution: Some([12, 12]), samples_per_pixel: Some(1), ..Overrides::default() };
-    small.apply(&mut desc).expect("changes that every scene can take");
+/// The bits of a picture.
+fn picture(desc: SceneDesc) -> Vec<u32> {
     let mut job = Job::compile(desc).expect("a scene").job;
     job.render(&Control::default()).expect("not cancelled");
     job.picture().expect("a picture").values().map(f32::to_bits).collect()
@@ -33,9 +31,12 @@ fn converted(desc: &SceneDesc) -> SceneDesc {
 }
 
 fn check(paths: impl IntoIterator<Item = PathBuf>) {
+    let small = Overrides { resolution: Some([12, 12]), samples_per_pixel: Some(1), ..Overrides::default() };
     for path in paths {
-        let imported = import(&path, &Files);
+        let mut imported = import(&path, &Files);
         assert!(!imported.has_errors(), "{}", path.display());
+        // Before it is written, as only cameras of an importer follow the size of the film.
+        small.apply(&mut imported.desc).expect("changes that every scene can take");
         let again = converted(&imported.desc);
         assert_eq!(picture(imported.desc), picture(again), "{}", path.display());
     }

@@ -65,7 +65,7 @@ fn a_missing_or_foreign_scene_is_wrong_input() {
     folder.write("a.xml", "<scene version=\"3.0.0\"></scene>");
     for (file, problem) in [
         ("none.pbrt", "none.pbrt"),
-        ("a.stl", "cannot read the mesh `a.stl`: invalid mesh: the file ends before"),
+        ("a.stl", "cannot read the mesh `a.stl`: unsupported mesh: it has no faces"),
         ("a.pbrt", "an STL mesh"),
         #[cfg(not(feature = "usd"))]
         ("a.usda", "a USD scene, which this program was built without"),

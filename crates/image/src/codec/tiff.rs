@@ -2,6 +2,7 @@
 //! integers and of floats. Colours that are stored multiplied by their opacity (associated alpha)
 //! are divided by it, as those of other formats are not.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 
 use half::f16;
@@ -24,8 +25,9 @@ const ASSOCIATED: u16 = 1;
 
 /// What a file has, before its pixels are decoded.
 pub struct Tiff<'a> {
-    decoder: Decoder<Cursor<Vec<u8>>>,
-    length: &'a [u8],
+    decoder: Decoder<Cursor<Cow<'a, [u8]>>>,
+    /// The length of the file.
+    length: usize,
     size: [u32; 2],
     bits: u8,
     /// How many samples a pixel has, and which of them are read.
@@ -59,7 +61,7 @@ fn from_library(error: TiffError) -> ImageError {
 impl<'a> Tiff<'a> {
     /// Reads the header of a file; `None` for kinds of colour that are not read here.
     pub fn open(bytes: &'a [u8]) -> Result<Option<Self>, ImageError> {
-        let mut decoder = Decoder::new(Cursor::new(bytes.to_vec())).map_err(from_library)?;
+        let mut decoder = Decoder::new(Cursor::new(Cow::Borrowed(bytes))).map_err(from_library)?;
         let photometric = decoder.find_tag_unsigned::<u16>(Tag::PhotometricInterpretation);
         let mut palette = None;
         if photometric.map_err(from_library)? == Some(PALETTE) {
@@ -71,7 +73,7 @@ impl<'a> Tiff<'a> {
             // The library does not look colours up: it is given the indices as a grey picture.
             let grey = as_grey(bytes)
                 .ok_or_else(|| ImageError::Unsupported("a palette in a TIFF file of this kind".into()))?;
-            decoder = Decoder::new(Cursor::new(grey)).map_err(from_library)?;
+            decoder = Decoder::new(Cursor::new(Cow::Owned(grey))).map_err(from_library)?;
         }
         let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).map_err(from_library)?;
         let extra = extra.unwrap_or_default().first().copied();
@@ -93,7 +95,16 @@ impl<'a> Tiff<'a> {
             _ => return Ok(None),
         };
         let (width, height) = decoder.dimensions().map_err(from_library)?;
-        Ok(Some(Self { decoder, length: bytes, size: [width, height], bits, samples, read, alpha, palette }))
+        Ok(Some(Self {
+            decoder,
+            length: bytes.len(),
+            size: [width, height],
+            bits,
+            samples,
+            read,
+            alpha,
+            palette,
+        }))
     }
 
     /// Size, names of channels, and how a value is stored.
@@ -118,14 +129,9 @@ impl<'a> Tiff<'a> {
     pub fn decode(mut self, options: &ReadOptions) -> Result<Image, ImageError> {
         let [width, height] = self.size;
         let (columns, rows) = (width as usize, height as usize);
-        options.check_size(
-            columns,
-            rows,
-            self.samples * usize::from(self.bits.max(8)) / 8,
-            self.length.len(),
-        )?;
+        options.check_size(columns, rows, self.samples * usize::from(self.bits.max(8)) / 8, self.length)?;
         let mut limits = Limits::default();
-        let most = usize::try_from(options.byte_limit(self.length.len())).unwrap_or(usize::MAX);
+        let most = usize::try_from(options.byte_limit(self.length)).unwrap_or(usize::MAX);
         limits.decoding_buffer_size = most;
         limits.intermediate_buffer_size = most;
         limits.ifd_value_size = most;

@@ -61,7 +61,7 @@ fn center_and_radius(low: DVec3, high: DVec3) -> (DVec3, f64) {
 /// that they fill [`FILLED`] of the frame from side to side or from top to bottom. Gives its axes,
 /// and the box around all points. `bounds` are those of surfaces without points.
 pub(crate) fn add_camera(desc: &mut SceneDesc, bounds: [DVec3; 2]) -> (Axes, [DVec3; 2]) {
-    let forwards = -DVec3::new(0.4, 0.35, 1.0).normalize();
+    let forwards = -DVec3::new(0.4, 0.45, 1.0).normalize();
     let right = forwards.cross(DVec3::Y).normalize();
     let axes = [right, right.cross(forwards), forwards];
     let sides = desc.film.resolution.map(|side| f64::from(side.max(1)));

@@ -13,8 +13,8 @@ const SQUARE: &str = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nvt 0 0\nvt 1 0\nvt 1
 /// A PNG of two pixels.
 fn picture(channels: &[&str], pixels: &[u8]) -> Vec<u8> {
     let pixels = Pixels::U8(pixels.into(), ColorEncoding::Srgb);
-    let image = Image::new(2, 1, channels.iter().copied(), pixels).unwrap();
-    encode(&image, Format::Png, &WriteOptions::default()).unwrap()
+    let image = Image::new(2, 1, channels.iter().copied(), pixels).expect("two pixels");
+    encode(&image, Format::Png, &WriteOptions::default()).expect("a picture")
 }
 
 /// A square of the material `m`, with pictures of two pixels.
@@ -45,8 +45,8 @@ fn plain(mtl: &str) -> SceneDesc {
 }
 
 fn first(desc: &SceneDesc) -> (&ShapeDesc, &MaterialDesc) {
-    let (_, shape) = desc.shapes.iter().next().unwrap();
-    (shape, &desc.materials[shape.material.unwrap()])
+    let (_, shape) = desc.shapes.iter().next().expect("a shape");
+    (shape, &desc.materials[shape.material.expect("a material")])
 }
 
 fn image_of(desc: &SceneDesc, parameter: &SpectrumParameter) -> ImageTextureDesc {
