@@ -1,5 +1,5 @@
-//! Lookups in the finest level of an image by the parameters (u, v) of a surface: of emission and of
-//! normal maps, which are not averaged over footprints.
+//! Lookups in the finest level of an image by the parameters (u, v) of a surface: of emission and
+//! of normal maps, which are not averaged over footprints.
 
 use description::UvImageDesc;
 use image::{Image, WrapMode};
