@@ -9,7 +9,7 @@ use math::{Point2, Vec2};
 /// How an image is looked up at (u, v).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvLookup {
-    /// What u, v and 1 are multiplied by; (0, 0) is the lower left of the image.
+    /// The factors on u, v and 1; (0, 0) is the lower left of the image.
     pub columns: [Vec2; 3],
     /// Value outside of the image.
     pub wrap: WrapMode,
