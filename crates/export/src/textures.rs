@@ -196,8 +196,8 @@ impl Context<'_, '_> {
     }
 }
 
-/// How an image over (u, v) is looked up, by the names of its wrap mode, filter and columns, and the
-/// wrap mode that is the default.
+/// How an image over (u, v) is looked up, by the names of its wrap mode, filter and columns, and
+/// the wrap mode that is the default.
 pub(crate) fn uv_lookup(
     to: &mut Statement,
     image: &UvImageDesc,

@@ -6,7 +6,7 @@
 //! | 1 | how values are stored: 0 bytes, 1 half floats, 2 floats |
 //! | 2 | values a pixel |
 //! | 3–5 | which of them are red, green and blue |
-//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude, 5 those of the columns from bit 4 on and of the rows from bit 6 on |
+//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude, 5 by axis: columns from bit 4 on, rows from bit 6 on |
 //! | 7 | of bytes, the offset of the 256 numbers that they stand for |
 //! | 8… | for each level where it begins in the buffer of texels, its width, its height, and 0 |
 //!

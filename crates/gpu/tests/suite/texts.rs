@@ -103,8 +103,9 @@ Shape "trianglemesh" "point3 P" [ 1 -0.4 -1  1.8 -0.4 -1  1 0.4 -1.3  1.8 0.4 -1
 Shape "disk" "float radius" 0.4 "float height" 1.5 "float alpha" 0
 "#;
 
-/// Lights of all shapes with an image, moved and repeated for some: triangles with texture coordinates and without, a rectangle,
-/// a patch, one whose points the image chooses, a sphere, a disk and a cylinder.
+/// Lights of all shapes with an image, which is turned and repeated for the first ones: triangles
+/// with texture coordinates and without, a rectangle, a patch, one whose points the image chooses,
+/// a sphere, a disk and a cylinder.
 pub const PANELS: &str = r#"
 LookAt 0 -6 2  0 0 0.8  0 0 1
 Camera "perspective" "float fov" 40

@@ -71,7 +71,7 @@ impl Camera {
         let aspect = self.aspect();
         let kind = match *self {
             Self::Perspective { yfov, .. } => {
-                let vertical = libm::tan(yfov.min(3.141) / 2.0);
+                let vertical = libm::tan(yfov.min(std::f64::consts::PI - 1e-3) / 2.0);
                 // The field of view is that over the shorter side.
                 let fov = 2.0 * libm::atan(vertical * aspect.min(1.0));
                 CameraKind::Perspective {

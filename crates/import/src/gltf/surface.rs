@@ -18,8 +18,8 @@ use super::texture::TextureRef;
 use crate::log::Log;
 use crate::look::{Coordinates, Principled, Surface};
 
-/// Which texture coordinates of a file the meshes of a material have: those of normal maps, whose
-/// directions they are, or of emission. Other textures have mappings from there.
+/// The texture coordinates of a file that the meshes of a material have: those of normal maps,
+/// whose directions they are, or of emission. Other textures have mappings from there.
 pub(super) fn coordinates(material: &Material) -> Coordinates {
     let normals = material.normals.as_ref().or(material.coat_normals()).map(|(texture, _)| texture);
     let emission = if material.is_unlit { &material.base } else { &material.emissive };
@@ -70,7 +70,7 @@ impl Builder<'_> {
         let coordinates = coordinates(material);
         let mut part = Part { builder: self, material, coordinates, colors };
         let alpha = part.alpha();
-        // What is cut out everywhere is not seen, and shines no light.
+        // A surface that is cut out everywhere is not seen, and shines no light.
         let is_seen = alpha.as_ref().and_then(FloatParameter::value).is_none_or(|&alpha| alpha > 0.0);
         let area_light = if is_seen { part.area_light() } else { None };
         let (kind, tangent_rotation) = part.kind(is_mirrored);

@@ -83,7 +83,7 @@ fn item<'a>(document: &Document<'a>, array: &str, index: usize, user: &Place) ->
 /// Says which textures have no image that is read, so that they are left out.
 pub(super) fn check(document: &Document, log: &mut Log) {
     for texture in document.items("textures") {
-        // What is wrong with a reference is reported by those who use it.
+        // Faults of a reference are reported by those who use it.
         let Ok(None) = image(document, &texture) else { continue };
         let names = texture.get("extensions").and_then(|extensions| extensions.value.as_object());
         let names: Vec<_> = names.into_iter().flat_map(|names| names.keys()).map(String::as_str).collect();

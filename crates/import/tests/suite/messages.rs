@@ -435,7 +435,7 @@ fn backslashes_that_are_no_escapes_are_errors_at_their_place() {
     assert!(found.contains(&format!("1:15 {expected}")), "{found:?}");
     let found = messages("WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"a\\.pfm\"");
     assert!(found.contains(&format!("2:52 {expected}")), "{found:?}");
-    // What is an escape is told where the file is not found.
+    // Escapes in a name are told where the file is not found.
     let found = messages("Include \"parts\\new.pbrt\"\nWorldBegin");
     assert!(found[0].contains("its name has escapes such as `\\n`: write `/` between folders"), "{found:?}");
     // A backslash that is written as one is that of a path.

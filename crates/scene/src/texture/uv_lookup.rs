@@ -1,5 +1,5 @@
-//! Lookups in the finest level of an image by the parameters (u, v) of a surface: of emission and of
-//! normal maps, which are not averaged over footprints.
+//! Lookups in the finest level of an image by the parameters (u, v) of a surface: of emission and
+//! of normal maps, which are not averaged over footprints.
 
 use description::UvImageDesc;
 use image::{Image, WrapMode};
@@ -9,7 +9,7 @@ use math::{Point2, Vec2};
 /// How an image is looked up at (u, v).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvLookup {
-    /// What u, v and 1 are multiplied by; (0, 0) is the lower left of the image.
+    /// The factors on u, v and 1; (0, 0) is the lower left of the image.
     pub columns: [Vec2; 3],
     /// Value outside of the image.
     pub wrap: WrapMode,

@@ -192,7 +192,7 @@ fn textures_in_extensions_that_are_not_read_are_left_out_with_a_warning() {
     // One that is also there in a format that is read is drawn.
     file.json["textures"] = json!([{"source": 0, "extensions": {"EXT_texture_avif": {"source": 0}}}]);
     assert!(matches!(surface(&file.scene()).colors[0], Parameter::Texture(_)));
-    // What a reader needs is an error.
+    // Readers that need it refuse the file.
     file.json["extensionsRequired"] = json!(["EXT_texture_avif"]);
     assert!(file.messages(Severity::Error)[0].contains("requires the extension `EXT_texture_avif`"));
 }
