@@ -385,8 +385,8 @@ fn turns_its_back(hit: Hit, o: vec3f, d: vec3f) -> bool {
     } else {
         front = shape_point(hit, inner_o, inner_d).n;
     }
-    let along = dot(front, inner_d);
-    return select(along < 0, along > 0, end_at_camera == CameraEnd_Origin);
+    let from_camera = select(-inner_d, inner_d, end_at_camera == CameraEnd_Origin);
+    return dot(front, from_camera) > 0;
 }
 
 // Whether a hit on a surface that is cut out or single-sided counts: where it is cut out, by a hash

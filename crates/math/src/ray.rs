@@ -7,7 +7,8 @@ use lanes::Real;
 /// surfaces, so that these rays pass through them; other rays meet both sides of all surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CameraEnd {
-    /// The camera is at neither end. So it is for rays that go on beyond an interface between media.
+    /// The camera is at neither end, or was before the ray went on beyond an interface between
+    /// media.
     #[default]
     Neither,
     /// A camera ray.
