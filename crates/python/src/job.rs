@@ -10,11 +10,16 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
 
-use crate::film::{Film, film_error};
-use crate::picture::{Picture, image_error};
+use crate::errors::{film_error, image_error, wrong_type};
+use crate::film::Film;
+use crate::keywords;
+use crate::picture::Picture;
 use crate::render::{Callbacks, drive};
-use crate::scene::{Scene, lines, load, scene_error};
+use crate::scene::{Scene, load};
 use crate::value::Chosen;
+
+/// What chooses an integrator.
+const ALGORITHM: &str = "the name of an algorithm, or alhazen.settings.integrator";
 
 /// A scene compiled for rendering with certain settings. What is rendered several times, whole or
 /// in shards, is compiled once.
@@ -29,11 +34,11 @@ pub struct Job {
 
 /// Compiles a scene, or the scene of a file.
 ///
-/// spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
 /// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
-/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) with
-/// y down. layers: names of layers beside the colours, such as "depth". settings: values by name,
-/// as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) from 0
+/// to 1 with y down. layers: names of layers beside the colours, such as "depth". settings: values
+/// by name, as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
 #[pyfunction]
 #[pyo3(signature = (
     scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None
@@ -42,12 +47,12 @@ pub struct Job {
 pub fn compile(
     py: Python,
     scene: &Bound<'_, PyAny>,
-    spp: Option<u32>,
-    resolution: Option<[i32; 2]>,
+    #[pyo3(from_py_with = keywords::spp)] spp: Option<u32>,
+    #[pyo3(from_py_with = keywords::resolution)] resolution: Option<[i32; 2]>,
     integrator: Option<&Bound<'_, PyAny>>,
-    seed: Option<i32>,
-    crop: Option<[f32; 4]>,
-    layers: Option<Vec<String>>,
+    #[pyo3(from_py_with = keywords::seed)] seed: Option<i32>,
+    #[pyo3(from_py_with = keywords::crop)] crop: Option<[f32; 4]>,
+    #[pyo3(from_py_with = keywords::layers)] layers: Option<Vec<String>>,
     settings: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Job> {
     let loaded;
@@ -69,7 +74,10 @@ pub fn compile(
     if let Some(integrator) = integrator {
         match Chosen::of(integrator)? {
             Some(chosen) => choose(&mut overrides, chosen.for_part("integrator")?)?,
-            None => overrides.integrator = Some(integrator.extract()?),
+            None => {
+                let name = integrator.extract().map_err(|_| wrong_type("integrator", ALGORITHM, integrator));
+                overrides.integrator = Some(name?);
+            }
         }
     }
     if let Some(settings) = settings {
@@ -77,11 +85,10 @@ pub fn compile(
     }
     let mut desc = scene.imported.desc.clone();
     overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let sources = &scene.imported.sources;
     let compiled =
         py.detach(|| alhazen::Job::compile(desc)).map_err(|errors| match overrides.blamed(&errors) {
             Some(error) => PyValueError::new_err(error.to_string()),
-            None => scene_error(&errors, sources),
+            None => scene.error(&errors),
         })?;
     let order = RenderOrder {
         scene: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()),
@@ -91,7 +98,7 @@ pub fn compile(
         shard: Shard::WHOLE,
         limits: Limits::default(),
     };
-    Ok(Job { job: Mutex::new(compiled.job), order, warnings: lines(&compiled.warnings, sources) })
+    Ok(Job { job: Mutex::new(compiled.job), order, warnings: scene.lines(&compiled.warnings) })
 }
 
 /// Takes settings over: a dictionary, settings of a part, or a sequence of these.
@@ -153,26 +160,23 @@ impl Job {
     /// Renders a picture.
     ///
     /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
-    /// threads: their number, by default one for each core. progress: called with a Progress after
-    /// passes. preview: called with an Image now and then, at last with the result.
+    /// threads: their number, by default one for each core. progress: True for a line with the time
+    /// left on standard error, or a function that is called with a Progress after passes. preview:
+    /// called with an Image now and then, at last with the result.
     ///
     /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
     #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
     pub fn render(
         &self,
         py: Python,
-        time: Option<f64>,
-        noise: Option<f64>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = keywords::time)] time: Option<f64>,
+        #[pyo3(from_py_with = keywords::noise)] noise: Option<f64>,
+        #[pyo3(from_py_with = keywords::threads)] threads: Option<usize>,
         progress: Option<Py<PyAny>>,
         preview: Option<Py<PyAny>>,
     ) -> PyResult<Py<Picture>> {
-        if let Some(noise) = noise.filter(|&noise| !(noise > 0.0 && noise.is_finite())) {
-            return Err(PyValueError::new_err(format!("noise is a number above 0, not {noise}")));
-        }
-        let callbacks = Callbacks::new(py, progress, preview)?;
-        let time = time.map(Duration::try_from_secs_f64).transpose();
-        let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
+        let callbacks = Callbacks::new(py, progress, preview, [time, noise])?;
+        let limits = Limits { time: time.map(Duration::from_secs_f64), noise };
         let picture = self.with(py, |job| {
             let passes = 0..self.order.passes;
             job.restart(false).map_err(image_error)?;
@@ -190,8 +194,9 @@ impl Job {
     /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
     /// one whose picture has the same bits as that of render().
     ///
-    /// alternate: whether its passes alternate between two films, from which the noise of the
-    /// picture is estimated. threads, progress, preview: as those of render().
+    /// index: which one. count: their number. alternate: whether its passes alternate between two
+    /// films, from which the noise of the picture is estimated. threads, progress, preview: as those
+    /// of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
     fn render_shard(
@@ -214,7 +219,7 @@ impl Job {
                 format!("shard {index} of {count} is empty: there are only {} passes", order.passes);
             return Err(PyValueError::new_err(problem));
         }
-        let (limits, callbacks) = (Limits::default(), Callbacks::new(py, progress, preview)?);
+        let (limits, callbacks) = (Limits::default(), Callbacks::new(py, progress, preview, [None; 2])?);
         let bytes = self.with(py, |job| {
             job.restart(alternate).map_err(image_error)?;
             drive(job, passes, &limits, threads, &callbacks, |job| {
@@ -258,8 +263,18 @@ impl Job {
     }
 }
 
-/// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call,
-/// with the arguments of both.
+/// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call.
+///
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
+/// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
+/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) from 0
+/// to 1 with y down. layers: names of layers beside the colours, such as "depth". settings: values
+/// by name, as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+///
+/// time: seconds after which no pass is begun. noise: the relative error at which it ends.
+/// threads: their number, by default one for each core. progress: True for a line with the time
+/// left on standard error, or a function that is called with a Progress after passes. preview:
+/// called with an Image now and then, at last with the result.
 ///
 /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
 #[pyfunction]
@@ -271,16 +286,16 @@ impl Job {
 pub fn render(
     py: Python,
     scene: &Bound<'_, PyAny>,
-    spp: Option<u32>,
-    resolution: Option<[i32; 2]>,
+    #[pyo3(from_py_with = keywords::spp)] spp: Option<u32>,
+    #[pyo3(from_py_with = keywords::resolution)] resolution: Option<[i32; 2]>,
     integrator: Option<&Bound<'_, PyAny>>,
-    seed: Option<i32>,
-    crop: Option<[f32; 4]>,
-    layers: Option<Vec<String>>,
+    #[pyo3(from_py_with = keywords::seed)] seed: Option<i32>,
+    #[pyo3(from_py_with = keywords::crop)] crop: Option<[f32; 4]>,
+    #[pyo3(from_py_with = keywords::layers)] layers: Option<Vec<String>>,
     settings: Option<&Bound<'_, PyAny>>,
-    time: Option<f64>,
-    noise: Option<f64>,
-    threads: Option<usize>,
+    #[pyo3(from_py_with = keywords::time)] time: Option<f64>,
+    #[pyo3(from_py_with = keywords::noise)] noise: Option<f64>,
+    #[pyo3(from_py_with = keywords::threads)] threads: Option<usize>,
     progress: Option<Py<PyAny>>,
     preview: Option<Py<PyAny>>,
 ) -> PyResult<Py<Picture>> {

@@ -5,10 +5,14 @@
 //! copied.
 
 mod builder;
+mod color;
 mod difference;
+mod errors;
 mod film;
 mod job;
+mod keywords;
 mod picture;
+mod place;
 mod render;
 mod scene;
 mod value;

@@ -1,6 +1,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, final
+from pathlib import Path
+from typing import Any, Literal, final
 
 import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -14,7 +15,7 @@ class SceneError(Exception): ...
 @final
 class Scene:
     @property
-    def path(self) -> PathLike[str]: ...
+    def path(self) -> Path: ...
     @property
     def warnings(self) -> list[str]: ...
     @property
@@ -37,13 +38,15 @@ class Progress:
 @final
 class Image:
     @staticmethod
-    def from_array(array: NDArray[numpy.float32]) -> Image: ...
+    def from_array(array: ArrayLike) -> Image: ...
     @staticmethod
     def open(path: str | PathLike[str]) -> Image: ...
     @property
     def width(self) -> int: ...
     @property
     def height(self) -> int: ...
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
     @property
     def channels(self) -> list[str]: ...
     @property
@@ -59,6 +62,21 @@ class Image:
     def write(
         self,
         path: str | PathLike[str],
+        *,
+        view: str = "standard",
+        exposure: float = 0.0,
+        white_balance: float | None = None,
+    ) -> None: ...
+    def save(
+        self,
+        path: str | PathLike[str],
+        *,
+        view: str = "standard",
+        exposure: float = 0.0,
+        white_balance: float | None = None,
+    ) -> None: ...
+    def show(
+        self,
         *,
         view: str = "standard",
         exposure: float = 0.0,
@@ -105,7 +123,9 @@ class Typed:
 
 @final
 class SceneBuilder:
-    def __init__(self) -> None: ...
+    def __init__(self, *, handedness: Literal["left", "right"] = "right") -> None: ...
+    @property
+    def handedness(self) -> Literal["left", "right"]: ...
     def film(self, kind: str | Settings | None = None, /, **parameters: Any) -> None: ...
     def sampler(self, kind: str | Settings, /, **parameters: Any) -> None: ...
     def filter(self, kind: str | Settings, /, **parameters: Any) -> None: ...
@@ -168,7 +188,7 @@ def blackbody(kelvin: float) -> Typed: ...
 @final
 class Job:
     @property
-    def path(self) -> PathLike[str]: ...
+    def path(self) -> Path: ...
     @property
     def warnings(self) -> list[str]: ...
     @property
@@ -179,7 +199,7 @@ class Job:
         time: float | None = None,
         noise: float | None = None,
         threads: int | None = None,
-        progress: Callable[[Progress], object] | None = None,
+        progress: Callable[[Progress], object] | bool | None = None,
         preview: Callable[[Image], object] | None = None,
     ) -> Image: ...
     def render_shard(
@@ -189,7 +209,7 @@ class Job:
         *,
         alternate: bool = False,
         threads: int | None = None,
-        progress: Callable[[Progress], object] | None = None,
+        progress: Callable[[Progress], object] | bool | None = None,
         preview: Callable[[Image], object] | None = None,
     ) -> Film: ...
     def blank_film(self, *, alternate: bool = False) -> Film: ...
@@ -239,7 +259,7 @@ def render(
     time: float | None = None,
     noise: float | None = None,
     threads: int | None = None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Callable[[Progress], object] | bool | None = None,
     preview: Callable[[Image], object] | None = None,
 ) -> Image: ...
 def compare(reference: Image, image: Image) -> Difference: ...

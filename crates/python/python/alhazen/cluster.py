@@ -1,4 +1,4 @@
-"""Renders on many machines, as tasks of Ray (https://www.ray.io; `pip install alhazen[cluster]`).
+"""Renders on many machines, as tasks of Ray (https://www.ray.io; `pip install alhazen-renderer[cluster]`).
 
     import alhazen.cluster
     image = alhazen.cluster.render("scene.pbrt", spp=1024, address="auto")
@@ -23,10 +23,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import ray
-import ray.exceptions
-
 from . import Film, Image, Job, Scene, SceneError, compile, load
+from .bar import Bar
+
+try:
+    import ray
+    import ray.exceptions
+except ImportError as error:
+    raise ImportError("alhazen.cluster needs Ray: pip install alhazen-renderer[cluster]") from error
 
 __all__ = ["Progress", "render"]
 
@@ -59,7 +63,7 @@ def render(
     time: float | None = None,
     noise: float | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Callable[[Progress], object] | bool | None = None,
     preview: Callable[[Image], object] | None = None,
     **arguments: Any,
 ) -> Image:
@@ -73,7 +77,8 @@ def render(
     noise: the relative error at which the render ends; its shards are then merged in their order, so
     that it ends after the same one on any cluster.
     checkpoint: a film file from which the render is continued if it exists, and that is saved every
-    minute. progress: called with a Progress after shards. preview: called with an Image now and
+    minute. progress: True for a line with the time left on standard error, or a function that is
+    called with a Progress after shards. preview: called with an Image now and
     then. All other arguments are those of alhazen.compile().
 
     Ctrl-C ends it with KeyboardInterrupt, after the film was saved; so does an exception of a
@@ -99,6 +104,8 @@ def render(
     count, done = _shards(saved, passes, min(most, shards or max(16, 4 * workers)))
 
     begin = clock.monotonic()
+    bar = Bar(time, noise) if progress is True else None
+    progress = bar or progress or None
     run = _Run(saved, checkpoint, count, len(done), begin, noise, progress, preview)
     missing = [index for index in range(1, count + 1) if index not in done]
     indices = {task.start(_render_shard, index, count): index for index in missing}
@@ -118,6 +125,8 @@ def render(
     finally:
         for each in pending:
             ray.cancel(each, force=True)
+        if bar is not None:
+            bar.close()
         run.save()
     return run.film.image()
 

@@ -1,4 +1,8 @@
-"""Transforms as matrices of 4 x 4 that take column vectors to the world; `a @ b` applies b first."""
+"""Transforms as matrices of 4 x 4 that take column vectors to the world; `a @ b` applies b first.
+
+Worlds are right-handed, unless a SceneBuilder is left-handed as the pbrt format: the same matrices are
+its Translate, Scale, Rotate and LookAt, but a rotation is clockwise there.
+"""
 
 from __future__ import annotations
 
@@ -13,19 +17,28 @@ Matrix = NDArray[numpy.float64]
 
 
 def translate(x: float, y: float, z: float) -> Matrix:
-    """Moves by a vector."""
+    """Moves by a vector.
+
+    x, y, z: the vector.
+    """
     matrix = numpy.eye(4)
     matrix[:3, 3] = x, y, z
     return matrix
 
 
 def scale(x: float, y: float | None = None, z: float | None = None) -> Matrix:
-    """Scales along the axes, by the same factor if there is only one."""
+    """Scales along the axes.
+
+    x, y, z: the factors; y and z are x if they are not given.
+    """
     return numpy.diag([x, x if y is None else y, x if z is None else z, 1.0])
 
 
 def rotate(degrees: float, axis: Sequence[float]) -> Matrix:
-    """Rotates about an axis through the origin, counterclockwise for who looks against it."""
+    """Rotates about an axis through the origin, counterclockwise for who looks against it.
+
+    degrees: the angle. axis: its direction.
+    """
     x, y, z = _unit(axis)
     cross = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     angle = numpy.radians(degrees)
@@ -36,8 +49,11 @@ def rotate(degrees: float, axis: Sequence[float]) -> Matrix:
 
 
 def look_at(eye: ArrayLike, at: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> Matrix:
-    """Places a camera at a point, so that it looks at another one. As in the pbrt format, the
-    camera's system is left-handed: x to the right, y up, z ahead."""
+    """Places a camera or a light at a point, so that it looks at another one: its z is ahead and its y
+    up, so that its x is to the left. In the world of a left-handed SceneBuilder it is to the right.
+
+    eye: where it is. at: the point that it looks at. up: the direction that is up in the picture.
+    """
     eye = numpy.asarray(eye, float)
     ahead = _unit(numpy.asarray(at, float) - eye)
     right = _unit(numpy.cross(_unit(up), ahead))
