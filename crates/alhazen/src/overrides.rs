@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use description::schema::Settings;
 use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span, Spanned};
 use film::Layer;
 
@@ -146,7 +147,7 @@ fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
 mod tests {
     use super::*;
     use crate::integrator_names;
-    use description::schema::{Settings, Value};
+    use description::schema::Value;
     use description::{FilterDesc, LightSamplerDesc, PathDesc, SamplerKind, SppmDesc};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {

@@ -94,16 +94,17 @@ impl SceneBuilder {
         }
     }
 
-    /// The place of a light. What its image shows increases from +x to +y, which is to the right for
-    /// who looks around in a left-handed world; in a right-handed one y is mirrored. Measurements of
-    /// luminaires are right-handed.
+    /// The place of a light. Around an environment of the format u increases from +x to +y, which is
+    /// to the right in a left-handed world; so y is mirrored in a right-handed one. A measured
+    /// luminaire is counterclockwise from +x to +z, seen from +y, in a left-handed world.
     fn lighting(&self, kind: &str, arguments: &[Argument], motion: Motion) -> Motion {
         let file = arguments.iter().find(|argument| argument.name == "filename");
         let Some(ArgumentValues::Strings(file)) = file.map(|file| &file.values) else { return motion };
         let is_measured = file.iter().any(|name| name.to_ascii_lowercase().ends_with(".ies"));
         match kind {
             "projection" => self.looking(motion),
-            "infinite" | "goniometric" if !is_measured => self.mirrored(motion, DVec3::new(1.0, -1.0, 1.0)),
+            "infinite" => self.mirrored(motion, DVec3::new(1.0, -1.0, 1.0)),
+            "goniometric" if is_measured => self.mirrored(motion, DVec3::new(1.0, 1.0, -1.0)),
             _ => motion,
         }
     }
@@ -204,7 +205,7 @@ impl SceneBuilder {
         let kind = kind.map_or_else(|| py.None().into_bound(py), Bound::clone);
         let (kind, arguments) = kind_of("camera", &kind, "perspective", parameters, &self.owner)?;
         let (motion, medium) = (motion(transform)?, name(medium, &self.owner, "medium")?);
-        // Pictures of the spherical camera are right in a right-handed world as they are.
+        // The format's panoramas increase to the left, and so to the right in a right-handed world.
         let motion = if kind == "spherical" { motion } else { self.looking(motion) };
         self.calling(py, "camera").builder.camera(&kind, arguments, motion, medium);
         Ok(())

@@ -34,11 +34,12 @@ pub struct Job {
 
 /// Compiles a scene, or the scene of a file.
 ///
-/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
-/// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
-/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) from 0
-/// to 1 with y down. layers: names of layers beside the colours, such as "depth". settings: values
-/// by name, as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
+/// whole picture. integrator: the name of an algorithm, see integrators(), or
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
+/// part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
+/// beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
+/// or settings of alhazen.settings, one or several.
 #[pyfunction]
 #[pyo3(signature = (
     scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None
@@ -265,11 +266,12 @@ impl Job {
 
 /// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call.
 ///
-/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
-/// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
-/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) from 0
-/// to 1 with y down. layers: names of layers beside the colours, such as "depth". settings: values
-/// by name, as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
+/// whole picture. integrator: the name of an algorithm, see integrators(), or
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
+/// part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
+/// beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
+/// or settings of alhazen.settings, one or several.
 ///
 /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
 /// threads: their number, by default one for each core. progress: True for a line with the time

@@ -52,7 +52,7 @@ def scene(tmp_path):
         ({"progress": "x"}, TypeError, "`progress` is True, or a function .*, not 'x'"),
         ({"settings": {"camera.fov": 400}}, ValueError, "cannot set camera.fov to `400`"),
         ({"settings": alhazen.settings.camera(lensradius=-1)}, ValueError, "cannot set camera.lensradius"),
-        ({"settings": alhazen.settings.camera(screenwindow=(1, 0, 0, 1))}, ValueError, "camera.screenwindow"),
+        ({"settings": alhazen.settings.camera(screenwindow=(1, 1, 0, 1))}, ValueError, "camera.screenwindow"),
         ({"settings": alhazen.settings.camera(shutteropen=2.0, shutterclose=1.0)}, ValueError, "camera.shutter"),
         ({"settings": alhazen.settings.camera(shutteropen=1.0)}, ValueError, "camera.shutteropen"),
         ({"settings": alhazen.settings.film(cropwindow=(0.5, 0.2, 0, 1))}, ValueError, "film.cropwindow"),
@@ -149,7 +149,7 @@ def test_errors_and_warnings_of_compiling_name_the_line_of_the_program():
     builder = alhazen.SceneBuilder()
     builder.film(xresolution=8, yresolution=8)
     number = line() + 1
-    builder.light("point", I=0.0)
+    builder.light("point", scale=0.0)
     builder.shape("sphere", transform=alhazen.translate(0, 0, 5))
     compiled = alhazen.compile(builder.build(), spp=1)
     assert any(text.startswith(f'{__file__}:{number}: in light("point"): warning[') for text in compiled.warnings)

@@ -193,24 +193,50 @@ def test_an_environment_is_seen_as_its_image_is(handedness, tmp_path):
 
 
 @pytest.mark.parametrize("handedness", ["right", "left"])
-@pytest.mark.parametrize("kind", ["projection", "goniometric"])
-def test_a_light_shows_its_image_on_a_wall(handedness, kind, tmp_path):
+def test_a_projector_shows_its_image_on_a_wall(handedness, tmp_path):
     made = builder(handedness, (0, 0, 0), (-1, 0, 0), (0, 0, 1), fov=60)
     wall = [[-3, -9, -9], [-3, 9, -9], [-3, 9, 9], [-3, -9, 9]]
     made.shape("trianglemesh", P=wall, indices=[0, 1, 2, 0, 2, 3])
-    place = alhazen.look_at((0, 0, 0), (-1, 0, 0), (0, 0, 1)) if kind == "projection" else numpy.eye(4)
-    path = two_halves(tmp_path / "slide.exr")
-    if kind == "goniometric":
-        # The equal-area mapping: a picture of the sphere as the spherical camera of the format sees it.
-        sky = alhazen.SceneBuilder(handedness="left")
-        sky.film(xresolution=64, yresolution=64)
-        sky.camera("spherical", mapping="equalarea", transform=alhazen.rotate(90, (1, 0, 0)) @ alhazen.scale(1, 1, -1))
-        sky.light("infinite", filename=path)
-        path = tmp_path / "sphere.exr"
-        alhazen.render(sky.build(), spp=4).write(path)
-    made.light(kind, filename=path, transform=place, scale=20.0)
+    place = alhazen.look_at((0, 0, 0), (-1, 0, 0), (0, 0, 1))
+    made.light("projection", filename=two_halves(tmp_path / "slide.exr"), transform=place, scale=20.0)
     image = alhazen.render(made.build(), **SAMPLES)
     assert find(image, 0)[0] < 0.45 and find(image, 1)[0] > 0.55
+
+
+def wall(z):
+    return {"P": [[-9, -9, z], [9, -9, z], [9, 9, z], [-9, 9, z]], "indices": [0, 1, 2, 0, 2, 3]}
+
+
+@pytest.mark.parametrize("handedness", ["right", "left"])
+def test_a_light_shines_as_a_spherical_camera_sees(handedness, tmp_path):
+    made = alhazen.SceneBuilder(handedness=handedness)
+    made.film(xresolution=64, yresolution=64)
+    made.camera("spherical", mapping="equalarea")
+    made.shape("sphere", radius=0.4, emission=5.0, transform=alhazen.translate(1, 0, 2))
+    alhazen.render(made.build(), spp=4).write(tmp_path / "sphere.exr")
+    made = builder(handedness, (0, 0, 0), (0, 0, 1), fov=80)
+    made.shape("trianglemesh", **wall(3))
+    made.light("goniometric", filename=tmp_path / "sphere.exr", scale=100.0)
+    columns = numpy.asarray(alhazen.render(made.build(), **SAMPLES)).sum((0, 2))
+    is_left = columns[:24].sum() > 10 * columns[24:].sum()
+    assert is_left == (handedness == "right")
+
+
+@pytest.mark.parametrize(("handedness", "z"), [("right", -3), ("left", 3)])
+def test_a_measured_luminaire_is_counterclockwise_in_a_right_handed_world(handedness, z, tmp_path):
+    # Light at 90 degrees of the horizontal angles from 0 to 360, from x around y.
+    rows = "\n".join(f"0 {100 if angle == 90 else 0} 0" for angle in range(0, 361, 90))
+    (tmp_path / "a.ies").write_text(
+        f"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 5 1 2 0 0 0\n1 1 0\n0 90 180\n0 90 180 270 360\n{rows}\n"
+    )
+
+    def seen(z):
+        made = builder(handedness, (0, 0, 0), (0, 0, z))
+        made.light("goniometric", filename=tmp_path / "a.ies", scale=100.0)
+        made.shape("trianglemesh", **wall(z))
+        return alhazen.render(made.build(), **SAMPLES).pixels.mean()
+
+    assert seen(z) > 10 * seen(-z)
 
 
 def test_a_texture_is_seen_as_its_image_is(tmp_path):

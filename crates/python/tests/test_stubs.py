@@ -45,7 +45,7 @@ def check(node: ast.FunctionDef, thing: object) -> None:
         return
     assert parameters(node) == list(inspect.signature(thing).parameters), node.name
     for name in set(parameters(node)) - {"self"}:
-        assert re.search(rf"\b{name}(, \w+)*: ", text), f"{node.name} does not say what {name} is"
+        assert re.search(rf"\b{name}(, \w+)*:\s", text), f"{node.name} does not say what {name} is"
 
 
 def test_the_module_is_described():
@@ -74,7 +74,7 @@ def test_functions_and_classes_are_described():
 def test_functions_of_the_package_describe_each_parameter():
     for thing in (alhazen.translate, alhazen.rotate, alhazen.scale, alhazen.look_at, alhazen.live):
         for name in inspect.signature(thing).parameters:
-            assert re.search(rf"\b{name}(, \w+)*: ", inspect.getdoc(thing)), (thing.__name__, name)
+            assert re.search(rf"\b{name}(, \w+)*:\s", inspect.getdoc(thing)), (thing.__name__, name)
 
 
 def fits(value: object, annotation: object) -> bool:
