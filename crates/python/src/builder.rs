@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::color;
 use crate::errors::{shown, wrong_type};
+use crate::keywords;
 use crate::place::{Calls, Place};
 use crate::scene::Scene;
 use crate::value::{Chosen, Owner, Reference, argument, arguments, motion};
@@ -81,8 +82,8 @@ impl SceneBuilder {
         state
     }
 
-    /// The place of a camera or projector. Its system, in which it looks along +z with y up and x to
-    /// the right, is left-handed, so that its x is mirrored in a right-handed world.
+    /// The place of a camera or projector. Its system, in which it looks along +z with y up and x
+    /// to the right, is left-handed, so that its x is mirrored in a right-handed world.
     fn looking(&self, motion: Motion) -> Motion {
         self.mirrored(motion, DVec3::new(-1.0, 1.0, 1.0))
     }
@@ -94,8 +95,8 @@ impl SceneBuilder {
         }
     }
 
-    /// The place of a light. Around an environment of the format u increases from +x to +y, which is
-    /// to the right in a left-handed world; so y is mirrored in a right-handed one. A measured
+    /// The place of a light. Around an environment of the format u increases from +x to +y, which
+    /// is to the right in a left-handed world; so y is mirrored in a right-handed one. A measured
     /// luminaire is counterclockwise from +x to +z, seen from +y, in a left-handed world.
     fn lighting(&self, kind: &str, arguments: &[Argument], motion: Motion) -> Motion {
         let file = arguments.iter().find(|argument| argument.name == "filename");
@@ -134,7 +135,8 @@ impl SceneBuilder {
 
     /// Sets the film.
     ///
-    /// kind: its type, by default "rgb", or alhazen.settings.film(). parameters: such as xresolution.
+    /// kind: its type, by default "rgb", or alhazen.settings.film(). parameters: such as
+    /// xresolution.
     #[pyo3(signature = (kind=None, /, **parameters))]
     fn film(
         &self,
@@ -190,9 +192,9 @@ impl SceneBuilder {
     /// Sets the camera.
     ///
     /// kind: its type, by default "perspective", or alhazen.settings.camera(). parameters: such as
-    /// fov. transform: its place, as look_at() gives it: it looks along +z of its own system, with y
-    /// up. One of Blender, glTF or OpenGL looks along -z: matrix @ alhazen.rotate(180, (0, 1, 0)).
-    /// medium: the one around it.
+    /// fov. transform: its place, as look_at() gives it: it looks along +z of its own system, with
+    /// y up. One of Blender, glTF or OpenGL looks along -z: matrix @ alhazen.rotate(180, (0, 1,
+    /// 0)). medium: the one around it.
     #[pyo3(signature = (kind=None, /, *, transform=None, medium=None, **parameters))]
     fn camera(
         &self,
@@ -220,7 +222,7 @@ impl SceneBuilder {
         &self,
         py: Python,
         values: &str,
-        kind: &str,
+        #[pyo3(from_py_with = keywords::kind)] kind: String,
         transform: Option<&Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Reference> {
@@ -238,26 +240,26 @@ impl SceneBuilder {
         }
         let mut state = self.calling(py, "texture");
         let reference = state.name(&self.owner, "texture");
-        state.builder.texture(&reference.name, is_spectrum, kind, arguments, motion.0[0]);
+        state.builder.texture(&reference.name, is_spectrum, &kind, arguments, motion.0[0]);
         Ok(reference)
     }
 
     /// Adds a material.
     ///
-    /// kind: its type, such as "diffuse". parameters: such as reflectance, whose colours are from 0 to
-    /// 1.
+    /// kind: its type, such as "diffuse". parameters: such as reflectance, whose colours are from 0
+    /// to 1.
     #[pyo3(signature = (kind, /, **parameters))]
     fn material(
         &self,
         py: Python,
-        kind: &str,
+        #[pyo3(from_py_with = keywords::kind)] kind: String,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Reference> {
         let arguments = arguments(parameters, &self.owner)?;
         color::check_material(&arguments)?;
         let mut state = self.calling(py, "material");
         let reference = state.name(&self.owner, "material");
-        state.builder.material(&reference.name, kind, arguments);
+        state.builder.material(&reference.name, &kind, arguments);
         Ok(reference)
     }
 
@@ -268,44 +270,45 @@ impl SceneBuilder {
     fn medium(
         &self,
         py: Python,
-        kind: &str,
+        #[pyo3(from_py_with = keywords::kind)] kind: String,
         transform: Option<&Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Reference> {
         let (arguments, motion) = (arguments(parameters, &self.owner)?, motion(transform)?);
         let mut state = self.calling(py, "medium");
         let reference = state.name(&self.owner, "medium");
-        state.builder.medium(&reference.name, kind, arguments, motion);
+        state.builder.medium(&reference.name, &kind, arguments, motion);
         Ok(reference)
     }
 
     /// Adds a light.
     ///
-    /// kind: its type, such as "point". parameters: such as I. transform: its place. The image of the
-    /// light "infinite" has +z up and -x in its middle; "projection" looks along +z, as cameras do.
-    /// medium: the one that it is in.
+    /// kind: its type, such as "point". parameters: such as I. transform: its place. The image of
+    /// the light "infinite" has +z up and -x in its middle; "projection" looks along +z, as cameras
+    /// do. medium: the one that it is in.
     #[pyo3(signature = (kind, /, *, transform=None, medium=None, **parameters))]
     fn light(
         &self,
         py: Python,
-        kind: &str,
+        #[pyo3(from_py_with = keywords::kind)] kind: String,
         transform: Option<&Bound<'_, PyAny>>,
         medium: Option<&Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let (arguments, motion, medium) =
             (arguments(parameters, &self.owner)?, motion(transform)?, name(medium, &self.owner, "medium")?);
-        let motion = self.lighting(kind, &arguments, motion);
-        self.calling(py, "light").builder.light(kind, arguments, motion, medium);
+        let motion = self.lighting(&kind, &arguments, motion);
+        self.calling(py, "light").builder.light(&kind, arguments, motion, medium);
         Ok(())
     }
 
     /// Adds a shape.
     ///
     /// kind: its type, such as "sphere" or "trianglemesh". parameters: such as P and indices.
-    /// transform: its place. material: its material, by default a grey one. emission: the parameters of an area light, as a dict such as
-    /// {"L": 5.0}, or only its L. inside, outside: the media on its two sides. object: the object
-    /// that it belongs to, instead of the world. reverse_orientation: turns its surface inside out.
+    /// transform: its place. material: its material, by default a grey one. emission: the
+    /// parameters of an area light, as a dict such as {"L": 5.0}, or only its L. inside, outside:
+    /// the media on its two sides. object: the object that it belongs to, instead of the world.
+    /// reverse_orientation: turns its surface inside out.
     #[pyo3(signature = (
         kind, /, *, transform=None, material=None, emission=None, inside=None, outside=None, object=None,
         reverse_orientation=false, **parameters
@@ -314,7 +317,7 @@ impl SceneBuilder {
     fn shape(
         &self,
         py: Python,
-        kind: &str,
+        #[pyo3(from_py_with = keywords::kind)] kind: String,
         transform: Option<&Bound<'_, PyAny>>,
         material: Option<&Bound<'_, PyAny>>,
         emission: Option<&Bound<'_, PyAny>>,
@@ -339,7 +342,7 @@ impl SceneBuilder {
             state.calls.add("emission", place.as_ref());
         }
         state.calls.add("shape", place.as_ref());
-        state.builder.shape(kind, arguments, placement);
+        state.builder.shape(&kind, arguments, placement);
         Ok(())
     }
 
@@ -373,8 +376,8 @@ impl SceneBuilder {
 
     /// The scene of all calls so far. Files that it names are relative to the current folder.
     ///
-    /// Raises SceneError, whose text lists every error with the call that has caused it and its place
-    /// in the program.
+    /// Raises SceneError, whose text lists every error with the call that has caused it and its
+    /// place in the program.
     fn build(&self, py: Python) -> PyResult<Scene> {
         let (builder, calls) = {
             let state = self.state();

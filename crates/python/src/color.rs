@@ -51,7 +51,7 @@ fn components(argument: &Argument) -> Option<Vec<f32>> {
 fn refusal(name: &str, values: &[f32]) -> PyErr {
     let values = values.iter().map(f32::to_string).collect::<Vec<_>>().join(", ");
     PyValueError::new_err(format!(
-        "`{name}` is linear red, green and blue from 0 to 1, not ({values}); a code from 0 to 255 of sRGB is about \
-         (code / 255) ** 2.2"
+        "`{name}` is linear red, green and blue from 0 to 1, not ({values}); a code from 0 to 255 of sRGB \
+         is about (code / 255) ** 2.2"
     ))
 }

@@ -106,8 +106,8 @@ impl Film {
         written.map_err(|error: FilmFileError| film_file_error(&path, error))
     }
 
-    /// Adds another film of the same render. Raises ValueError, and leaves this one as it was, if it
-    /// is of another render or has passes that this one has.
+    /// Adds another film of the same render. Raises ValueError, and leaves this one as it was, if
+    /// it is of another render or has passes that this one has.
     ///
     /// other: a Film, or the bytes of a film file.
     fn merge(&self, py: Python, other: &Bound<'_, PyAny>) -> PyResult<()> {

@@ -8,7 +8,7 @@ use alhazen::integrators::Limits;
 use alhazen::{Overrides, RenderOrder, Shard};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyList, PyString, PyTuple};
 
 use crate::errors::{film_error, image_error, wrong_type};
 use crate::film::Film;
@@ -20,6 +20,9 @@ use crate::value::Chosen;
 
 /// What chooses an integrator.
 const ALGORITHM: &str = "the name of an algorithm, or alhazen.settings.integrator";
+
+/// What changes settings.
+const SETTINGS: &str = "a dict from names to values, or settings of alhazen.settings, one or a list of them";
 
 /// A scene compiled for rendering with certain settings. What is rendered several times, whole or
 /// in shards, is compiled once.
@@ -36,10 +39,10 @@ pub struct Job {
 ///
 /// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
 /// whole picture. integrator: the name of an algorithm, see integrators(), or
-/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
-/// part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
-/// beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
-/// or settings of alhazen.settings, one or several.
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+/// the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+/// layers beside the colours, such as "depth". settings: values by name, as in
+/// {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
 #[pyfunction]
 #[pyo3(signature = (
     scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None
@@ -86,6 +89,14 @@ pub fn compile(
     }
     let mut desc = scene.imported.desc.clone();
     overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    // In the format it is cut to the picture; here it is more likely in pixels.
+    let states_crop = overrides.settings.iter().any(|(name, _)| name.ends_with("cropwindow"));
+    if let Some(window) = desc.film.crop_window.filter(|window| !keywords::is_part(*window))
+        && (states_crop || scene.is_built())
+    {
+        let problem = format!("`cropwindow` is {}, not {window:?}", keywords::CROP);
+        return Err(PyValueError::new_err(problem));
+    }
     let compiled =
         py.detach(|| alhazen::Job::compile(desc)).map_err(|errors| match overrides.blamed(&errors) {
             Some(error) => PyValueError::new_err(error.to_string()),
@@ -110,7 +121,11 @@ fn change(overrides: &mut Overrides, settings: &Bound<'_, PyAny>) -> PyResult<()
     }
     match Chosen::of(settings)? {
         Some(chosen) => choose(overrides, chosen),
-        None => settings.try_iter()?.try_for_each(|part| change(overrides, &part?)),
+        None if settings.is_instance_of::<PyString>() => Err(wrong_type("settings", SETTINGS, settings)),
+        None => {
+            let parts = settings.try_iter().map_err(|_| wrong_type("settings", SETTINGS, settings))?;
+            parts.into_iter().try_for_each(|part| change(overrides, &part?))
+        }
     }
 }
 
@@ -139,7 +154,8 @@ fn texts(settings: &Bound<'_, PyDict>, prefix: &str) -> PyResult<Vec<(String, St
             true => value.try_iter()?.map(|item| text(&item?)).collect::<PyResult<Vec<_>>>()?.join(","),
             false => text(&value)?,
         };
-        Ok((format!("{prefix}{}", key.extract::<String>()?), value))
+        let name = key.extract::<String>().map_err(|_| wrong_type("settings", SETTINGS, &key))?;
+        Ok((format!("{prefix}{name}"), value))
     };
     settings.iter().map(setting).collect()
 }
@@ -196,15 +212,15 @@ impl Job {
     /// one whose picture has the same bits as that of render().
     ///
     /// index: which one. count: their number. alternate: whether its passes alternate between two
-    /// films, from which the noise of the picture is estimated. threads, progress, preview: as those
-    /// of render().
+    /// films, from which the noise of the picture is estimated. threads, progress, preview: as
+    /// those of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     #[pyo3(signature = (index, count, *, alternate=false, threads=None, progress=None, preview=None))]
     fn render_shard(
         &self,
         py: Python,
-        index: u32,
-        count: u32,
+        #[pyo3(from_py_with = keywords::index)] index: u32,
+        #[pyo3(from_py_with = keywords::count)] count: u32,
         alternate: bool,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
@@ -268,10 +284,10 @@ impl Job {
 ///
 /// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
 /// whole picture. integrator: the name of an algorithm, see integrators(), or
-/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
-/// part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
-/// beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
-/// or settings of alhazen.settings, one or several.
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+/// the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+/// layers beside the colours, such as "depth". settings: values by name, as in
+/// {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
 ///
 /// time: seconds after which no pass is begun. noise: the relative error at which it ends.
 /// threads: their number, by default one for each core. progress: True for a line with the time

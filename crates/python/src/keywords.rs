@@ -6,6 +6,10 @@ use pyo3::types::PyString;
 
 use crate::errors::{wrong_type, wrong_value};
 
+/// What a crop is.
+pub const CROP: &str = "four fractions of the picture's width and height from 0 to 1, (x0, x1, y0, y1) \
+     with x0 < x1 and y0 < y1, such as (0.25, 0.75, 0, 1)";
+
 /// A whole number of a range; `None` for Python's None.
 fn whole(value: &Bound<'_, PyAny>, name: &str, [least, most]: [i64; 2]) -> PyResult<Option<i64>> {
     if value.is_none() {
@@ -20,6 +24,33 @@ fn whole(value: &Bound<'_, PyAny>, name: &str, [least, most]: [i64; 2]) -> PyRes
         Ok(number) if (least..=most).contains(&number) => Ok(Some(number)),
         _ => Err(wrong_value(name, &wanted, value)),
     }
+}
+
+/// A number that must be given.
+fn counted(value: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
+    let most = i64::from(u32::MAX);
+    let none = || wrong_type(name, "a whole number", value);
+    whole(value, name, [1, most])?.map(|number| number as u32).ok_or_else(none)
+}
+
+/// The number of a shard.
+pub fn index(value: &Bound<'_, PyAny>) -> PyResult<u32> {
+    counted(value, "index")
+}
+
+/// The number of shards.
+pub fn count(value: &Bound<'_, PyAny>) -> PyResult<u32> {
+    counted(value, "count")
+}
+
+/// The type of a material, shape and the like.
+pub fn kind(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    value.extract().map_err(|_| wrong_type("kind", "the name of a type, a text such as \"sphere\"", value))
+}
+
+/// Whether a crop is a part of the picture.
+pub fn is_part([x0, x1, y0, y1]: [f32; 4]) -> bool {
+    0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0
 }
 
 /// Samples per pixel.
@@ -54,24 +85,20 @@ pub fn resolution(value: &Bound<'_, PyAny>) -> PyResult<Option<[i32; 2]>> {
 
 /// A part of a picture.
 pub fn crop(value: &Bound<'_, PyAny>) -> PyResult<Option<[f32; 4]>> {
-    const WANTED: &str = "four fractions of the picture's width and height from 0 to 1, (x0, x1, y0, y1) with \
-         x0 < x1 and y0 < y1, such as (0.25, 0.75, 0, 1)";
     if value.is_none() {
         return Ok(None);
     }
     let Ok(fractions) = value.extract::<[f32; 4]>() else {
-        return Err(wrong_type("crop", WANTED, value));
+        return Err(wrong_type("crop", CROP, value));
     };
-    let [x0, x1, y0, y1] = fractions;
-    let is_part = 0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0;
-    if is_part {
+    if is_part(fractions) {
         return Ok(Some(fractions));
     }
     let are_pixels =
         fractions.iter().all(|value| *value >= 0.0) && fractions.iter().any(|value| *value >= 2.0);
     let wanted = match are_pixels {
-        true => format!("{WANTED} (pixels are divided by the width or the height)"),
-        false => WANTED.to_owned(),
+        true => format!("{CROP} (pixels are divided by the width or the height)"),
+        false => CROP.to_owned(),
     };
     Err(wrong_value("crop", &wanted, value))
 }

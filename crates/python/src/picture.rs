@@ -284,7 +284,8 @@ impl Picture {
     /// Writes the picture to a file in the format of its extension.
     ///
     /// path: the file. EXR files keep all channels and stay linear; other formats keep the colours,
-    /// and warn where there are layers. Formats for displays, such as PNG, show them through a view.
+    /// and warn where there are layers. Formats for displays, such as PNG, show them through a
+    /// view.
     ///
     /// view: "standard" (sRGB), "agx", "aces", "khronos-neutral" or "filmic". exposure: in stops.
     /// white_balance: the colour temperature of the light that becomes white, in kelvin.

@@ -63,6 +63,11 @@ impl Scene {
         }
     }
 
+    /// Whether it was built.
+    pub fn is_built(&self) -> bool {
+        self.path.as_os_str() == BUILT
+    }
+
     /// The exception for errors of the scene.
     pub fn error(&self, diagnostics: &[Diagnostic]) -> PyErr {
         SceneError::new_err(self.lines(diagnostics).join("\n"))
@@ -105,7 +110,7 @@ impl Scene {
             return Ok(PyBytes::new(py, &bytes));
         }
         let mut bytes = Vec::new();
-        let packed = py.detach(|| match self.path.as_os_str() == BUILT {
+        let packed = py.detach(|| match self.is_built() {
             true => pack_converted(&self.imported.desc, &mut bytes),
             false => pack(&self.path, &Files, &mut bytes).map_err(ConvertError::Pack),
         });

@@ -49,6 +49,9 @@ def scene(tmp_path):
         ({"time": "1"}, TypeError, "`time` is seconds"),
         ({"noise": 0}, ValueError, "`noise` is a relative error"),
         ({"integrator": 3}, TypeError, "`integrator` is the name of an algorithm, .*, not 3"),
+        ({"settings": 3}, TypeError, "`settings` is a dict .*, not 3"),
+        ({"settings": {3: 4}}, TypeError, "`settings` is a dict from names to values"),
+        ({"settings": alhazen.settings.film(cropwindow=(0, 32, 0, 32))}, ValueError, "`cropwindow` is four fractions"),
         ({"progress": "x"}, TypeError, "`progress` is True, or a function .*, not 'x'"),
         ({"settings": {"camera.fov": 400}}, ValueError, "cannot set camera.fov to `400`"),
         ({"settings": alhazen.settings.camera(lensradius=-1)}, ValueError, "cannot set camera.lensradius"),
@@ -70,6 +73,14 @@ def test_whole_numbers_of_numpy_are_whole_numbers(scene):
     image = alhazen.render(scene, spp=numpy.int64(1), resolution=numpy.array([6, 4]), seed=numpy.uint8(3))
     assert image.shape == (4, 6, 3)
     assert alhazen.render(scene, spp=1, crop=numpy.array([0, 0.5, 0, 1])).shape == (8, 4, 3)
+
+
+def test_wrong_parts_are_named(scene):
+    job = alhazen.compile(scene, spp=2)
+    with pytest.raises(ValueError, match="`index` is a whole number from 1"):
+        job.render_shard(-1, 2)
+    with pytest.raises(TypeError, match="`count` is a whole number from 1 .*, not 2.5"):
+        job.render_shard(1, 2.5)
 
 
 def openers(path):
@@ -186,6 +197,9 @@ def test_wrong_values_of_builders_are_quoted():
         (lambda: builder.shape("sphere", radius=10**12), ValueError, "`radius`: expected a whole number of 32 bits"),
         (lambda: builder.shape("sphere", transform="up"), TypeError, "`transform` is a matrix .*, not 'up'"),
         (lambda: builder.shape("sphere", P=[[1, 2], [3]]), ValueError, "`P`: expected rows of numbers of one length"),
+        (lambda: builder.shape(3), TypeError, "`kind` is the name of a type, a text such as \"sphere\", not 3"),
+        (lambda: alhazen.look_at(3, (0, 0, 0)), ValueError, "`eye` is three numbers, not 3"),
+        (lambda: alhazen.rotate((0, 0, 1), 90), ValueError, "`axis` is three numbers, not 90"),
         (lambda: builder.film(3), TypeError, "`film` is the name of a type, .*, not 3"),
         (lambda: alhazen.Image.from_array(numpy.zeros((2, 2, 3), numpy.uint8)), TypeError, "linear light, not of uint8"),
         (lambda: alhazen.Image.from_array("x"), ValueError, "height × width × 3 real numbers"),

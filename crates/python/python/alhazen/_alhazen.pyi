@@ -105,7 +105,8 @@ class Image:
         """Writes the picture to a file in the format of its extension.
 
         path: the file. EXR files keep all channels and stay linear; other formats keep the colours,
-        and warn where there are layers. Formats for displays, such as PNG, show them through a view.
+        and warn where there are layers. Formats for displays, such as PNG, show them through a
+        view.
 
         view: "standard" (sRGB), "agx", "aces", "khronos-neutral" or "filmic". exposure: in stops.
         white_balance: the colour temperature of the light that becomes white, in kelvin.
@@ -216,7 +217,8 @@ class SceneBuilder:
     def film(self, kind: str | Settings | None = None, /, **parameters: Any) -> None:
         """Sets the film.
 
-        kind: its type, by default "rgb", or alhazen.settings.film(). parameters: such as xresolution.
+        kind: its type, by default "rgb", or alhazen.settings.film(). parameters: such as
+        xresolution.
         """
     def sampler(self, kind: str | Settings, /, **parameters: Any) -> None:
         """Sets the sampler.
@@ -253,9 +255,9 @@ class SceneBuilder:
         """Sets the camera.
 
         kind: its type, by default "perspective", or alhazen.settings.camera(). parameters: such as
-        fov. transform: its place, as look_at() gives it: it looks along +z of its own system, with y
-        up. One of Blender, glTF or OpenGL looks along -z: matrix @ alhazen.rotate(180, (0, 1, 0)).
-        medium: the one around it.
+        fov. transform: its place, as look_at() gives it: it looks along +z of its own system, with
+        y up. One of Blender, glTF or OpenGL looks along -z: matrix @ alhazen.rotate(180, (0, 1,
+        0)). medium: the one around it.
         """
     def texture(
         self, values: str, kind: str, /, *, transform: ArrayLike | None = None, **parameters: Any
@@ -268,8 +270,8 @@ class SceneBuilder:
     def material(self, kind: str, /, **parameters: Any) -> Reference:
         """Adds a material.
 
-        kind: its type, such as "diffuse". parameters: such as reflectance, whose colours are from 0 to
-        1.
+        kind: its type, such as "diffuse". parameters: such as reflectance, whose colours are from 0
+        to 1.
         """
     def medium(
         self, kind: str, /, *, transform: ArrayLike | None = None, **parameters: Any
@@ -289,9 +291,9 @@ class SceneBuilder:
     ) -> None:
         """Adds a light.
 
-        kind: its type, such as "point". parameters: such as I. transform: its place. The image of the
-        light "infinite" has +z up and -x in its middle; "projection" looks along +z, as cameras do.
-        medium: the one that it is in.
+        kind: its type, such as "point". parameters: such as I. transform: its place. The image of
+        the light "infinite" has +z up and -x in its middle; "projection" looks along +z, as cameras
+        do. medium: the one that it is in.
         """
     def shape(
         self,
@@ -310,9 +312,10 @@ class SceneBuilder:
         """Adds a shape.
 
         kind: its type, such as "sphere" or "trianglemesh". parameters: such as P and indices.
-        transform: its place. material: its material, by default a grey one. emission: the parameters of an area light, as a dict such as
-        {"L": 5.0}, or only its L. inside, outside: the media on its two sides. object: the object
-        that it belongs to, instead of the world. reverse_orientation: turns its surface inside out.
+        transform: its place. material: its material, by default a grey one. emission: the
+        parameters of an area light, as a dict such as {"L": 5.0}, or only its L. inside, outside:
+        the media on its two sides. object: the object that it belongs to, instead of the world.
+        reverse_orientation: turns its surface inside out.
         """
     def object(self) -> Reference:
         """Adds an object, to which shapes and instances can be added. It is drawn where it has
@@ -334,8 +337,8 @@ class SceneBuilder:
     def build(self) -> Scene:
         """The scene of all calls so far. Files that it names are relative to the current folder.
 
-        Raises SceneError, whose text lists every error with the call that has caused it and its place
-        in the program.
+        Raises SceneError, whose text lists every error with the call that has caused it and its
+        place in the program.
         """
 
 def rgb(red: float, green: float, blue: float) -> Typed:
@@ -401,8 +404,8 @@ class Job:
         one whose picture has the same bits as that of render().
 
         index: which one. count: their number. alternate: whether its passes alternate between two
-        films, from which the noise of the picture is estimated. threads, progress, preview: as those
-        of render().
+        films, from which the noise of the picture is estimated. threads, progress, preview: as
+        those of render().
         """
     def blank_film(self, *, alternate: bool = False) -> Film:
         """A film of this job without any pass. Only films of the same job merge with it.
@@ -442,8 +445,8 @@ class Film:
         between two films, or are too few.
         """
     def merge(self, other: Film | bytes) -> None:
-        """Adds another film of the same render. Raises ValueError, and leaves this one as it was, if it
-        is of another render or has passes that this one has.
+        """Adds another film of the same render. Raises ValueError, and leaves this one as it was, if
+        it is of another render or has passes that this one has.
 
         other: a Film, or the bytes of a film file.
         """
@@ -480,10 +483,10 @@ def compile(
 
     scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
     whole picture. integrator: the name of an algorithm, see integrators(), or
-    alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
-    part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
-    beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
-    or settings of alhazen.settings, one or several.
+    alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+    the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+    layers beside the colours, such as "depth". settings: values by name, as in
+    {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
     """
 def integrators() -> list[str]:
     """The names of all integrators."""
@@ -507,10 +510,10 @@ def render(
 
     scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
     whole picture. integrator: the name of an algorithm, see integrators(), or
-    alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop: the
-    part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of layers
-    beside the colours, such as "depth". settings: values by name, as in {"integrator.maxdepth": 8},
-    or settings of alhazen.settings, one or several.
+    alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+    the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+    layers beside the colours, such as "depth". settings: values by name, as in
+    {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
 
     time: seconds after which no pass is begun. noise: the relative error at which it ends.
     threads: their number, by default one for each core. progress: True for a line with the time

@@ -39,7 +39,7 @@ def rotate(degrees: float, axis: Sequence[float]) -> Matrix:
 
     degrees: the angle. axis: its direction.
     """
-    x, y, z = _unit(axis)
+    x, y, z = _unit(_three("axis", axis))
     cross = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     angle = numpy.radians(degrees)
     matrix = numpy.eye(4)
@@ -54,12 +54,22 @@ def look_at(eye: ArrayLike, at: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> M
 
     eye: where it is. at: the point that it looks at. up: the direction that is up in the picture.
     """
-    eye = numpy.asarray(eye, float)
-    ahead = _unit(numpy.asarray(at, float) - eye)
-    right = _unit(numpy.cross(_unit(up), ahead))
+    eye, at, up = _three("eye", eye), _three("at", at), _three("up", up)
+    ahead = _unit(at - eye)
+    side = _unit(numpy.cross(_unit(up), ahead))
     matrix = numpy.eye(4)
-    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = right, numpy.cross(ahead, right), ahead, eye
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = side, numpy.cross(ahead, side), ahead, eye
     return matrix
+
+
+def _three(name: str, value: ArrayLike) -> NDArray[numpy.float64]:
+    try:
+        vector = numpy.asarray(value, numpy.float64)
+    except (TypeError, ValueError):
+        vector = numpy.empty(0)
+    if vector.shape != (3,):
+        raise ValueError(f"`{name}` is three numbers, not {value!r}")
+    return vector
 
 
 def _unit(vector: ArrayLike) -> NDArray[numpy.float64]:
