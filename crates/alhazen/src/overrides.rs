@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use description::schema::Settings;
 use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span, Spanned};
 use film::Layer;
 
@@ -57,6 +58,10 @@ impl Overrides {
         if let Some(name) = &self.integrator {
             let changed = integrator_called(name, &desc.integrator)
                 .ok_or_else(|| unknown("integrator", name, &drawn::<IntegratorDesc>()))?;
+            if changed.name() != desc.integrator.name() {
+                // What is wrong with it is not a fault of the scene's statement.
+                desc.integrator.origin.span = Span::NONE;
+            }
             desc.integrator.value = changed;
         }
         if let Some(name) = &self.accelerator {
@@ -82,11 +87,13 @@ impl Overrides {
         }
         if let Some(resolution) = self.resolution {
             desc.film.resolution = resolution;
+            desc.film.origin.span = Span::NONE;
         }
         import::refit_camera(desc, resolution);
         if let Some(crop) = self.crop {
             desc.film.pixel_bounds = None;
             desc.film.crop_window = Some(crop);
+            desc.film.origin.span = Span::NONE;
         }
         if let Some([x, y]) = self.pixel {
             let [width, height] = desc.film.resolution;
@@ -148,7 +155,7 @@ fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
 mod tests {
     use super::*;
     use crate::integrator_names;
-    use description::schema::{Settings, Value};
+    use description::schema::Value;
     use description::{FilterDesc, LightSamplerDesc, PathDesc, SamplerKind, SppmDesc};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
@@ -221,6 +228,29 @@ mod tests {
         assert_eq!(
             changed(pixel).unwrap_err().to_string(),
             "pixel 2000,0 is not in the image of 1280 × 720 pixels"
+        );
+    }
+
+    #[test]
+    fn errors_of_what_is_changed_are_not_those_of_the_file() {
+        let file = Span::new(FileId(0), 1, 2);
+        let mut desc = SceneDesc::default();
+        for origin in [&mut desc.camera.origin, &mut desc.film.origin] {
+            origin.span = file;
+        }
+        desc.camera.origin.set_parameter("fov", file);
+        let settings = vec![("camera.shutteropen".into(), "1".into())];
+        let overrides = Overrides { settings, resolution: Some([9, 9]), ..Overrides::default() };
+        overrides.apply(&mut desc).unwrap();
+        // Of the shutter nothing is said in the file; the field of view is.
+        assert_eq!(desc.camera.origin.parameter("shutterclose").file, FileId::CALLER);
+        assert_eq!(desc.camera.origin.parameter("fov"), file);
+        assert!(desc.film.origin.span.is_none());
+        let errors = film::compile(&desc).map(|_| ()).unwrap_err();
+        let blamed = overrides.blamed(&errors).unwrap().to_string();
+        assert!(
+            blamed.starts_with("cannot set camera.shutteropen to `1`: the shutter is open for 0 s"),
+            "{blamed}"
         );
     }
 

@@ -170,6 +170,8 @@ pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Re
                 return Err(Unset::Value(format!("the scene's {} has no such setting", part.name)));
             }
             names.into_iter().for_each(|name| origin.set_parameter(name, span));
+            // Errors about settings that depend on this one, and that are not given.
+            origin.span = span;
         }
     }
     Ok(())

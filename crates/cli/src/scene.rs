@@ -16,6 +16,9 @@ use crate::console::say;
 use crate::failure::{Failure, about_file};
 use crate::{diagnostics, numbers, output};
 
+/// Warnings of compiling that a picture may be black.
+const BLACK: [&str; 3] = ["empty-scene", "no-light", "nothing-in-view"];
+
 /// Reports all errors and warnings of a scene; errors make it a failure.
 pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
@@ -29,6 +32,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         found.retain(Diagnostic::is_error);
         wrong = true;
     }
+    let may_be_black = found.iter().any(|found| BLACK.contains(&found.code));
     imported.diagnostics.extend(found);
     let (diagnostics, sources) = (imported.diagnostics, imported.sources);
     if wrong {
@@ -44,10 +48,10 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     } else {
         arguments.scene.display().to_string()
     };
-    Ok(say(if diagnostics.is_empty() {
-        format!("{name} is valid")
-    } else {
-        format!("{name} can be rendered, with the differences above")
+    Ok(say(match (diagnostics.is_empty(), may_be_black) {
+        (true, _) => format!("{name} is valid"),
+        (false, false) => format!("{name} can be rendered, with the differences above"),
+        (false, true) => format!("{name} is valid, but its picture may show nothing: see above"),
     })?)
 }
 

@@ -183,6 +183,9 @@ pub(crate) fn normalized(path: &Path) -> Option<String> {
 fn invalid(error: ZipError) -> io::Error {
     match error {
         ZipError::Io(error) => error,
+        ZipError::InvalidArchive(_) => {
+            io::Error::new(io::ErrorKind::InvalidData, "it is no ZIP archive, or is not whole")
+        }
         error => io::Error::new(io::ErrorKind::InvalidData, error.to_string()),
     }
 }
@@ -213,6 +216,15 @@ mod tests {
 
     fn refusal(bytes: Vec<u8>) -> String {
         read_bytes(bytes).diagnostics.into_iter().find(|found| found.is_error()).unwrap().message
+    }
+
+    #[test]
+    fn an_archive_that_is_cut_off_is_refused_in_words() {
+        let whole = zip(&[("a.pbrt", "WorldBegin")]);
+        for bytes in [&whole[..whole.len() - 4], b"PK", b""] {
+            let message = refusal(bytes.to_vec());
+            assert_eq!(message, "cannot read the archive `a.zip`: it is no ZIP archive, or is not whole");
+        }
     }
 
     #[test]

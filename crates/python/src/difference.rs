@@ -4,7 +4,8 @@ use alhazen::image::metrics;
 use pyo3::prelude::*;
 
 use crate::calls::call;
-use crate::picture::{Picture, image_error};
+use crate::errors::image_error;
+use crate::picture::Picture;
 
 /// How far a picture is from a reference, over all pixels and colours.
 #[pyclass(frozen, get_all, module = "alhazen")]
@@ -20,9 +21,9 @@ pub struct Difference {
     /// The number of values that are not finite, which are left out.
     non_finite: usize,
     /// Means of the reference's colours.
-    reference_mean: [f64; 3],
+    reference_mean: (f64, f64, f64),
     /// Means of the picture's colours.
-    mean: [f64; 3],
+    mean: (f64, f64, f64),
 }
 
 #[pymethods]
@@ -32,7 +33,9 @@ impl Difference {
     }
 }
 
-/// Compares a picture with a reference of the same size.
+/// Compares two pictures of the same size.
+///
+/// reference: what is right. image: what is compared with it.
 #[pyfunction]
 pub fn compare(py: Python, reference: &Picture, image: &Picture) -> PyResult<Difference> {
     let (reference, test) = (reference.image(py)?, image.image(py)?);
@@ -43,7 +46,7 @@ pub fn compare(py: Python, reference: &Picture, image: &Picture) -> PyResult<Dif
         psnr: found.psnr(),
         max_error: found.max_error,
         non_finite: found.non_finite,
-        reference_mean: found.reference_mean,
-        mean: found.test_mean,
+        reference_mean: found.reference_mean.into(),
+        mean: found.test_mean.into(),
     })
 }

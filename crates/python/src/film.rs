@@ -8,12 +8,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use alhazen::SavedRender;
 use alhazen::film::{FilmFileError, ReadLimits};
 use alhazen::image::replace_file_with;
-use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::calls::call;
-use crate::picture::{Picture, image_error, named};
+use crate::errors::{film_error, film_file_error, image_error, wrong_type};
+use crate::picture::Picture;
 
 /// The film of a render or of some of its shards, with exact sums: merged in any order, shards give
 /// the bits of the whole. It is what the command line writes with --checkpoint.
@@ -68,17 +68,21 @@ fn read(bytes: &[u8]) -> Result<SavedRender, FilmFileError> {
 #[pymethods]
 impl Film {
     /// Reads a film file.
+    ///
+    /// path: the file.
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
         let saved = call(py, || {
-            let file = File::open(&path).map_err(|error| named(&path, &error))?;
+            let file = File::open(&path)?;
             let limits = ReadLimits::for_file(file.metadata()?.len());
             SavedRender::read(BufReader::new(file), &limits)
         });
-        Ok(Self::new(saved?.map_err(film_error)?))
+        Ok(Self::new(saved?.map_err(|error| film_file_error(&path, error))?))
     }
 
     /// A film of the bytes of a film file.
+    ///
+    /// data: the bytes.
     #[staticmethod]
     fn from_bytes(py: Python, data: &[u8]) -> PyResult<Self> {
         Ok(Self::new(call(py, || read(data))?.map_err(film_error)?))
@@ -93,24 +97,27 @@ impl Film {
         Ok(PyBytes::new(py, &bytes?.map_err(film_error)?))
     }
 
-    /// Writes its film file, which replaces one that is there only when it is whole.
+    /// Writes its film file.
+    ///
+    /// path: the file. One that is there is replaced only when the new one is whole.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
-        let at = |error| match error {
-            FilmFileError::Io(error) => FilmFileError::Io(named(&path, &error)),
-            other => other,
-        };
-        self.with(py, |saved| {
-            replace_file_with(&path, |file| saved.write(BufWriter::new(file)).map(|_| ())).map_err(at)
-        })
+        let written = self.with(py, |saved| {
+            Ok(replace_file_with(&path, |file| saved.write(BufWriter::new(file)).map(|_| ())))
+        })?;
+        written.map_err(|error: FilmFileError| film_file_error(&path, error))
     }
 
-    /// Adds another film of the same render, as a Film or as the bytes of a film file. Raises
-    /// ValueError, and leaves this one as it was, if it is of another render or has passes that
-    /// this one has.
+    /// Adds another film of the same render. Raises ValueError, and leaves this one as it was, if
+    /// it is of another render or has passes that this one has.
+    ///
+    /// other: a Film, or the bytes of a film file.
     fn merge(&self, py: Python, other: &Bound<'_, PyAny>) -> PyResult<()> {
         let bytes = match other.cast::<Self>() {
             Ok(film) => film.get().__bytes__(py)?,
-            Err(_) => other.extract()?,
+            Err(_) => other
+                .clone()
+                .cast_into::<PyBytes>()
+                .map_err(|_| wrong_type("other", "a Film or the bytes of a film file", other))?,
         };
         let data = bytes.as_bytes();
         let limits = ReadLimits::for_file(data.len() as u64);
@@ -162,14 +169,5 @@ impl Film {
 
     fn __repr__(&self, py: Python) -> PyResult<String> {
         Ok(format!("<alhazen.Film of {} passes>", self.passes(py)?))
-    }
-}
-
-/// The exception for an error of film files.
-pub fn film_error(error: FilmFileError) -> PyErr {
-    match error {
-        FilmFileError::Io(error) => error.into(),
-        FilmFileError::Limits(text) => PyMemoryError::new_err(text),
-        error => PyValueError::new_err(error.to_string()),
     }
 }

@@ -8,15 +8,23 @@ use alhazen::integrators::Limits;
 use alhazen::{Overrides, RenderOrder, Shard};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyList, PyString, PyTuple};
 
 use crate::calls::call;
-use crate::film::{Film, film_error};
-use crate::picture::{Picture, image_error};
+use crate::errors::{film_error, image_error, wrong_type};
+use crate::film::Film;
+use crate::keywords;
+use crate::picture::Picture;
 use crate::render::{Callbacks, Order, drive, free};
-use crate::scene::{Scene, lines, load, scene_error};
+use crate::scene::{Scene, load};
 use crate::value::Chosen;
 use crate::warning::{warn_of_render, warn_of_scene};
+
+/// What chooses an integrator.
+const ALGORITHM: &str = "the name of an algorithm, or alhazen.settings.integrator";
+
+/// What changes settings.
+const SETTINGS: &str = "a dict from names to values, or settings of alhazen.settings, one or a list of them";
 
 /// A scene compiled for rendering with certain settings. What is rendered several times, whole or
 /// in shards, is compiled once.
@@ -31,11 +39,12 @@ pub struct Job {
 
 /// Compiles a scene, or the scene of a file.
 ///
-/// spp: samples per pixel. resolution: (width, height) of the whole picture. integrator: the name
-/// of an algorithm, see integrators(), or alhazen.settings.integrator.path(maxdepth=8) and the
-/// like. seed: of all random numbers. crop: the part to render, as fractions (x0, x1, y0, y1) with
-/// y down. layers: names of layers beside the colours, such as "depth". settings: values by name,
-/// as in {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
+/// whole picture. integrator: the name of an algorithm, see integrators(), or
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+/// the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+/// layers beside the colours, such as "depth". settings: values by name, as in
+/// {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
 #[pyfunction]
 #[pyo3(signature = (
     scene, *, spp=None, resolution=None, integrator=None, seed=None, crop=None, layers=None, settings=None
@@ -44,12 +53,12 @@ pub struct Job {
 pub fn compile(
     py: Python,
     scene: &Bound<'_, PyAny>,
-    spp: Option<u32>,
-    resolution: Option<[i32; 2]>,
+    #[pyo3(from_py_with = keywords::spp)] spp: Option<u32>,
+    #[pyo3(from_py_with = keywords::resolution)] resolution: Option<[i32; 2]>,
     integrator: Option<&Bound<'_, PyAny>>,
-    seed: Option<i32>,
-    crop: Option<[f32; 4]>,
-    layers: Option<Vec<String>>,
+    #[pyo3(from_py_with = keywords::seed)] seed: Option<i32>,
+    #[pyo3(from_py_with = keywords::crop)] crop: Option<[f32; 4]>,
+    #[pyo3(from_py_with = keywords::layers)] layers: Option<Vec<String>>,
     settings: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Job> {
     let loaded;
@@ -71,7 +80,10 @@ pub fn compile(
     if let Some(integrator) = integrator {
         match Chosen::of(integrator)? {
             Some(chosen) => choose(&mut overrides, chosen.for_part("integrator")?)?,
-            None => overrides.integrator = Some(integrator.extract()?),
+            None => {
+                let name = integrator.extract().map_err(|_| wrong_type("integrator", ALGORITHM, integrator));
+                overrides.integrator = Some(name?);
+            }
         }
     }
     if let Some(settings) = settings {
@@ -79,11 +91,18 @@ pub fn compile(
     }
     let mut desc = scene.imported.desc.clone();
     overrides.apply(&mut desc).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let sources = &scene.imported.sources;
+    // In the format it is cut to the picture; here it is more likely in pixels.
+    let states_crop = overrides.settings.iter().any(|(name, _)| name.ends_with("cropwindow"));
+    if let Some(window) = desc.film.crop_window.filter(|window| !keywords::is_part(*window))
+        && (states_crop || scene.is_built())
+    {
+        let problem = format!("`cropwindow` is {}, not {window:?}", keywords::CROP);
+        return Err(PyValueError::new_err(problem));
+    }
     let compiled =
         call(py, || alhazen::Job::compile(desc))?.map_err(|errors| match overrides.blamed(&errors) {
             Some(error) => PyValueError::new_err(error.to_string()),
-            None => scene_error(&errors, sources),
+            None => scene.error(&errors),
         })?;
     let order = RenderOrder {
         scene: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()),
@@ -93,7 +112,7 @@ pub fn compile(
         shard: Shard::WHOLE,
         limits: Limits::default(),
     };
-    let warnings = lines(&compiled.warnings, sources);
+    let warnings = scene.lines(&compiled.warnings);
     warn_of_scene(py, &warnings)?;
     Ok(Job { job: Arc::new(Mutex::new(compiled.job)), order, warnings })
 }
@@ -106,7 +125,11 @@ fn change(overrides: &mut Overrides, settings: &Bound<'_, PyAny>) -> PyResult<()
     }
     match Chosen::of(settings)? {
         Some(chosen) => choose(overrides, chosen),
-        None => settings.try_iter()?.try_for_each(|part| change(overrides, &part?)),
+        None if settings.is_instance_of::<PyString>() => Err(wrong_type("settings", SETTINGS, settings)),
+        None => {
+            let parts = settings.try_iter().map_err(|_| wrong_type("settings", SETTINGS, settings))?;
+            parts.into_iter().try_for_each(|part| change(overrides, &part?))
+        }
     }
 }
 
@@ -135,7 +158,8 @@ fn texts(settings: &Bound<'_, PyDict>, prefix: &str) -> PyResult<Vec<(String, St
             true => value.try_iter()?.map(|item| text(&item?)).collect::<PyResult<Vec<_>>>()?.join(","),
             false => text(&value)?,
         };
-        Ok((format!("{prefix}{}", key.extract::<String>()?), value))
+        let name = key.extract::<String>().map_err(|_| wrong_type("settings", SETTINGS, &key))?;
+        Ok((format!("{prefix}{name}"), value))
     };
     settings.iter().map(setting).collect()
 }
@@ -158,26 +182,23 @@ impl Job {
     ///
     /// time: seconds after which no pass is begun. noise: the relative error at which it ends. With
     /// one of these and no spp of compile(), the number of passes has no limit. threads: their
-    /// number, by default one for each core. progress: called with a Progress after passes.
-    /// preview: called with an Image now and then, at last with the result.
+    /// number, by default one for each core. progress: True for a line with the time left on
+    /// standard error, or a function that is called with a Progress after passes. preview: called
+    /// with an Image now and then, at last with the result.
     ///
     /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
     #[pyo3(signature = (*, time=None, noise=None, threads=None, progress=None, preview=None))]
     pub fn render(
         &self,
         py: Python,
-        time: Option<f64>,
-        noise: Option<f64>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = keywords::time)] time: Option<f64>,
+        #[pyo3(from_py_with = keywords::noise)] noise: Option<f64>,
+        #[pyo3(from_py_with = keywords::threads)] threads: Option<usize>,
         progress: Option<Py<PyAny>>,
         preview: Option<Py<PyAny>>,
     ) -> PyResult<Py<Picture>> {
-        if let Some(noise) = noise.filter(|&noise| !(noise > 0.0 && noise.is_finite())) {
-            return Err(PyValueError::new_err(format!("noise is a number above 0, not {noise}")));
-        }
-        let callbacks = Callbacks::new(py, progress, preview)?;
-        let time = time.map(Duration::try_from_secs_f64).transpose();
-        let limits = Limits { time: time.map_err(|error| PyValueError::new_err(error.to_string()))?, noise };
+        let callbacks = Callbacks::new(py, progress, preview, [time, noise])?;
+        let limits = Limits { time: time.map(Duration::from_secs_f64), noise };
         let passes = self.order.overrides.passes(self.order.passes, limits.are_set());
         let order = Order { passes: 0..passes, limits, alternates: false, threads };
         let (picture, warnings) = drive(py, &self.job, order, &callbacks, move |job, stop| {
@@ -199,9 +220,10 @@ impl Job {
     /// Renders one of several parts of the passes, counted from 1. The films of all parts merge to
     /// one whose picture has the same bits as that of render().
     ///
-    /// alternate: whether its passes alternate between two films, from which the noise of the
-    /// picture is estimated. limited: whether time or noise ends the render of all parts, so that
-    /// without spp of compile() the number of passes has no limit. threads, progress, preview: as
+    /// index: which one. count: their number. alternate: whether its passes alternate between two
+    /// films, from which the noise of the picture is estimated. limited: whether time or noise ends
+    /// the render of all parts, so that without spp of compile() the number of passes has no limit.
+    /// threads, progress, preview: as
     /// those of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     #[pyo3(signature = (
@@ -210,8 +232,8 @@ impl Job {
     fn render_shard(
         &self,
         py: Python,
-        index: u32,
-        count: u32,
+        #[pyo3(from_py_with = keywords::index)] index: u32,
+        #[pyo3(from_py_with = keywords::count)] count: u32,
         alternate: bool,
         limited: bool,
         threads: Option<usize>,
@@ -228,7 +250,7 @@ impl Job {
                 format!("shard {index} of {count} is empty: there are only {} passes", order.passes);
             return Err(PyValueError::new_err(problem));
         }
-        let callbacks = Callbacks::new(py, progress, preview)?;
+        let callbacks = Callbacks::new(py, progress, preview, [None; 2])?;
         let what = Order { passes, limits: Limits::default(), alternates: alternate, threads };
         let bytes = drive(py, &self.job, what, &callbacks, move |job, _| {
             order.write(&job.session, job.header(), Vec::new()).map_err(film_error)
@@ -263,8 +285,19 @@ impl Job {
     }
 }
 
-/// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call,
-/// with the arguments of both.
+/// Renders a scene, or the scene of a file, to a picture: compile() and Job.render() in one call.
+///
+/// scene: a Scene, or what load() takes. spp: samples per pixel. resolution: (width, height) of the
+/// whole picture. integrator: the name of an algorithm, see integrators(), or
+/// alhazen.settings.integrator.path(maxdepth=8) and the like. seed: of all random numbers. crop:
+/// the part to render, as fractions (x0, x1, y0, y1) from 0 to 1 with y down. layers: names of
+/// layers beside the colours, such as "depth". settings: values by name, as in
+/// {"integrator.maxdepth": 8}, or settings of alhazen.settings, one or several.
+///
+/// time: seconds after which no pass is begun. noise: the relative error at which it ends.
+/// threads: their number, by default one for each core. progress: True for a line with the time
+/// left on standard error, or a function that is called with a Progress after passes. preview:
+/// called with an Image now and then, at last with the result.
 ///
 /// Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
 #[pyfunction]
@@ -276,16 +309,16 @@ impl Job {
 pub fn render(
     py: Python,
     scene: &Bound<'_, PyAny>,
-    spp: Option<u32>,
-    resolution: Option<[i32; 2]>,
+    #[pyo3(from_py_with = keywords::spp)] spp: Option<u32>,
+    #[pyo3(from_py_with = keywords::resolution)] resolution: Option<[i32; 2]>,
     integrator: Option<&Bound<'_, PyAny>>,
-    seed: Option<i32>,
-    crop: Option<[f32; 4]>,
-    layers: Option<Vec<String>>,
+    #[pyo3(from_py_with = keywords::seed)] seed: Option<i32>,
+    #[pyo3(from_py_with = keywords::crop)] crop: Option<[f32; 4]>,
+    #[pyo3(from_py_with = keywords::layers)] layers: Option<Vec<String>>,
     settings: Option<&Bound<'_, PyAny>>,
-    time: Option<f64>,
-    noise: Option<f64>,
-    threads: Option<usize>,
+    #[pyo3(from_py_with = keywords::time)] time: Option<f64>,
+    #[pyo3(from_py_with = keywords::noise)] noise: Option<f64>,
+    #[pyo3(from_py_with = keywords::threads)] threads: Option<usize>,
     progress: Option<Py<PyAny>>,
     preview: Option<Py<PyAny>>,
 ) -> PyResult<Py<Picture>> {

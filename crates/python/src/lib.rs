@@ -6,10 +6,14 @@
 
 mod builder;
 mod calls;
+mod color;
 mod difference;
+mod errors;
 mod film;
 mod job;
+mod keywords;
 mod picture;
+mod place;
 mod render;
 mod scene;
 mod value;

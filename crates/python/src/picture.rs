@@ -1,25 +1,31 @@
 //! Pictures.
 
-use std::path::{Path, PathBuf};
+use std::ffi::CString;
+use std::path::PathBuf;
 
+use alhazen::description::GBufferSpace;
+use alhazen::film::Layer;
 use alhazen::image::{
     self, Attribute, DisplaySettings, DisplayView, DisplayWhite, Format, Image, ImageError, ImageMetadata,
     PixelSource, Pixels, ReadOptions, SampleDepth, WriteOptions,
 };
 use alhazen::{InSrgb, write_picture};
 use numpy::ndarray::Array3;
-use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
+use numpy::{
+    PyArray3, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PySlice, PyTuple};
 
 use crate::calls::call;
+use crate::errors::{image_error, image_file_error};
 
 /// A picture: linear light, and layers beside it.
 ///
 /// numpy.asarray(picture) is height × width × 3 float32, red, green and blue, in the memory of the
 /// picture. picture["depth"] is a layer: height × width, or height × width × n if it has n
-/// channels.
+/// channels. Its name is that of compile(layers=[…]), or that in a file, such as "Z".
 #[pyclass(frozen, name = "Image", module = "alhazen")]
 pub struct Picture {
     /// Rows from the top, pixels from the left, channels.
@@ -80,6 +86,32 @@ impl Picture {
         let count = self.channels[first..].iter().take_while(|channel| layer_of(channel) == layer).count();
         Some((first, count))
     }
+
+    /// The same of a layer by the name with which it is rendered.
+    fn find_rendered(&self, name: &str) -> Option<(usize, usize)> {
+        let layer = Layer::from_name(name)?;
+        let wanted: Box<dyn Fn(&str) -> bool> = match layer {
+            Layer::ObjectId => Box::new(|channel| channel.starts_with("CryptoObject")),
+            Layer::MaterialId => Box::new(|channel| channel.starts_with("CryptoMaterial")),
+            Layer::AssetId => Box::new(|channel| channel.starts_with("CryptoAsset")),
+            Layer::LightGroups => return None,
+            _ => {
+                // In a geometry buffer some names depend on its space.
+                let spaces = [GBufferSpace::Camera, GBufferSpace::World].map(Some);
+                let [camera, world] = spaces.map(|space| layer.channels(space));
+                let is_gbuffer = self.channels.iter().any(|channel| channel == "Albedo.R");
+                let names = match is_gbuffer {
+                    true if camera != world => return None,
+                    true => camera,
+                    false => layer.channels(None),
+                };
+                Box::new(|channel| names.contains(&channel))
+            }
+        };
+        let first = self.channels.iter().position(|channel| wanted(channel))?;
+        let count = self.channels[first..].iter().take_while(|channel| wanted(channel)).count();
+        Some((first, count))
+    }
 }
 
 /// The values of a picture.
@@ -117,24 +149,38 @@ fn layer_of(channel: &str) -> &str {
 
 #[pymethods]
 impl Picture {
-    /// A picture of an array of height × width × 3 values of linear light.
+    /// A picture of an array.
+    ///
+    /// array: height × width × 3 real numbers, linear light.
     #[staticmethod]
-    fn from_array(py: Python, array: PyReadonlyArray3<f32>) -> PyResult<Self> {
-        let shape = array.shape();
-        if shape[2] != 3 {
-            return Err(PyValueError::new_err(format!("expected three channels, not {}", shape[2])));
+    fn from_array(py: Python, array: &Bound<'_, PyAny>) -> PyResult<Self> {
+        const WANTED: &str = "an array of height × width × 3 real numbers";
+        let numpy = py.import("numpy")?;
+        let array = numpy.call_method1("asarray", (array,))?;
+        let untyped = array.cast::<PyUntypedArray>()?;
+        let (shape, element) = (untyped.shape().to_vec(), untyped.dtype());
+        let &[height, width, 3] = &shape[..] else {
+            let problem = format!("`array` is {WANTED}, with three channels, not of the shape {shape:?}");
+            return Err(PyValueError::new_err(problem));
+        };
+        if element.kind() != b'f' {
+            let problem = format!("`array` is {WANTED} of linear light, not of {element}");
+            return Err(PyTypeError::new_err(problem));
         }
-        let shape = [shape[0], shape[1], 3];
-        let values = array.as_array().iter().copied().collect();
+        let values = numpy.call_method1("ascontiguousarray", (array, "float32"))?;
+        let values = values.cast::<PyArrayDyn<f32>>()?.to_vec()?;
         let channels = ["R", "G", "B"].map(str::to_owned).to_vec();
+        let shape = [height, width, 3];
         Self::new(py, Collected { shape, channels, values, metadata: ImageMetadata::default() })
     }
 
-    /// Reads a picture from a file of any format that alhazen knows, such as .exr, .png or .hdr.
+    /// Reads a picture from a file.
+    ///
+    /// path: a file of any format that alhazen knows, such as .exr, .png or .hdr.
     #[staticmethod]
     fn open(py: Python, path: PathBuf) -> PyResult<Self> {
         let collected = call(py, || Self::collect(&image::open(&path)?))?;
-        Self::new(py, collected.map_err(|error| image_error(at(&path, error)))?)
+        Self::new(py, collected.map_err(|error| image_file_error(&path, error))?)
     }
 
     /// The number of columns.
@@ -147,6 +193,12 @@ impl Picture {
     #[getter]
     fn height(&self, py: Python) -> usize {
         self.pixels.bind(py).shape()[0]
+    }
+
+    /// The shape of numpy.asarray(picture): height, width and 3.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.__array__(py, None, None)?.getattr("shape")
     }
 
     /// The names of all channels.
@@ -216,7 +268,7 @@ impl Picture {
             if let Some(index) = self.channels.iter().position(|channel| *channel == name) {
                 return self.view(py, index, 1);
             }
-            let Some((first, count)) = self.find(&name) else {
+            let Some((first, count)) = self.find(&name).or_else(|| self.find_rendered(&name)) else {
                 let known = self.layers().join(", ");
                 return Err(PyKeyError::new_err(format!("there is no layer {name:?}; there are {known}")));
             };
@@ -230,8 +282,14 @@ impl Picture {
         format!("<alhazen.Image {} × {}: {layers}>", self.width(py), self.height(py))
     }
 
-    /// Writes the picture to a file in the format of its extension. EXR files keep all channels and
-    /// stay linear; formats for displays, such as PNG, show colours through a view.
+    /// Writes the picture to a file in the format of its extension.
+    ///
+    /// path: the file. EXR files keep all channels and stay linear; other formats keep the colours,
+    /// and warn where there are layers. Formats for displays, such as PNG, show them through a
+    /// view.
+    ///
+    /// view: "standard" (sRGB), "agx", "aces", "khronos-neutral" or "filmic". exposure: in stops.
+    /// white_balance: the colour temperature of the light that becomes white, in kelvin.
     #[pyo3(signature = (path, *, view="standard", exposure=0.0, white_balance=None))]
     fn write(
         &self,
@@ -243,10 +301,50 @@ impl Picture {
     ) -> PyResult<()> {
         let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
         let written = call(py, || write_picture(&image, &path, &display))?;
-        written.map_err(|error| image_error(at(&path, error)))
+        written.map_err(|error| image_file_error(&path, error))?;
+        let mut layers = self.layers();
+        layers.retain(|layer| !matches!(*layer, "RGB" | "A"));
+        let keeps_layers = Format::from_name(&path.to_string_lossy()) == Some(Format::Exr);
+        if layers.is_empty() || keeps_layers {
+            return Ok(());
+        }
+        let text = format!(
+            "{}: the layers {} are left out; .exr files keep them",
+            path.display(),
+            layers.join(", ")
+        );
+        let text = CString::new(text)?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+    }
+
+    /// The same as write().
+    ///
+    /// path, view, exposure, white_balance: as those of write().
+    #[pyo3(signature = (path, *, view="standard", exposure=0.0, white_balance=None))]
+    fn save(
+        &self,
+        py: Python,
+        path: PathBuf,
+        view: &str,
+        exposure: f32,
+        white_balance: Option<f32>,
+    ) -> PyResult<()> {
+        self.write(py, path, view, exposure, white_balance)
+    }
+
+    /// Shows the picture: below the cell of a notebook, else in the viewer of the system.
+    ///
+    /// view, exposure, white_balance: as those of write().
+    #[pyo3(signature = (*, view="standard", exposure=0.0, white_balance=None))]
+    fn show(&self, py: Python, view: &str, exposure: f32, white_balance: Option<f32>) -> PyResult<()> {
+        let png = self.png(py, view, exposure, white_balance)?;
+        py.import("alhazen.notebook")?.call_method1("show", (png,))?;
+        Ok(())
     }
 
     /// The bytes of a PNG file that shows the picture through a view.
+    ///
+    /// view, exposure, white_balance: as those of write().
     #[pyo3(signature = (*, view="standard", exposure=0.0, white_balance=None))]
     fn png<'py>(
         &self,
@@ -302,26 +400,4 @@ fn display(view: &str, exposure: f32, white_balance: Option<f32>) -> PyResult<Di
         return Err(PyValueError::new_err("exposure is a finite number"));
     }
     Ok(DisplaySettings { view, exposure, white })
-}
-
-/// The error with the name of the file.
-fn at(path: &Path, error: ImageError) -> ImageError {
-    match error {
-        ImageError::Io(error) => ImageError::Io(named(path, &error)),
-        other => other,
-    }
-}
-
-/// The error of the system with the name of the file.
-pub fn named(path: &Path, error: &std::io::Error) -> std::io::Error {
-    std::io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-}
-
-/// The exception for an error of pictures.
-pub fn image_error(error: ImageError) -> PyErr {
-    match error {
-        ImageError::Io(error) => error.into(),
-        ImageError::Limits(text) => PyMemoryError::new_err(text),
-        error => PyValueError::new_err(error.to_string()),
-    }
 }

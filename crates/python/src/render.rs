@@ -13,11 +13,12 @@ use std::time::Duration;
 use alhazen::image::ImageError;
 use alhazen::integrators::{Control, Limits, PassError, Session, Stop};
 use alhazen::{Job, PreviewSchedule, system_clock};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 
 use crate::calls::{Call, with_pool};
-use crate::picture::{Collected, Picture, image_error};
+use crate::errors::{image_error, wrong_type};
+use crate::picture::{Collected, Picture};
 
 /// The time between two looks at signals.
 const POLL: Duration = Duration::from_millis(50);
@@ -56,20 +57,36 @@ pub struct Callbacks {
     pub progress: Option<Py<PyAny>>,
     /// Called with a picture now and then.
     pub preview: Option<Py<PyAny>>,
+    /// Whether progress is shown as a bar, which has a line of the terminal.
+    has_bar: bool,
 }
 
 impl Callbacks {
-    /// Refuses what cannot be called.
-    pub fn new(py: Python, progress: Option<Py<PyAny>>, preview: Option<Py<PyAny>>) -> PyResult<Self> {
-        for (name, callback) in [("progress", &progress), ("preview", &preview)] {
+    /// Refuses what cannot be called. True for progress is a bar; what is left is estimated by the
+    /// limits of time and noise.
+    pub fn new(
+        py: Python,
+        mut progress: Option<Py<PyAny>>,
+        preview: Option<Py<PyAny>>,
+        limits: [Option<f64>; 2],
+    ) -> PyResult<Self> {
+        let flag = progress.as_ref().and_then(|progress| progress.extract::<bool>(py).ok());
+        if let Some(wants_bar) = flag {
+            let bar = || py.import("alhazen.bar")?.call_method1("Bar", (limits[0], limits[1]));
+            progress = if wants_bar { Some(bar()?.unbind()) } else { None };
+        }
+        let callbacks = [
+            ("progress", "True, or a function that is called with a Progress", &progress),
+            ("preview", "a function that is called with an Image", &preview),
+        ];
+        for (name, wanted, callback) in callbacks {
             if let Some(callback) = callback.as_ref().map(|callback| callback.bind(py))
                 && !callback.is_callable()
             {
-                let problem = format!("{name} is a function, not {}", callback.repr()?);
-                return Err(PyTypeError::new_err(problem));
+                return Err(wrong_type(name, wanted, callback));
             }
         }
-        Ok(Self { progress, preview })
+        Ok(Self { progress, preview, has_bar: flag == Some(true) })
     }
 
     fn call(&self, py: Python, event: Event) -> PyResult<()> {
@@ -83,6 +100,16 @@ impl Callbacks {
             }
         }
         Ok(())
+    }
+}
+
+impl Drop for Callbacks {
+    /// Ends the line of a bar, also that of a render that has failed.
+    fn drop(&mut self) {
+        if let Some(bar) = self.progress.as_ref().filter(|_| self.has_bar) {
+            // What it writes is not part of the result.
+            let _ = Python::attach(|py| bar.call_method0(py, "close"));
+        }
     }
 }
 

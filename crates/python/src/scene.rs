@@ -1,9 +1,10 @@
 //! Scenes.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use alhazen::description::schema::Settings;
-use alhazen::description::{Diagnostic, FileId, SourceMap, Span};
+use alhazen::description::{Diagnostic, FileId, SourceMap};
 use alhazen::import::{AssetSource, Files, Imported, MemoryAssets, SceneBuilder, import, is_archive};
 use alhazen::{ConvertError, Fingerprint, PackError, integrator_names, pack, pack_converted};
 use pyo3::create_exception;
@@ -12,6 +13,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::calls::call;
+use crate::errors::{os_error, shown, wrong_type};
+use crate::place::{BUILT, Calls};
 use crate::warning::warn_of_scene;
 
 create_exception!(
@@ -24,8 +27,11 @@ create_exception!(
 /// The name of a scene that is loaded from the bytes of an archive.
 const ARCHIVE: &str = "scene.zip";
 
-/// The name of a scene that was built.
-const BUILT: &str = "<scene>";
+/// The name by which a scene is read from standard input.
+const STANDARD_INPUT: &str = "-";
+
+/// How every archive begins.
+const ARCHIVE_SIGNATURE: &[u8] = b"PK";
 
 /// A scene, as its author described it. It is compiled anew for each render.
 #[pyclass(frozen, module = "alhazen")]
@@ -38,11 +44,13 @@ pub struct Scene {
     pub hash: [u8; 32],
     /// The archive, if it was loaded from one in memory.
     archive: Option<Py<PyBytes>>,
+    /// The calls that have built it, if it was built.
+    calls: Calls,
 }
 
 impl Scene {
     /// The scene of a builder.
-    pub fn built(py: Python, builder: SceneBuilder) -> PyResult<Self> {
+    pub fn built(py: Python, builder: SceneBuilder, calls: Calls) -> PyResult<Self> {
         let path = PathBuf::from(BUILT);
         let (imported, hash) = call(py, || {
             let fingerprint = Fingerprint::new(&Files, &path);
@@ -50,8 +58,31 @@ impl Scene {
             fingerprint.add(&path, imported.sources.text(FileId(0)));
             (imported, fingerprint.hash())
         })?;
-        check(py, &imported)?;
-        Ok(Self { imported, path, hash, archive: None })
+        Self { imported, path, hash, archive: None, calls }.checked(py)
+    }
+
+    /// The same, if it has no errors; warns of the rest.
+    fn checked(self, py: Python) -> PyResult<Self> {
+        let diagnostics = &self.imported.diagnostics;
+        match self.imported.has_errors() {
+            true => Err(self.error(diagnostics)),
+            false => warn_of_scene(py, &self.lines(diagnostics)).map(|()| self),
+        }
+    }
+
+    /// Whether it was built.
+    pub fn is_built(&self) -> bool {
+        self.path.as_os_str() == BUILT
+    }
+
+    /// The exception for errors of the scene.
+    pub fn error(&self, diagnostics: &[Diagnostic]) -> PyErr {
+        SceneError::new_err(self.lines(diagnostics).join("\n"))
+    }
+
+    /// A line for each diagnostic: place, severity, code, message and help.
+    pub fn lines(&self, diagnostics: &[Diagnostic]) -> Vec<String> {
+        lines(diagnostics, &self.imported.sources, &self.calls)
     }
 }
 
@@ -66,13 +97,13 @@ impl Scene {
     /// What was found while it was read, such as parameters that have no effect.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        lines(&self.imported.diagnostics, &self.imported.sources)
+        self.lines(&self.imported.diagnostics)
     }
 
     /// Width and height of the picture in pixels.
     #[getter]
-    fn resolution(&self) -> [i32; 2] {
-        self.imported.desc.film.resolution
+    fn resolution(&self) -> (i32, i32) {
+        self.imported.desc.film.resolution.into()
     }
 
     /// The bytes of one archive with all its files, as `alhazen scene pack` writes it. load() reads
@@ -82,10 +113,11 @@ impl Scene {
             return Ok(archive.bind(py).clone());
         }
         if is_archive(&self.path) {
-            return Ok(PyBytes::new(py, &std::fs::read(&self.path)?));
+            let bytes = std::fs::read(&self.path).map_err(|error| os_error(&self.path, &error))?;
+            return Ok(PyBytes::new(py, &bytes));
         }
         let mut bytes = Vec::new();
-        let packed = call(py, || match self.path.as_os_str() == BUILT {
+        let packed = call(py, || match self.is_built() {
             true => pack_converted(&self.imported.desc, &mut bytes),
             false => pack(&self.path, &Files, &mut bytes).map_err(ConvertError::Pack),
         })?;
@@ -95,8 +127,11 @@ impl Scene {
             Err(ConvertError::Pack(error)) => error,
         };
         Err(match error {
-            PackError::Scene(imported) => scene_error(&imported.diagnostics, &imported.sources),
-            PackError::File(path, error) => PyOSError::new_err(format!("{}: {error}", path.display())),
+            PackError::Scene(imported) => {
+                let calls = Calls::default();
+                SceneError::new_err(lines(&imported.diagnostics, &imported.sources, &calls).join("\n"))
+            }
+            PackError::File(path, error) => os_error(&path, &error),
             PackError::Output(error) => PyOSError::new_err(error),
         })
     }
@@ -112,25 +147,60 @@ impl Scene {
     }
 }
 
-/// Loads a scene: a pbrt-v4 file, a glTF file (.gltf, .glb), a USD file, a mesh (.ply, .obj, .stl)
-/// in a neutral studio, or an archive (.zip) of a scene with its files, which may be given as
-/// bytes.
+/// Loads a scene.
 ///
-/// Raises SceneError, whose text lists every error of the scene with its file, line and column.
+/// source: a pbrt-v4 file, a glTF file (.gltf, .glb), a USD file, a mesh (.ply, .obj, .stl) in a
+/// neutral studio, or an archive (.zip) of a scene with its files, which may be given as bytes.
+///
+/// Raises SceneError, whose text lists every error of the scene with its file, line and column, and
+/// FileNotFoundError and the like where there is no such file.
 #[pyfunction]
 pub fn load(py: Python, source: &Bound<'_, PyAny>) -> PyResult<Scene> {
     let archive = source.cast::<PyBytes>().ok();
     let path = match archive {
-        Some(_) => PathBuf::from(ARCHIVE),
-        None => source.extract::<PathBuf>()?,
+        Some(bytes) if bytes.as_bytes().starts_with(ARCHIVE_SIGNATURE) => PathBuf::from(ARCHIVE),
+        Some(bytes) => {
+            let problem = format!("the bytes are no archive of a scene (.zip); they begin {}", shown(bytes));
+            return Err(SceneError::new_err(problem));
+        }
+        None => file(source)?,
     };
     let bytes = archive.map(|bytes| bytes.as_bytes());
     let (imported, hash) = call(py, || match bytes {
         Some(bytes) => read(&path, &MemoryAssets::default().with(ARCHIVE, bytes)),
         None => read(&path, &Files),
     })?;
-    check(py, &imported)?;
-    Ok(Scene { imported, path, hash, archive: archive.map(|bytes| bytes.clone().unbind()) })
+    let archive = archive.map(|bytes| bytes.clone().unbind());
+    Scene { imported, path, hash, archive, calls: Calls::default() }.checked(py)
+}
+
+/// The path of a scene file that can be read.
+fn file(source: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    let Ok(path) = source.extract::<PathBuf>() else {
+        return Err(wrong_type("source", "the name of a scene file or the bytes of an archive", source));
+    };
+    let no_name = || {
+        let problem = format!("`source` is the name of a file, not the text of a scene: {}", shown(source));
+        PyValueError::new_err(problem)
+    };
+    if path.as_os_str().as_encoded_bytes().contains(&b'\n') {
+        return Err(no_name());
+    }
+    if path == Path::new(STANDARD_INPUT) {
+        return Ok(path);
+    }
+    // A pipe is not opened, since it could be read only once.
+    let readable = std::fs::metadata(&path).and_then(|found| match found.is_file() {
+        true => std::fs::File::open(&path).map(|_| ()),
+        false if found.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        false => Ok(()),
+    });
+    match readable {
+        Ok(()) => Ok(path),
+        // It is too long.
+        Err(error) if error.kind() == ErrorKind::InvalidFilename => Err(no_name()),
+        Err(error) => Err(os_error(&path, &error)),
+    }
 }
 
 fn read(path: &Path, assets: &dyn AssetSource) -> (Imported, [u8; 32]) {
@@ -154,27 +224,16 @@ pub fn integrators() -> Vec<&'static str> {
     integrator_names()
 }
 
-/// The exception for a scene with errors.
-pub fn scene_error(diagnostics: &[Diagnostic], sources: &SourceMap) -> PyErr {
-    SceneError::new_err(lines(diagnostics, sources).join("\n"))
-}
-
-/// The statement of a scene that was built: its directive and type.
-fn statement(sources: &SourceMap, span: Span) -> Option<String> {
-    let line = (sources.name(span.file) == BUILT).then(|| sources.line(span))?;
-    Some(line.split(' ').take(2).take_while(|word| *word != "at").collect::<Vec<_>>().join(" "))
-}
-
-/// A line for each diagnostic: place, severity, code, message and help.
-pub fn lines(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<String> {
+fn lines(diagnostics: &[Diagnostic], sources: &SourceMap, calls: &Calls) -> Vec<String> {
     let line = |diagnostic: &Diagnostic| {
         let span = diagnostic.span();
-        let place = if span.is_none() {
-            String::new()
-        } else {
-            let at = sources.position(span);
-            let statement = statement(sources, span).map_or(String::new(), |it| format!("in {it}: "));
-            format!("{}:{}:{}: {statement}", sources.name(span.file), at.line, at.column)
+        let place = match calls.describe(sources, span) {
+            _ if span.is_none() => String::new(),
+            Some(call) => format!("{call}: "),
+            None => {
+                let at = sources.position(span);
+                format!("{}:{}:{}: ", sources.name(span.file), at.line, at.column)
+            }
         };
         let severity = if diagnostic.is_error() { "error" } else { "warning" };
         let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));

@@ -13,6 +13,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
+use crate::errors::{shown, wrong_type};
+
 /// A builder, by the address of what its references share.
 pub type Owner = Arc<()>;
 
@@ -64,20 +66,26 @@ impl Typed {
     }
 }
 
-/// A colour, as linear red, green and blue.
+/// A colour.
+///
+/// red, green, blue: linear light, from 0 to 1 for reflectances.
 #[pyfunction]
 pub fn rgb(py: Python, red: f32, green: f32, blue: f32) -> PyResult<Typed> {
     let values = PyTuple::new(py, [red, green, blue])?;
     Ok(Typed { type_name: "rgb", values: values.into_any().unbind() })
 }
 
-/// The spectrum of a black body of a temperature in kelvin.
+/// The spectrum of a black body.
+///
+/// kelvin: its temperature.
 #[pyfunction]
 pub fn blackbody(py: Python, kelvin: f32) -> Typed {
     Typed { type_name: "blackbody", values: PyFloat::new(py, kelvin.into()).into_any().unbind() }
 }
 
-/// A spectrum: the name of a measured one, such as "metal-Au-eta", or of a file; or an array of
+/// A spectrum.
+///
+/// values: the name of a measured one, such as "metal-Au-eta", or of a file; or an array of
 /// wavelengths in nanometres and values in turn.
 #[pyfunction]
 pub fn spectrum(values: Py<PyAny>) -> Typed {
@@ -161,7 +169,14 @@ fn read(
     let plain = if let Ok(flag) = value.cast::<PyBool>() {
         ArgumentValues::Bools(vec![flag.is_true()])
     } else if value.is_instance_of::<PyInt>() {
-        ArgumentValues::Integers([value.extract()?].into())
+        let integer = value.extract::<i32>().map_err(|_| {
+            let problem = format!(
+                "expected a whole number of 32 bits, or a real one such as 1e12, not {}",
+                shown(value)
+            );
+            PyValueError::new_err(problem)
+        })?;
+        ArgumentValues::Integers([integer].into())
     } else if value.is_instance_of::<PyFloat>() {
         ArgumentValues::Floats([value.extract()?].into())
     } else if value.is_instance_of::<PyString>() || value.hasattr("__fspath__")? {
@@ -204,7 +219,10 @@ fn texts(value: &Bound<'_, PyAny>, owner: &Owner) -> PyResult<Option<Vec<String>
 /// these where it has several dimensions.
 fn array(value: &Bound<'_, PyAny>) -> PyResult<(ArgumentValues, Option<usize>)> {
     let numpy = value.py().import("numpy")?;
-    let array = numpy.call_method1("asarray", (value,))?;
+    let array = numpy.call_method1("asarray", (value,)).map_err(|_| {
+        let problem = format!("expected rows of numbers of one length, not {}", shown(value));
+        PyValueError::new_err(problem)
+    })?;
     let untyped = array.cast::<PyUntypedArray>()?;
     let (element, shape) = (untyped.dtype(), untyped.shape());
     let row = shape.last().copied().filter(|_| shape.len() > 1);
@@ -216,14 +234,12 @@ fn array(value: &Bound<'_, PyAny>) -> PyResult<(ArgumentValues, Option<usize>)> 
             let is_wide = array.getattr("size")?.extract::<usize>()? > 0
                 && (array.call_method0("max")?.gt(i32::MAX)? || array.call_method0("min")?.lt(i32::MIN)?);
             if is_wide {
-                return Err(PyValueError::new_err("integers have 32 bits"));
+                return Err(PyValueError::new_err("whole numbers have 32 bits; real ones may be larger"));
             }
             ArgumentValues::Integers(copied(&of("int32")?)?)
         }
         _ => {
-            let kind = value.get_type().name()?;
-            let of = if kind == "ndarray" { format!(" of {element}") } else { String::new() };
-            let problem = format!("expected numbers, texts or truth values, not {kind}{of}");
+            let problem = format!("expected numbers, texts or truth values, not {}", shown(value));
             return Err(PyTypeError::new_err(problem));
         }
     };
@@ -243,7 +259,10 @@ fn copied<T: numpy::Element + Copy>(array: &Bound<'_, PyAny>) -> PyResult<Arc<[T
 pub fn motion(transform: Option<&Bound<'_, PyAny>>) -> PyResult<Motion> {
     let Some(transform) = transform else { return Ok(Motion::default()) };
     let numpy = transform.py().import("numpy")?;
-    let array = numpy.call_method1("ascontiguousarray", (transform, "float64"))?;
+    let array = numpy.call_method1("ascontiguousarray", (transform, "float64")).map_err(|_| {
+        let wanted = "a matrix of 4 × 4 numbers, such as alhazen.translate(0, 1, 0), or two of them";
+        wrong_type("transform", wanted, transform)
+    })?;
     let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
     let values = copied::<f64>(&array)?;
     let matrix = |values: &[f64]| {

@@ -14,8 +14,10 @@ def looking(builder, resolution=(16, 16)):
     builder.camera(fov=60, transform=alhazen.look_at((0, 0, 4), (0, 0, 0)))
 
 
-def test_a_built_scene_has_the_bits_of_its_text(tmp_path):
-    builder = alhazen.SceneBuilder()
+# The format's world is left-handed; a mirrored camera makes it right-handed.
+@pytest.mark.parametrize(("handedness", "mirror"), [("left", ""), ("right", "Scale -1 1 1")])
+def test_a_built_scene_has_the_bits_of_its_text(handedness, mirror, tmp_path):
+    builder = alhazen.SceneBuilder(handedness=handedness)
     looking(builder)
     builder.integrator(alhazen.settings.integrator.path(maxdepth=3))
     checks = builder.texture("spectrum", "checkerboard", tex1=(0.1, 0.2, 0.3), tex2=alhazen.rgb(1, 1, 1))
@@ -43,6 +45,7 @@ def test_a_built_scene_has_the_bits_of_its_text(tmp_path):
         Film "rgb" "integer xresolution" 16 "integer yresolution" 16
         Sampler "independent" "integer pixelsamples" 4
         Integrator "path" "integer maxdepth" 3
+        MIRROR
         LookAt 0 0 4  0 0 0  0 1 0
         Camera "perspective" "float fov" 60
         WorldBegin
@@ -69,7 +72,7 @@ def test_a_built_scene_has_the_bits_of_its_text(tmp_path):
         LightSource "infinite" "rgb L" [0.5 0.5 0.5]
     """
     path = tmp_path / "scene.pbrt"
-    path.write_text(text)
+    path.write_text(text.replace("MIRROR", mirror))
     assert numpy.allclose(built.pixels, alhazen.render(path).pixels, rtol=1e-5, atol=1e-6)
     assert built.pixels.max() > 1
 
@@ -102,8 +105,8 @@ def test_errors_name_the_call():
     builder.shape("spere", material=red)
     with pytest.raises(alhazen.SceneError) as error:
         builder.build()
-    assert "<scene>:1:" in str(error.value) and "`reflectance`" in str(error.value)
-    assert "<scene>:2:" in str(error.value) and 'in Shape "spere"' in str(error.value)
+    assert 'in material("diffuse"): error[' in str(error.value) and "`reflectance`" in str(error.value)
+    assert f'{__file__}:' in str(error.value) and 'in shape("spere"): error[' in str(error.value)
     assert "`sphere`" in str(error.value)
 
 

@@ -15,6 +15,8 @@ use std::process::Command;
 use super::command::{cargo, succeed, target};
 use super::profile;
 
+/// The features of the program that people get.
+pub const FEATURES: &str = "gpu,usd,view";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "elvish", "powershell"];
 /// Files of the repository that go along.
@@ -71,7 +73,7 @@ fn host(root: &Path) -> Result<String, String> {
 /// Builds the program for a target, with more flags for the compiler, and returns its path.
 fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<PathBuf, String> {
     let mut command = cargo(root);
-    let features = if is_static { "usd" } else { "gpu,usd,view" };
+    let features = if is_static { "usd" } else { FEATURES };
     command.args([
         "build",
         "--release",

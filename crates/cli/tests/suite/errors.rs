@@ -57,6 +57,28 @@ fn scene_check_does_not_render() {
 }
 
 #[test]
+fn scene_check_says_that_a_picture_may_show_nothing() {
+    let folder = Folder::new("black");
+    let light = "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]";
+    assert!(SCENE.contains(light));
+    let lamp = "LightSource \"point\"";
+    let black = [
+        ("no light", SCENE.replace(light, "")),
+        ("no shape", SCENE.replace(light, lamp).replace("Shape", "# Shape")),
+        ("no shape in view", SCENE.replace(light, lamp).replace("Shape", "Translate 0 100 0 Shape")),
+    ];
+    for (name, text) in black {
+        folder.write("scene.pbrt", &text);
+        let checked = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);
+        assert_eq!(
+            checked.out, "scene.pbrt is valid, but its picture may show nothing: see above\n",
+            "{name}"
+        );
+        assert!(checked.err.contains("1 warning"), "{name}: {}", checked.err);
+    }
+}
+
+#[test]
 fn a_missing_or_foreign_scene_is_wrong_input() {
     let folder = Folder::new("missing");
     folder.write("a.stl", "solid a");

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use description::{
     AreaLightDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, EncodingDesc, FloatParameter,
     Handle, ImageChannel, ImageDesc, ImageTextureDesc, MappingDesc, MaterialDesc, MaterialKind,
-    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, WrapMode,
+    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, UvImageDesc, WrapMode,
 };
 use image::Image;
 
@@ -72,7 +72,7 @@ impl<'a> Surfaces<'a> {
             self.desc.materials.push(MaterialDesc { name: material.name.clone(), ..desc })
         };
         let handles = match normals {
-            Some(normals) => normals.map(|normals| place(Some(normals))),
+            Some(normals) => normals.map(|image| place(Some(UvImageDesc::new(image, WrapMode::Repeat)))),
             None => [place(None); 2],
         };
         handles.map(|handle| Surface { area_light, alpha: alpha.clone(), ..plain(handle) })
@@ -257,7 +257,8 @@ impl<'a> Surfaces<'a> {
                 [r * x, g * y, b * z]
             };
             let key = format!("emission {r} {g} {b} {} {}", map.base, map.gain);
-            light.image = self.image(&Lookup { map, library, is_data: false }, Some((key, &edit)));
+            let image = self.image(&Lookup { map, library, is_data: false }, Some((key, &edit)));
+            light.image = image.map(|image| UvImageDesc::new(image, WrapMode::Repeat));
         }
         Some(self.desc.area_lights.push(light))
     }
@@ -357,6 +358,7 @@ pub(super) fn plain(material: Handle<MaterialDesc>) -> Surface {
         media: None,
         coordinates: Coordinates { set: 0, transform: math::DAffine2::IDENTITY },
         tangent_rotation: 0.0,
+        single_sided: false,
     }
 }
 

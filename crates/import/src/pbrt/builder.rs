@@ -366,6 +366,26 @@ mod tests {
     }
 
     #[test]
+    fn numbers_that_are_no_colour_are_refused() {
+        for (values, problem) in [
+            (&[0.5, 0.5][..], "`reflectance` has 2 numbers; a colour has three"),
+            (&[255.0, 0.0], "`reflectance` has 2 numbers; a colour has three"),
+            (&[0.1, 0.2, 0.3, 1.0], "`reflectance` has 4 numbers; a colour has three"),
+            (&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "`reflectance` takes 3 values, not 6"),
+        ] {
+            let mut builder = SceneBuilder::default();
+            builder.material("paint", "diffuse", vec![floats("reflectance", values)]);
+            let found = builder.finish(&MemoryAssets::default()).diagnostics;
+            assert!(found.iter().any(|found| found.message.starts_with(problem)), "{values:?}: {found:?}");
+        }
+        let mut builder = SceneBuilder::default();
+        let samples = floats("reflectance", &[400.0, 0.2, 700.0, 0.4]);
+        builder.material("paint", "diffuse", vec![samples]);
+        let found = builder.finish(&MemoryAssets::default());
+        assert!(!found.has_errors(), "{:?}", found.diagnostics);
+    }
+
+    #[test]
     fn calls_give_the_scene_of_the_text() {
         let mut builder = SceneBuilder::default();
         let film = vec![argument("xresolution", ArgumentValues::Integers([7].into()))];

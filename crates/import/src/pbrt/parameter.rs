@@ -133,12 +133,23 @@ impl RawParameter {
                     Some(Spectrum)
                 }
                 [_, _, _] if first(&[Rgb]).is_some() => Some(Rgb),
+                // A colour of too few or too many numbers is no spectrum.
+                [wavelength, ref rest @ ..]
+                    if first(&[Float]).is_none()
+                        && first(&[Rgb]).is_some()
+                        && (rest.len() < 3 || wavelength < SHORTEST) =>
+                {
+                    Some(Rgb)
+                }
                 _ => first(&[Float, Spectrum, Point3, Vector3, Normal, Point2, Vector2, Rgb, Blackbody]),
             },
         };
         self.kind = fitting.unwrap_or(self.kind);
     }
 }
+
+/// In nanometres: samples of a spectrum that are not stated to be some begin at no shorter one.
+const SHORTEST: f32 = 100.0;
 
 /// Most parameters of one statement; no statement of the format takes a tenth of them.
 const MOST_PARAMETERS: usize = 1000;

@@ -215,7 +215,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Material "diffuse" "rgb reflectance" [1 1]"#,
-        "1:20 error[parameter-count] `reflectance` has 2 numbers, which is not a multiple of 3",
+        "1:20 error[parameter-count] `reflectance` has 2 numbers; a colour has three: linear red, green and blue",
     ),
     (
         r#"Material "diffuse" "color reflectance" [1 1 1]"#,

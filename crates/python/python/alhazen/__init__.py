@@ -3,6 +3,7 @@
     import alhazen, numpy
     scene = alhazen.load("scene.pbrt")
     image = alhazen.render(scene, spp=64, resolution=(640, 480))
+    image.show()
     numpy.asarray(image)        # height x width x 3, float32, linear light
     image.write("picture.png", view="agx")
 """

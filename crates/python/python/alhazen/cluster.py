@@ -1,4 +1,4 @@
-"""Renders on many machines, as tasks of Ray (https://www.ray.io; `pip install alhazen[cluster]`).
+"""Renders on many machines, as tasks of Ray (https://www.ray.io; `pip install alhazen-renderer[cluster]`).
 
     import alhazen.cluster
     image = alhazen.cluster.render("scene.pbrt", spp=1024, address="auto")
@@ -25,10 +25,14 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-import ray
-import ray.exceptions
-
 from . import Film, Image, Job, RenderWarning, Scene, SceneError, SceneWarning, compile, load
+from .bar import Bar
+
+try:
+    import ray
+    import ray.exceptions
+except ImportError as error:
+    raise ImportError("alhazen.cluster needs Ray: pip install alhazen-renderer[cluster]") from error
 
 __all__ = ["Progress", "render"]
 
@@ -67,7 +71,7 @@ def render(
     time: float | None = None,
     noise: float | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Callable[[Progress], object] | bool | None = None,
     preview: Callable[[Image], object] | None = None,
     **arguments: Any,
 ) -> Image:
@@ -83,7 +87,8 @@ def render(
     that it ends after the same one on any cluster. With time or noise and no spp, the number of
     passes has no limit, and shards are as large as those of the passes that the scene plans.
     checkpoint: a film file from which the render is continued if it exists, and that is saved every
-    minute. progress: called with a Progress after shards. preview: called with an Image now and
+    minute. progress: True for a line with the time left on standard error, or a function that is
+    called with a Progress after shards. preview: called with an Image now and
     then. All other arguments are those of alhazen.compile().
 
     Ctrl-C ends it with KeyboardInterrupt, after the film was saved; so does an exception of a
@@ -129,6 +134,8 @@ def render(
             count = ENDLESS // max(least, -(-passes // count))
 
     begin = clock.monotonic()
+    bar = Bar(time, noise) if progress is True else None
+    progress = bar or progress or None
     total = None if is_endless else count
     run = _Run(saved, checkpoint, total, len(done), begin, noise, progress, preview)
     to_start, to_merge = ((index for index in range(1, count + 1) if index not in done) for _ in range(2))
@@ -152,6 +159,8 @@ def render(
     finally:
         for each in indices:
             ray.cancel(each, force=True)
+        if bar is not None:
+            bar.close()
         run.save()
     if noise is not None and not run.ended:
         end = "when the time was up" if indices else "after all passes"

@@ -162,8 +162,12 @@ impl<'b, 'a> Reader<'b, 'a> {
             return None;
         }
         if kind != ParameterType::Spectrum && length % kind.arity() != 0 {
-            let message =
-                format!("`{name}` has {length} numbers, which is not a multiple of {}", kind.arity());
+            let message = match kind {
+                ParameterType::Rgb => {
+                    format!("`{name}` has {length} numbers; a colour has three: linear red, green and blue")
+                }
+                _ => format!("`{name}` has {length} numbers, which is not a multiple of {}", kind.arity()),
+            };
             self.builder.report.error("parameter-count", message, span);
             return None;
         }
