@@ -39,7 +39,7 @@ fn warn(category: &Bound<'_, PyType>, messages: &[String]) -> PyResult<()> {
     let mut level = 1;
     let mut frame = py.import("sys")?.call_method0("_getframe")?;
     while !frame.is_none() {
-        let module = frame.getattr("f_globals")?.get_item("__name__")?.to_string();
+        let module = frame.getattr("f_globals")?.call_method1("get", ("__name__", ""))?.to_string();
         if module != "alhazen" && !module.starts_with("alhazen.") {
             break;
         }
