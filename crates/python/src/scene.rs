@@ -209,15 +209,6 @@ fn read(path: &Path, assets: &dyn AssetSource) -> (Imported, [u8; 32]) {
     (imported, fingerprint.hash())
 }
 
-/// An error where a scene has any; warns of the rest.
-fn check(py: Python, imported: &Imported) -> PyResult<()> {
-    let Imported { diagnostics, sources, .. } = imported;
-    match imported.has_errors() {
-        true => Err(scene_error(diagnostics, sources)),
-        false => warn_of_scene(py, &lines(diagnostics, sources)),
-    }
-}
-
 /// The names of all integrators.
 #[pyfunction]
 pub fn integrators() -> Vec<&'static str> {

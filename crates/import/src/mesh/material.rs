@@ -8,7 +8,8 @@ use std::sync::Arc;
 use description::{
     AreaLightDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, EncodingDesc, FloatParameter,
     Handle, ImageChannel, ImageDesc, ImageTextureDesc, MappingDesc, MaterialDesc, MaterialKind,
-    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, UvImageDesc, WrapMode,
+    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, UvImageDesc,
+    WrapMode,
 };
 use image::Image;
 
@@ -72,7 +73,7 @@ impl<'a> Surfaces<'a> {
             self.desc.materials.push(MaterialDesc { name: material.name.clone(), ..desc })
         };
         let handles = match normals {
-            Some(normals) => normals.map(|image| place(Some(UvImageDesc::new(image, WrapMode::Repeat)))),
+            Some(normals) => normals.map(|normals| place(Some(normals))),
             None => [place(None); 2],
         };
         handles.map(|handle| Surface { area_light, alpha: alpha.clone(), ..plain(handle) })
@@ -211,7 +212,7 @@ impl<'a> Surfaces<'a> {
         &mut self,
         material: &ObjMaterial,
         library: &Path,
-    ) -> (Option<[Handle<ImageDesc>; 2]>, Option<FloatParameter>) {
+    ) -> (Option<[UvImageDesc; 2]>, Option<FloatParameter>) {
         let bump = material.bump_map.as_ref().map(|map| Lookup { map, library, is_data: true });
         let is_colored = bump.as_ref().is_some_and(|bump| {
             let image = self.image(bump, None);
@@ -232,7 +233,6 @@ impl<'a> Surfaces<'a> {
             }
             (None, None) => return (None, None),
         };
-        self.stays_in_place(normals.map);
         let strength = normals.map.bump;
         let mut turned = |up: f32| {
             let code = |value: f32, scale: f32| 0.5 + (value - 0.5) * scale;
@@ -243,7 +243,7 @@ impl<'a> Surfaces<'a> {
             }
         };
         let maps = turned(1.0).zip(turned(-1.0));
-        (maps.map(|(normals, mirrored)| [normals, mirrored]), None)
+        (maps.map(|(upright, mirrored)| [upright, mirrored].map(|image| placed(image, normals.map))), None)
     }
 
     fn area_light(&mut self, material: &ObjMaterial, library: &Path) -> Option<Handle<AreaLightDesc>> {
@@ -251,24 +251,15 @@ impl<'a> Surfaces<'a> {
         let [r, g, b] = emission.filter(|rgb| rgb.iter().any(|&value| value > 0.0))?;
         let mut light = AreaLightDesc::new(SpectrumDesc::rgb(r, g, b));
         if let Some(map) = &material.emission_map {
-            self.stays_in_place(map);
             let edit = move |rgb: [f32; 3]| {
                 let [x, y, z] = rgb.map(|value| (map.base + map.gain * value).max(0.0));
                 [r * x, g * y, b * z]
             };
             let key = format!("emission {r} {g} {b} {} {}", map.base, map.gain);
             let image = self.image(&Lookup { map, library, is_data: false }, Some((key, &edit)));
-            light.image = image.map(|image| UvImageDesc::new(image, WrapMode::Repeat));
+            light.image = image.map(|image| placed(image, map));
         }
         Some(self.desc.area_lights.push(light))
-    }
-
-    /// Says that a picture is drawn at the texture coordinates of the mesh, whatever its options.
-    fn stays_in_place(&mut self, map: &Map) {
-        if map.scale != [1.0; 2] || map.offset != [0.0; 2] || map.clamps {
-            let message = "pictures of normals and emission are drawn without `-s`, `-o` and `-clamp`";
-            self.log.warn("not-drawn", &map.file, message);
-        }
     }
 
     /// A picture as a texture; `None` if it cannot be read.
@@ -347,6 +338,15 @@ type Edit<'e> = (String, &'e dyn Fn([f32; 3]) -> [f32; 3]);
 /// α of a microfacet distribution as wide as a lobe of a Phong exponent, which is 2/α² − 2.
 fn phong_alpha(exponent: f32) -> f32 {
     (2.0 / (exponent.max(0.0) + 2.0)).sqrt()
+}
+
+/// A picture over the texture coordinates of a mesh, as the options of its statement say.
+fn placed(image: Handle<ImageDesc>, &Map { scale, offset, clamps, .. }: &Map) -> UvImageDesc {
+    let columns = [[scale[0], 0.0], [0.0, scale[1]], offset];
+    UvImageDesc {
+        columns,
+        ..UvImageDesc::new(image, if clamps { WrapMode::Clamp } else { WrapMode::Repeat })
+    }
 }
 
 /// A surface of a material alone.
