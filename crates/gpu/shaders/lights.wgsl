@@ -161,13 +161,15 @@ fn sample_light(
 fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
     var sample = no_light();
     sample.p = Point3Error(light_position(at), vec3f());
-    let to_light = sample.p.p - context.p.p;
+    let way = sample.p.p - context.p.p;
+    let scale = balance(max(max(abs(way.x), abs(way.y)), abs(way.z)));
+    let to_light = way * scale;
     let distance2 = Vec3_length_squared(to_light);
     if (distance2 == 0) {
         return sample;
     }
     sample.wi = to_light / sqrt(distance2);
-    sample.l = point_share(at, -sample.wi, lambda) / distance2;
+    sample.l = point_share(at, -sample.wi, lambda) / distance2 * scale * scale;
     sample.pdf = 1;
     sample.valid = true;
     return sample;

@@ -3,6 +3,7 @@
 //! Matrices, and vectors of four coordinates or of double precision, are those of glam. What makes
 //! sense for one lane only is defined for `f32` alone.
 
+use crate::balance;
 use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
 use lanes::Real;
 use std::fmt;
@@ -154,8 +155,8 @@ macro_rules! vector {
             /// All NaN.
             pub const NAN: Self = Self::splat(f32::NAN);
 
-            /// The vector of length one with the same direction; `None` where the length is zero or
-            /// not finite, or nearly so.
+            /// The vector of length one with the same direction; `None` where a coordinate is not
+            /// finite, or all are zero.
             #[inline(always)]
             pub fn try_normalize(self) -> Option<Self> {
                 let (v, valid) = self.normalize_masked();
@@ -328,16 +329,26 @@ macro_rules! methods {
             /// The vector of length one with the same direction; not finite for the zero vector.
             #[inline(always)]
             pub fn normalize(self) -> Self {
-                self * (R::one() / self.length())
+                let v = self.balanced();
+                v * (R::one() / v.length())
             }
 
             /// The vector of length one with the same direction, and where there is one: not where
-            /// the length is zero or not finite, or nearly so.
+            /// a coordinate is not finite, or all are zero.
             #[inline(always)]
             pub fn normalize_masked(self) -> (Self, R::Mask) {
-                let inverse = R::one() / self.length();
+                let v = self.balanced();
+                let inverse = R::one() / v.length();
                 let valid = inverse.gt(R::zero()) & inverse.lt(R::splat(f32::INFINITY));
-                (self * inverse, valid)
+                (v * inverse, valid)
+            }
+
+            /// The vector times a power of two that makes the magnitude of its largest coordinate
+            /// one to two, so that squares and cubes of coordinates neither overflow nor vanish.
+            /// Zero, infinities and NaN stay.
+            #[inline(always)]
+            pub fn balanced(self) -> Self {
+                self * balance(self.abs().max_element())
             }
 
             /// The smaller of each pair of coordinates; that of `b` where either is NaN.
