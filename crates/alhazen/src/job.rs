@@ -11,6 +11,7 @@ use integrators::{Control, Limits, PassError, Session, SessionState, Stop};
 use math::DMat4;
 use scene::{Scene, View};
 
+use crate::coarse;
 use crate::sketch::Sketch;
 use crate::{Header, OverrideError, Overrides};
 
@@ -52,6 +53,7 @@ impl Job {
             let span = settings.camera.origin.span;
             compiled.warnings.push(Diagnostic::warning("nothing-in-view", message, span));
         }
+        compiled.warnings.extend(coarse::warning(scene, session.view(), resolution));
         Ok(compiled)
     }
 

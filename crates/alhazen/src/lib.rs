@@ -22,6 +22,7 @@ pub use scene;
 pub use spectrum;
 
 mod clock;
+mod coarse;
 pub mod compare;
 #[cfg(feature = "gpu")]
 pub mod device;

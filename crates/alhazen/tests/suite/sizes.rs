@@ -1,9 +1,10 @@
 //! Scenes of any size: their coordinates may be as large or as small as squares of lengths are
 //! floats, in the engines and the algorithms alike.
 
-use crate::common::render_text;
-use alhazen::Overrides;
+use crate::common::{render_text, scene_text};
 use alhazen::image::Image;
+use alhazen::import::import;
+use alhazen::{Job, Overrides};
 
 /// Algorithms and engines. The scalar engine has the other algorithms anyway.
 const RENDERERS: [(&str, &str); 8] = [
@@ -159,7 +160,9 @@ fn instances_of_any_scale_are_seen() {
         let mesh = format!("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] {}", square(half));
         format!("ObjectBegin \"square\" {mesh} ObjectEnd\n")
     };
-    for (half, scale) in [("1", "20"), ("1", "3e7"), ("1", "1e9"), ("1", "1e12"), ("1e9", "1e-7"), ("1e14", "1e-12")] {
+    for (half, scale) in
+        [("1", "20"), ("1", "3e7"), ("1", "1e9"), ("1", "1e12"), ("1e9", "1e-7"), ("1e14", "1e-12")]
+    {
         let placed = format!("{}Scale {scale} {scale} {scale} ObjectInstance \"square\"", object(half));
         assert_lit(&placed, renderers);
     }
@@ -167,10 +170,16 @@ fn instances_of_any_scale_are_seen() {
     let (object, far) = (object("5"), "1e6 3e5 -2e6");
     let back = "-1e6 -3e5 2e6";
     for world in [
-        format!("AttributeBegin Translate {far}\n{object}AttributeEnd Translate {back} ObjectInstance \"square\""),
+        format!(
+            "AttributeBegin Translate {far}\n{object}AttributeEnd Translate {back} ObjectInstance \"square\""
+        ),
         format!("{object}Scale 1e8 1e8 1e8 Rotate 30 0 1 0 ObjectInstance \"square\""),
-        format!("{object}ObjectBegin \"outer\" Scale 1e4 1e4 1e4 ObjectInstance \"square\" ObjectEnd\nScale 1e4 1e4 1e4 ObjectInstance \"outer\""),
-        format!("{object}ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Scale 1e4 1e4 1e4 ObjectInstance \"square\""),
+        format!(
+            "{object}ObjectBegin \"outer\" Scale 1e4 1e4 1e4 ObjectInstance \"square\" ObjectEnd\nScale 1e4 1e4 1e4 ObjectInstance \"outer\""
+        ),
+        format!(
+            "{object}ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Scale 1e4 1e4 1e4 ObjectInstance \"square\""
+        ),
     ] {
         assert_lit(&world, &renderers[..5]);
     }
@@ -182,7 +191,10 @@ fn a_planet_under_the_scene_is_met_at_its_surface() {
         let sphere =
             format!("Translate 0 -{radius} 0 Rotate -90 1 0 0 Shape \"sphere\" \"float radius\" {radius}");
         assert_lit(&sphere, &RENDERERS[..6]);
-        assert_lit(&format!("ObjectBegin \"planet\" {sphere} ObjectEnd ObjectInstance \"planet\""), &RENDERERS[..1]);
+        assert_lit(
+            &format!("ObjectBegin \"planet\" {sphere} ObjectEnd ObjectInstance \"planet\""),
+            &RENDERERS[..1],
+        );
     }
 }
 
@@ -193,12 +205,30 @@ fn lights_far_away_and_tiny_ones_shine() {
     // Radiant intensity over the square of the distance is π/√2 · irradiance.
     for (distance, scale) in [(1e3f32, 1e6f32), (1e9, 1e18), (1e18, 1e36)] {
         let from = distance * std::f32::consts::FRAC_1_SQRT_2;
-        let lamp = format!("LightSource \"point\" \"point3 from\" [{from:e} {from:e} 0] \"float scale\" {scale:e}\n");
-        let text = lit(&format!("{lamp}{ground}")).replace("LightSource \"distant\" \"point3 from\" [0 1 0]", "");
+        let lamp = format!(
+            "LightSource \"point\" \"point3 from\" [{from:e} {from:e} 0] \"float scale\" {scale:e}\n"
+        );
+        let text =
+            lit(&format!("{lamp}{ground}")).replace("LightSource \"distant\" \"point3 from\" [0 1 0]", "");
         for &renderer in renderers.iter().filter(|renderer| renderer.0 != "sppm") {
             let [mean, ..] = statistics(&render(&text, renderer, &[]));
             let expected = 0.5 / std::f32::consts::PI * std::f32::consts::FRAC_1_SQRT_2;
             assert!((mean / expected - 1.0).abs() < 0.02, "{renderer:?}, {distance:e}: {mean}");
         }
+    }
+}
+
+#[test]
+fn instances_that_floats_misplace_are_warned_about() {
+    for (radius, is_warned) in [("100", false), ("1e4", false), ("6.371e6", true), ("1e9", true)] {
+        let unit = "ObjectBegin \"planet\" Shape \"sphere\" \"float radius\" 1 ObjectEnd";
+        let text = lit(&format!(
+            "{unit} Translate 0 -{radius} 0 Scale {radius} {radius} {radius} ObjectInstance \"planet\""
+        ));
+        let (path, assets) = scene_text(&text);
+        let warnings = Job::compile(import(path, &assets).desc).ok().unwrap().warnings;
+        let found = warnings.iter().find(|warning| warning.code == "coarse-instance");
+        assert_eq!(found.is_some(), is_warned, "{radius}: {warnings:?}");
+        assert!(found.is_none_or(|warning| !warning.labels[0].0.is_none()), "{warnings:?}");
     }
 }

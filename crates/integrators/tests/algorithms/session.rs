@@ -10,9 +10,9 @@ use alhazen_integrators::{
     Control, Limits, PassError, PixelLoop, RayIntegrator, Session, Stop, Tracer, build,
 };
 use description::{
-    AmbientOcclusionDesc, BdptDesc, Engine, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc, PathDesc,
-    PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc,
-    SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, Engine, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    PathDesc, PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc,
+    ShapeDesc, SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
 use film::{Film, PassSet};
 use geometry::RayStats;
@@ -350,8 +350,7 @@ fn without_jitter_a_sky_has_the_colour_of_the_formats_wavelengths() {
         white_sky(&mut desc);
         desc.film.resolution = [4, 4];
         desc.film.save_fp16 = false;
-        desc.sampler.value =
-            SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 2 }, seed: None };
+        desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 2 }, seed: None };
         desc.options.disable_wavelength_jitter = true;
         desc.options.engine = engine;
         desc.integrator.value = algorithm;

@@ -8,7 +8,8 @@
 
 use geometry::{InstancePath, Shape, ShapeSample, World};
 use math::{
-    Bounds3, DirectionCone, MACHINE_EPSILON, Normal3, Point3, Point3Error, Transform, Vec2, Vec3, Vector3, balance,
+    Bounds3, DirectionCone, MACHINE_EPSILON, Normal3, Point3, Point3Error, Transform, Vec2, Vec3, Vector3,
+    balance,
 };
 
 use super::LightSampleContext;
