@@ -12,6 +12,7 @@ use math::DMat4;
 use scene::{Scene, View};
 
 use crate::arrangement::Arrangement;
+use crate::coarse;
 use crate::sketch::Sketch;
 use crate::{Header, OverrideError, Overrides};
 
@@ -52,6 +53,7 @@ impl Job {
             let span = settings.camera.origin.span;
             compiled.warnings.push(Diagnostic::warning("nothing-in-view", message, span));
         }
+        compiled.warnings.extend(coarse::warning(scene, session.view(), resolution));
         Ok(compiled)
     }
 

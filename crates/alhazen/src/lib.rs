@@ -23,6 +23,7 @@ pub use spectrum;
 
 mod arrangement;
 mod clock;
+mod coarse;
 pub mod compare;
 #[cfg(feature = "gpu")]
 pub mod device;

@@ -38,7 +38,8 @@ settings! {
         disable_pixel_jitter: bool = false => ["disablepixeljitter"];
         /// Evaluate textures at points, without filtering.
         disable_texture_filtering: bool = false => ["disabletexturefiltering"];
-        /// Use the same wavelengths for every sample.
+        /// Use the same wavelengths for every sample, those of pbrt-v4: 545.9, 616.9, 830 and
+        /// 479.2 nm, or of a spectral film 0.5, 0.75, 1 and 0.25 of its range.
         disable_wavelength_jitter: bool = false => ["disablewavelengthjitter"];
         /// Factor on the edge length to which displaced surfaces are tessellated.
         displacement_edge_scale: f32 = 1.0 => ["displacementedgescale": above(0.0)];

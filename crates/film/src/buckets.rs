@@ -71,8 +71,9 @@ impl Buckets {
         let width = f64::from(self.max) - f64::from(self.min);
         (0..N).filter(move |&i| pdf[i] > 0.0).filter_map(move |i| {
             let place = (f64::from(lambda[i]) - f64::from(self.min)) / width;
-            let bucket = (place * f64::from(self.count)).floor();
-            (0.0..f64::from(self.count)).contains(&bucket).then(|| InBucket {
+            // The end of the range is in the last bucket.
+            let bucket = (place * f64::from(self.count)).floor().min(f64::from(self.count) - 1.0);
+            (0.0..=1.0).contains(&place).then(|| InBucket {
                 bucket: bucket as usize,
                 l: f64::from(l[i]) * f64::from(CIE_Y_INTEGRAL),
                 share: 1.0 / (N as f64 * f64::from(pdf[i]) * width),
@@ -118,6 +119,9 @@ mod tests {
             }
             assert_eq!(buckets.light(&l, &lambda).count(), 1);
         }
+        let fixed = SampledWavelengths::fixed_uniform_in(400.0, 700.0);
+        let reached: Vec<usize> = buckets.light(&l, &fixed).map(|light| light.bucket).collect();
+        assert_eq!(reached, [5, 7, 9, 2], "the end of the range is in the last bucket");
         let outside = SampledWavelengths::sample_uniform_in(0.5, 701.0, 800.0);
         assert_eq!(buckets.light(&l, &outside).count(), 0);
     }

@@ -96,7 +96,8 @@ impl<R: Real> FlatShape<R> {
     fn pdf_by_area(&self, reference: &ShapeSampleContext<R>, p: Point3<R>) -> R {
         // A normal of the length of the area.
         let cross = self.sides[0].cross(self.sides[1]);
-        reference.area_per_solid_angle(p, cross * R::select(self.is_triangle, R::splat(0.5), R::one()))
+        let n = cross * R::select(self.is_triangle, R::splat(0.5), R::one());
+        reference.pdf_per_solid_angle(R::one(), p, n)
     }
 
     #[inline(always)]

@@ -118,7 +118,7 @@ impl<R: Real> PatchLanes<R> {
             (du, dv) = (du + twist * b, dv + twist * a);
         }
         let p = Point3Error::new(p, size * R::splat(gamma(5)));
-        let cross = du.cross(dv);
+        let cross = du.balanced().cross(dv.balanced());
         let squared = cross.length_squared();
         let mut n = cross * (self.sign / squared.sqrt());
         let [dpdu, dpdv] = tangents([du, dv], &self.uv, n);
@@ -132,7 +132,7 @@ impl<R: Real> PatchLanes<R> {
         let mut ss = dpdu;
         if let Some(tangents) = self.tangents {
             let mixed = tangents[0] * c + tangents[1] * a + tangents[2] * b;
-            ss = Vec3::select(mixed.length_squared().gt(R::zero()), mixed, dpdu);
+            ss = Vec3::select(mixed.abs().max_element().gt(R::zero()), mixed, dpdu);
         }
         let uv = self.uv[0] * c + self.uv[1] * a + self.uv[2] * b;
         let points = PatchPoints { p, n, ns, uv, dpdu, dpdv, ss };
@@ -154,7 +154,7 @@ fn tangents<R: Real>([du, dv]: [Vector3<R>; 2], uv: &[Vec2<R>; 3], n: Normal3<R>
     let inverse = R::one() / determinant;
     let dpdu = (du * st_dv.y - dv * st_du.y) * inverse;
     let dpdv = (dv * st_du.x - du * st_dv.x) * inverse;
-    let squared = dpdu.cross(dpdv).length_squared();
+    let squared = dpdu.balanced().cross(dpdv.balanced()).length_squared();
     let is_regular = squared.gt(R::zero()) & squared.lt(R::splat(f32::INFINITY));
     if is_regular.all() {
         return [dpdu, dpdv];

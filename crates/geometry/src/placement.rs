@@ -1,7 +1,7 @@
 //! A transform and its inverse in double precision, with error bounds of transformed points.
 //!
-//! The matrix is the scene's, in floats; its inverse is computed in doubles, so that the two are
-//! inverse to a few parts in 10¹⁶. A round trip then costs only the rounding to floats, |x|·ε per
+//! The matrix is the scene's, in floats but for its translation; its inverse is computed in doubles,
+//! so that the two are inverse to a few parts in 10¹⁶. A round trip then costs only the rounding to floats, |x|·ε per
 //! coordinate, whatever the matrix.
 
 use math::{DMat3, DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
@@ -19,7 +19,7 @@ pub(crate) struct Placement {
 
 impl Placement {
     pub fn new(transform: &Transform) -> Self {
-        let forward = transform.matrix().as_dmat4();
+        let forward = transform.in_doubles();
         Self { forward, inverse: forward.inverse() }
     }
 

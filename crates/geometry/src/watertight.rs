@@ -18,7 +18,8 @@ use math::{Ray, Vec2, Vec3, Vec4, difference_of_products, gamma};
 
 /// The sign of an edge function below this may be due to underflow.
 const VANISHING: f32 = 1e-30;
-/// A sum of edge functions below this may be too inaccurate for distances.
+/// A sum of edge functions below this may be too inaccurate for distances. Above its inverse,
+/// products with distances may overflow.
 const TINY: f32 = 1e-20;
 
 /// A ray prepared for triangle tests.
@@ -133,8 +134,10 @@ impl<'a> Sheared<'a> {
             return None;
         }
         let determinant = e[0] + e[1] + e[2];
-        if determinant == 0.0 {
-            return None;
+        let size = determinant.abs();
+        // NaN fails.
+        if !(TINY..=1.0 / TINY).contains(&size) {
+            return in_doubles([a, b, c], height / slope);
         }
         let inverse = 1.0 / determinant;
         let mut t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2] * c[2])) * inverse;
@@ -208,19 +211,20 @@ impl<V> LaneHits<V> {
         }
         let determinant = e[0].add(e[1]).add(e[2]);
         // SAFETY: vectors are the proof of the instruction set.
-        let (one, tiny) = unsafe { (V::splat(1.0), V::splat(TINY)) };
+        let (one, tiny, huge) = unsafe { (V::splat(1.0), V::splat(TINY), V::splat(1.0 / TINY)) };
         let inverse = one.div(determinant);
         let sum = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2])));
         let t = sum.mul(inverse);
-        let is_tiny = determinant.abs().lt(tiny);
-        let candidates = inside & (t.le(t_max) | is_tiny);
+        let size = determinant.abs();
+        let is_extreme = size.lt(tiny) | huge.lt(size);
+        let candidates = inside & (t.le(t_max) | is_extreme);
         if candidates == 0 {
             return None;
         }
         let least_positive = e[0].min_int(e[1]).min_int(e[2]);
         let least_negative = e[0].min_uint(e[1]).min_uint(e[2]);
         let clear = vanishing.le(least_positive) | least_negative.le(zero.sub(vanishing));
-        let unsure = !clear | is_tiny;
+        let unsure = !clear | is_extreme;
         // A bound of the error of the sum, at least that of `distance_error`: one magnitude for x
         // and y, and the sum of the edge functions instead of the largest.
         let largest = |axis: usize| a[axis].abs().max_int(b[axis].abs()).max_int(c[axis].abs());
@@ -250,8 +254,21 @@ fn edge(a: [f32; 3], b: [f32; 3]) -> f32 {
     difference_of_products(a[0], b[1], a[1], b[0])
 }
 
+/// A hit at the distance `t` on a triangle with these sheared corners, whose edge functions floats
+/// cannot hold.
+fn in_doubles([a, b, c]: [[f32; 3]; 3], t: f64) -> Option<(f32, Vec2)> {
+    let e = [double_edge(b, c), double_edge(c, a), double_edge(a, b)];
+    let (t, determinant) = (t as f32, e[0] + e[1] + e[2]);
+    let is_hit = t > 0.0 && t.is_finite() && determinant.is_normal();
+    is_hit.then(|| (t, Vec2::new((e[1] / determinant) as f32, (e[2] / determinant) as f32)))
+}
+
+fn double_edge(a: [f32; 3], b: [f32; 3]) -> f64 {
+    a[0] as f64 * b[1] as f64 - a[1] as f64 * b[0] as f64
+}
+
 fn exact_edge(a: [f32; 3], b: [f32; 3]) -> f32 {
-    let e = a[0] as f64 * b[1] as f64 - a[1] as f64 * b[0] as f64;
+    let e = double_edge(a, b);
     // Rounding to a float must not lose the sign.
     if e != 0.0 && e as f32 == 0.0 { f32::MIN_POSITIVE.copysign(e as f32) } else { e as f32 }
 }

@@ -157,10 +157,18 @@ struct Sample {
     weight: f32,
 }
 
-// The wavelengths of a random number: uniform over the range that a spectral film wants.
+// The wavelengths of a random number: uniform over the range that a spectral film wants. Where the
+// view fixes them, they are the format's.
 fn sampled_wavelengths(u: f32) -> SampledWavelengths {
     let range = numbers_at(world.camera + 24).zw;
-    if (range.y > range.x) {
+    let is_uniform = range.y > range.x;
+    if (world.has_one_wavelength == 1) {
+        if (is_uniform) {
+            return SampledWavelengths_fixed_uniform_in(range.x, range.y);
+        }
+        return SampledWavelengths_fixed_visible();
+    }
+    if (is_uniform) {
         return SampledWavelengths_sample_uniform_in(u, range.x, range.y);
     }
     return SampledWavelengths_sample_visible(u);
@@ -179,7 +187,7 @@ fn camera_sample(pixel: vec2u, index: u32) -> CameraSample {
     let position = vec2f(pixel) + 0.5 + drawn.xy;
     set_shutter_time(select(u[2].x, 0.5, is_centered));
     let camera = camera_ray(position, select(u[3], vec2f(0.5), is_centered));
-    let wavelength = select(u[0].x, 0.5, world.has_one_wavelength == 1);
+    let wavelength = u[0].x;
     return CameraSample(
         camera.ray,
         camera.near,

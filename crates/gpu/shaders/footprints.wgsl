@@ -83,10 +83,10 @@ fn scattered_differentials(s: Surface, context: TextureContext, from_: Different
         d.ry_direction = wi - dwody * eta + n * ((dot(dwody, n) + dot(wo, dndy)) * slope) + dndy * mu;
     }
     // Differentials too large for filtering are dropped; NaN is, too.
-    let largest = max(
-        max(dot(d.rx_direction, d.rx_direction), dot(d.ry_direction, d.ry_direction)),
-        max(dot(d.rx_origin, d.rx_origin), dot(d.ry_origin, d.ry_origin)),
-    );
-    d.are_known = largest < 1e16;
+    let place = abs(s.p.p);
+    let far = 1e8 * max(max(place.x, place.y), max(place.z, 1));
+    let directions = max(dot(d.rx_direction, d.rx_direction), dot(d.ry_direction, d.ry_direction));
+    let origins = max(dot(d.rx_origin, d.rx_origin), dot(d.ry_origin, d.ry_origin));
+    d.are_known = directions < 1e16 && origins < far * far;
     return d;
 }

@@ -161,13 +161,15 @@ fn sample_light(
 fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavelengths) -> LightSample {
     var sample = no_light();
     sample.p = Point3Error(light_position(at), vec3f());
-    let to_light = sample.p.p - context.p.p;
+    let way = sample.p.p - context.p.p;
+    let scale = balance(max(max(abs(way.x), abs(way.y)), abs(way.z)));
+    let to_light = way * scale;
     let distance2 = Vec3_length_squared(to_light);
     if (distance2 == 0) {
         return sample;
     }
     sample.wi = to_light / sqrt(distance2);
-    sample.l = point_share(at, -sample.wi, lambda) / distance2;
+    sample.l = point_share(at, -sample.wi, lambda) / distance2 * scale * scale;
     sample.pdf = 1;
     sample.valid = true;
     return sample;
@@ -303,7 +305,7 @@ fn determinant(m: Rows) -> f32 {
 // The factor on a density per solid angle that the inverse of a matrix takes to the direction `w`.
 fn solid_angle_factor(inward: Rows, w: vec3f) -> f32 {
     let distance = length(times(inward, w));
-    return abs(determinant(inward)) / (distance * distance * distance);
+    return abs(determinant(Rows(inward.x / distance, inward.y / distance, inward.z / distance)));
 }
 
 // Solid angle per area of an image of the sphere, as a part of 4π.

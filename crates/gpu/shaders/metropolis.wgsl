@@ -153,9 +153,8 @@ fn camera_end() -> CameraSample {
     let high = vec2f(number(at + 2), number(at + 3));
     let position = low + (high - low) * u[1];
     let camera = camera_ray(position, u[3]);
-    let wavelength = select(u[0].x, 0.5, world.has_one_wavelength == 1);
-    let lambda = sampled_wavelengths(wavelength);
-    return CameraSample(camera.ray, camera.near, lambda, wavelength, position, 1, 1);
+    let lambda = sampled_wavelengths(u[0].x);
+    return CameraSample(camera.ray, camera.near, lambda, u[0].x, position, 1, 1);
 }
 
 // The light of the path that the strategy of s vertices from the light and t from the camera makes,

@@ -22,7 +22,7 @@ fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: Sample
             point = sample_cone(record, cone, u);
         } else {
             point = point_by_area(record, u);
-            point.pdf *= ShapeSampleContext_area_per_solid_angle(reference, point.p.p, point.n);
+            point.pdf = ShapeSampleContext_pdf_per_solid_angle(reference, point.pdf, point.p.p, point.n);
         }
     }
     if (is_placed(at)) {
@@ -234,6 +234,6 @@ fn pdf_of_point(light: u32, context: ShapeSampleContext, p: vec3f, n: vec3f, uv:
     if (cone.sine > 0 && !shines_through_holes(emitter, at)) {
         return factor / (6.2831855 * cone.one_minus_cos);
     }
-    let by_area = ShapeSampleContext_area_per_solid_angle(reference, point, normal);
-    return by_area * surface_density(at, normal, uv) * factor;
+    let density = surface_density(at, normal, uv);
+    return ShapeSampleContext_pdf_per_solid_angle(reference, density, point, normal) * factor;
 }

@@ -125,7 +125,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     var s: Surface;
     let error = gamma(5) * (abs(corner) + abs(du * b.y) + abs(dv * b.z));
     s.p = Point3Error(corner + du * b.y + dv * b.z, error);
-    s.n = Vec3_normalize(cross(du, dv)) * select(1.0, -1.0, flips);
+    s.n = Vec3_normalize(cross(Vec3_balanced(du), Vec3_balanced(dv))) * select(1.0, -1.0, flips);
     s.front = 1;
     var uv = array(vec2f(), vec2f(1, 0), vec2f(1, 1));
     var next = attributes + 1;
@@ -189,7 +189,7 @@ fn set_tangents(s: ptr<function, Surface>, du: vec3f, dv: vec3f, st_du: vec2f, s
     let inverse = 1 / area(st_du, st_dv);
     (*s).dpdu = (du * st_dv.y - dv * st_du.y) * inverse;
     (*s).dpdv = (dv * st_du.x - du * st_dv.x) * inverse;
-    let normal = cross((*s).dpdu, (*s).dpdv);
+    let normal = cross(Vec3_balanced((*s).dpdu), Vec3_balanced((*s).dpdv));
     let squared = dot(normal, normal);
     if (!(squared > 0 && squared < infinity())) {
         let any_tangents = coordinate_system((*s).n);
@@ -216,11 +216,13 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         s.p = Point3Error(corner + along + across + twisted, gamma(5) * size);
         s.dpdu = right + twist * hit.uv.y;
         s.dpdv = up + twist * hit.uv.x;
-        let normal = cross(s.dpdu, s.dpdv);
+        let largest = max(abs(s.dpdu), abs(s.dpdv));
+        let scale = balance(max(max(largest.x, largest.y), largest.z));
+        let normal = cross(s.dpdu * scale, s.dpdv * scale);
         let n = Vec3_normalize(normal);
         s.n = n * side;
-        let du = cross(s.dpdu, twist);
-        let dv = cross(twist, s.dpdv);
+        let du = cross(s.dpdu * scale, twist * scale);
+        let dv = cross(twist * scale, s.dpdv * scale);
         s.dndu = (du - n * dot(n, du)) * (side / length(normal));
         s.dndv = (dv - n * dot(n, dv)) * (side / length(normal));
     } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {

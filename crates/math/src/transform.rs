@@ -8,6 +8,8 @@ use lanes::{Each, Real};
 pub struct Transform {
     m: Mat4,
     inverse: Mat4,
+    /// What rounding to floats has left of the translation.
+    rest: Vec3,
 }
 
 impl Default for Transform {
@@ -18,34 +20,38 @@ impl Default for Transform {
 
 impl Transform {
     /// The identity.
-    pub const IDENTITY: Self = Self { m: Mat4::IDENTITY, inverse: Mat4::IDENTITY };
+    pub const IDENTITY: Self = Self { m: Mat4::IDENTITY, inverse: Mat4::IDENTITY, rest: Vec3::ZERO };
 
     /// From a double-precision matrix, which is inverted in double precision; `None` when there is
     /// no inverse.
     pub fn from_f64(m: DMat4) -> Option<Self> {
         let inverse = m.inverse();
-        (inverse.is_finite() && m.is_finite()).then(|| Self { m: m.as_mat4(), inverse: inverse.as_mat4() })
+        (inverse.is_finite() && m.is_finite()).then(|| {
+            let rounded = m.as_mat4();
+            let rest = m.w_axis - rounded.w_axis.as_dvec4();
+            Self { m: rounded, inverse: inverse.as_mat4(), rest: rest.truncate().as_vec3().into() }
+        })
     }
 
     /// From a matrix and its inverse.
     pub fn from_parts(m: Mat4, inverse: Mat4) -> Self {
-        Self { m, inverse }
+        Self { m, inverse, rest: Vec3::ZERO }
     }
 
     /// A translation by `v`.
     pub fn translate(v: Vector3) -> Self {
-        Self { m: Mat4::from_translation(v.into()), inverse: Mat4::from_translation((-v).into()) }
+        Self::from_parts(Mat4::from_translation(v.into()), Mat4::from_translation((-v).into()))
     }
 
     /// A scale of each axis; no factor may be zero.
     pub fn scale(s: Vec3) -> Self {
-        Self { m: Mat4::from_scale(s.into()), inverse: Mat4::from_scale(s.recip().into()) }
+        Self::from_parts(Mat4::from_scale(s.into()), Mat4::from_scale(s.recip().into()))
     }
 
     /// A rotation by `angle` radians around `axis`, counter-clockwise as seen from its tip.
     pub fn rotate(angle: f32, axis: Vector3) -> Self {
         let m = Mat4::from_axis_angle(axis.normalize().into(), angle);
-        Self { m, inverse: m.transpose() }
+        Self::from_parts(m, m.transpose())
     }
 
     /// The matrix.
@@ -54,16 +60,25 @@ impl Transform {
         &self.m
     }
 
+    /// The matrix in double precision, with the translation of [`from_f64`](Self::from_f64), which
+    /// floats may miss by more than what is large and far away is from the camera.
+    #[inline]
+    pub fn in_doubles(&self) -> DMat4 {
+        let mut m = self.m.as_dmat4();
+        m.w_axis += self.rest.as_dvec3().extend(0.0);
+        m
+    }
+
     /// The inverse map.
     #[inline]
     pub fn inverse(&self) -> Self {
-        Self { m: self.inverse, inverse: self.m }
+        Self::from_parts(self.inverse, self.m)
     }
 
     /// This map after `first`.
     #[inline]
     pub fn after(&self, first: &Self) -> Self {
-        Self { m: self.m * first.m, inverse: first.inverse * self.inverse }
+        Self::from_parts(self.m * first.m, first.inverse * self.inverse)
     }
 
     /// Whether it is the identity.

@@ -3,6 +3,7 @@
 //! Matrices, and vectors of four coordinates or of double precision, are those of glam. What makes
 //! sense for one lane only is defined for `f32` alone.
 
+use crate::balance;
 use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
 use lanes::Real;
 use std::fmt;
@@ -154,8 +155,8 @@ macro_rules! vector {
             /// All NaN.
             pub const NAN: Self = Self::splat(f32::NAN);
 
-            /// The vector of length one with the same direction; `None` where the length is zero or
-            /// not finite, or nearly so.
+            /// The vector of length one with the same direction; `None` where a coordinate is not
+            /// finite, or all are zero.
             #[inline(always)]
             pub fn try_normalize(self) -> Option<Self> {
                 let (v, valid) = self.normalize_masked();
@@ -328,16 +329,26 @@ macro_rules! methods {
             /// The vector of length one with the same direction; not finite for the zero vector.
             #[inline(always)]
             pub fn normalize(self) -> Self {
-                self * (R::one() / self.length())
+                let v = self.balanced();
+                v * (R::one() / v.length())
             }
 
             /// The vector of length one with the same direction, and where there is one: not where
-            /// the length is zero or not finite, or nearly so.
+            /// a coordinate is not finite, or all are zero.
             #[inline(always)]
             pub fn normalize_masked(self) -> (Self, R::Mask) {
-                let inverse = R::one() / self.length();
+                let v = self.balanced();
+                let inverse = R::one() / v.length();
                 let valid = inverse.gt(R::zero()) & inverse.lt(R::splat(f32::INFINITY));
-                (self * inverse, valid)
+                (v * inverse, valid)
+            }
+
+            /// The vector times a power of two that makes the magnitude of its largest coordinate
+            /// one to two, so that squares and cubes of coordinates neither overflow nor vanish.
+            /// Zero, infinities and NaN stay.
+            #[inline(always)]
+            pub fn balanced(self) -> Self {
+                self * balance(self.abs().max_element())
             }
 
             /// The smaller of each pair of coordinates; that of `b` where either is NaN.
@@ -564,6 +575,23 @@ mod tests {
     #[test]
     fn vectors_do_not_depend_on_the_number_of_lanes() {
         lanes_agree(&Vectors, 6, 500);
+    }
+
+    #[test]
+    fn vectors_of_all_sizes_have_a_direction() {
+        let v = Vec3::new(0.3, -2.0, 5.5);
+        let n = v.normalize();
+        for exponent in -120..=125 {
+            let scaled = v * 2f32.powi(exponent);
+            assert_eq!(scaled.normalize(), n, "2^{exponent}");
+            assert_eq!(scaled.try_normalize(), Some(n), "2^{exponent}");
+            let b = scaled.balanced();
+            assert!((1.0..2.0).contains(&b.abs().max_element()) && b.normalize() == n, "{b:?}");
+        }
+        for v in [Vec3::new(1e-44, 0.0, -1e-44), Vec3::new(f32::MAX, 1.0, -f32::MAX)] {
+            assert!((v.normalize() - Vec3::new(1.0, 0.0, -1.0).normalize()).length() < 1e-6, "{v:?}");
+        }
+        assert!(Vec3::new(f32::NAN, 1.0, 0.0).try_normalize().is_none());
     }
 
     #[test]

@@ -8,7 +8,7 @@
 use crate::camera::differential_scale;
 use crate::view::View;
 use lanes::{Mask, Real};
-use math::{Differentials, Normal3, Point3, Vec3, Vector3, difference_of_products};
+use math::{Differentials, Normal3, Point3, Vec3, Vector3, balance, difference_of_products};
 
 /// Derivatives of the surface point by film position, in pixels, for each lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,15 +38,17 @@ impl<R: Real> Footprint<R> {
     /// That of ∂p/∂x and ∂p/∂y, where the surface has the tangents ∂p/∂u and ∂p/∂v.
     #[inline(always)]
     pub fn new([dpdx, dpdy]: [Vector3<R>; 2], [dpdu, dpdv]: [Vector3<R>; 2]) -> Self {
+        let [scale_u, scale_v] = [balance(dpdu.abs().max_element()), balance(dpdv.abs().max_element())];
+        let (dpdu, dpdv) = (dpdu * scale_u, dpdv * scale_v);
         // Normal equations of [∂p/∂u ∂p/∂v]·[du dv]ᵀ = dp.
         let (a, b, c) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
         let inverse = or_zero(R::one() / difference_of_products(a, c, b, b));
         let (x, y) = (dpdu.dot(dpdx), dpdv.dot(dpdx));
-        let dudx = bounded(difference_of_products(c, x, b, y) * inverse);
-        let dvdx = bounded(difference_of_products(a, y, b, x) * inverse);
+        let dudx = bounded(difference_of_products(c, x, b, y) * inverse * scale_u);
+        let dvdx = bounded(difference_of_products(a, y, b, x) * inverse * scale_v);
         let (x, y) = (dpdu.dot(dpdy), dpdv.dot(dpdy));
-        let dudy = bounded(difference_of_products(c, x, b, y) * inverse);
-        let dvdy = bounded(difference_of_products(a, y, b, x) * inverse);
+        let dudy = bounded(difference_of_products(c, x, b, y) * inverse * scale_u);
+        let dvdy = bounded(difference_of_products(a, y, b, x) * inverse * scale_v);
         Self { dpdx, dpdy, dudx, dudy, dvdx, dvdy }
     }
 }

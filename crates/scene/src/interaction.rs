@@ -85,10 +85,11 @@ impl SurfaceInteraction {
             .and_then(|d| self.scattered_differentials(from, &d, sample))
             .filter(|d| {
                 // Differentials too large for filtering are dropped.
+                let far = 1e8 * self.p().abs().max_element().max(1.0);
                 d.rx_direction.length_squared() < 1e16
                     && d.ry_direction.length_squared() < 1e16
-                    && d.rx_origin.length_squared() < 1e16
-                    && d.ry_origin.length_squared() < 1e16
+                    && d.rx_origin.length_squared() < far * far
+                    && d.ry_origin.length_squared() < far * far
             });
         RayDifferential { ray, differentials }
     }

@@ -82,7 +82,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Gives instances that are not within others, and at rest, other transforms to render space;
+    /// Gives instances that are not within others, and at rest, other transforms from the space of
+    /// their objects to render space, as [`World::render_from_instance`](geometry::World) has them;
     /// else as [`move_points`](Self::move_points).
     pub fn move_instances(
         &mut self,

@@ -30,10 +30,11 @@ impl ShutterSample {
     /// The wavelengths from a sample value in [0, 1), unless the view's options fix them.
     #[inline(always)]
     pub fn wavelengths<R: Real>(view: &View, u: R) -> SampledWavelengths<R> {
-        let u = if view.options.disable_wavelength_jitter { R::splat(0.5) } else { u };
-        match view.wavelengths {
-            None => SampledWavelengths::sample_visible(u),
-            Some([min, max]) => SampledWavelengths::sample_uniform_in(u, min, max),
+        match (view.options.disable_wavelength_jitter, view.wavelengths) {
+            (false, None) => SampledWavelengths::sample_visible(u),
+            (false, Some([min, max])) => SampledWavelengths::sample_uniform_in(u, min, max),
+            (true, None) => SampledWavelengths::fixed_visible(),
+            (true, Some([min, max])) => SampledWavelengths::fixed_uniform_in(min, max),
         }
     }
 

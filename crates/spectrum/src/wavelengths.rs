@@ -80,6 +80,23 @@ impl<R: Real> SampledWavelengths<R> {
         Self { lambda: turned_by(quarter, lambda), pdf: turned_by(quarter, pdf) }
     }
 
+    /// The wavelengths that pbrt-v4 samples as the eye sees them from u = 0.5, so that renderers
+    /// can be compared at the same ones: those of the density ∝ sech²(0.0072 (λ − 538))
+    /// [Radziszewski 2009] at 0.5, 0.75, 1 and 0.25 of its integral.
+    #[inline(always)]
+    pub fn fixed_visible() -> Self {
+        Self { lambda: FIXED.each(R::splat), pdf: FIXED_PDF.each(R::splat) }
+    }
+
+    /// The wavelengths that pbrt-v4 samples uniformly over `min..max` from u = 0.5: at 0.5, 0.75, 1
+    /// and 0.25 of the range.
+    #[inline(always)]
+    pub fn fixed_uniform_in(min: f32, max: f32) -> Self {
+        let place = |part: f32| R::splat((max - min).mul_add(part, min).min(max));
+        let pdf = R::splat(1.0 / (max - min));
+        Self { lambda: [place(0.5), place(0.75), R::splat(max), place(0.25)], pdf: [pdf; N] }
+    }
+
     /// `a` where the mask is true, else `b`.
     #[inline(always)]
     pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
@@ -147,6 +164,10 @@ fn turned_by<R: Real>(quarter: R, numbers: [R; N]) -> [R; N] {
     let [c, d] = [R::select(by_two, numbers[0], c), R::select(by_two, numbers[1], d)];
     [R::select(by_one, b, a), R::select(by_one, c, b), R::select(by_one, d, c), R::select(by_one, a, d)]
 }
+
+/// The numbers of [`SampledWavelengths::fixed_visible`].
+const FIXED: [f32; N] = [545.903, 616.85626, 830.0, 479.15405];
+const FIXED_PDF: [f32; N] = [0.003_927_075_4, 0.002_900_074_2, 0.000_228_321_23, 0.003_309_324_7];
 
 /// Where tanh(s (λ − c)) is zero, and s, per nanometre.
 const TANH_CENTER: f32 = 569.0;
@@ -244,6 +265,20 @@ mod tests {
                 assert!((LAMBDA_MIN..=LAMBDA_MAX).contains(&l));
             }
         }
+    }
+
+    #[test]
+    fn fixed_wavelengths_are_those_of_the_format() {
+        let fixed = SampledWavelengths::fixed_visible();
+        for (i, u) in [0.5, 0.75, 1.0, 0.25].into_iter().enumerate() {
+            let lambda = 538.0 - 138.888_889 * libm::atanh(0.856_910_62 - 1.827_501_97 * u);
+            let pdf = 0.003_939_804_2 / libm::cosh(0.0072 * (lambda - 538.0)).powi(2);
+            assert!((f64::from(fixed[i]) - lambda).abs() < 1e-4, "{u}: {lambda}");
+            assert!((f64::from(fixed.pdf()[i]) / pdf - 1.0).abs() < 1e-6, "{u}: {pdf}");
+        }
+        let fixed = SampledWavelengths::fixed_uniform_in(400.0, 700.0);
+        assert_eq!(*fixed.lambda(), [550.0, 625.0, 700.0, 475.0]);
+        assert_eq!(fixed.pdf().0, [1.0 / 300.0; N]);
     }
 
     #[test]

@@ -22,4 +22,5 @@ mod python_settings;
 mod radiosity;
 mod references;
 mod scenes;
+mod sizes;
 mod sketch;

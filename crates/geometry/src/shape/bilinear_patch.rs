@@ -12,6 +12,7 @@
 
 use super::plain::PlainShape;
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use super::triangle::has_area;
 use crate::facet::FacetFrame;
 use crate::flat_shape::{FlatShape, SeenRectangle};
 use crate::patch::Patch;
@@ -410,7 +411,7 @@ impl BilinearPatch {
 
 fn is_regular(p: &[Point3; 4]) -> bool {
     let sides = [[0, 1, 2], [1, 0, 3], [2, 0, 3], [3, 1, 2]].map(|[c, a, b]| [p[a] - p[c], p[b] - p[c]]);
-    sides.iter().all(|[a, b]| a.cross(*b).length_squared() > f32::MIN_POSITIVE)
+    sides.into_iter().all(has_area)
 }
 
 fn at(c: &[DVec3; 4], uv: Vec2) -> DVec3 {

@@ -255,7 +255,7 @@ impl Shape {
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
-            self.pdf_area(surface.p.p, surface.n) * reference.area_per_solid_angle(surface.p.p, surface.n)
+            reference.pdf_per_solid_angle(self.pdf_area(surface.p.p, surface.n), surface.p.p, surface.n)
         });
         if pdf.is_finite() { pdf } else { 0.0 }
     }

@@ -1,7 +1,7 @@
 //! Hits and samples of shapes.
 
 use lanes::{Real, coarse_inverse_sqrt};
-use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vector3};
+use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vector3, balance};
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,13 +47,17 @@ impl<R: Real> ShapeSampleContext<R> {
         Ray::spawn(self.p, self.n, w, self.time)
     }
 
-    /// dA/dω = d²/|cos θ| of an area at `p` with unit normal `n`; with a normal of another length,
-    /// divided by that.
+    /// The density per solid angle of a density per area at `p` with unit normal `n`: times dA/dω =
+    /// d²/|cos θ|; with a normal of another length, divided by that.
     #[inline(always)]
-    pub fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
+    pub fn pdf_per_solid_angle(&self, pdf_area: R, p: Point3<R>, n: Normal3<R>) -> R {
         let toward = p - self.p.p;
+        // A power of two near 1/d, since cubes of distances may overflow or vanish.
+        let scale = balance(toward.abs().max_element());
+        let toward = toward * scale;
         let distance2 = toward.length_squared();
-        distance2 * distance2.sqrt() / n.dot(toward).abs()
+        let unit = balance(scale);
+        pdf_area * unit * (distance2 * distance2.sqrt() / n.dot(toward).abs()) * unit
     }
 
     /// Weights of the corners of the unit square for bilinear sampling by the cosine at this point,
@@ -62,7 +66,7 @@ impl<R: Real> ShapeSampleContext<R> {
     pub(crate) fn cosine_weights(&self, corners: [Vector3<R>; 4]) -> [R; 4] {
         let mut weights = [R::zero(); 4];
         for i in 0..4 {
-            let w = corners[i];
+            let w = corners[i].balanced();
             let cosine = (w.dot(self.ns) * coarse_inverse_sqrt(w.length_squared())).abs();
             weights[i] = cosine.max(R::splat(0.01));
         }
@@ -74,7 +78,7 @@ impl ShapeSampleContext {
     /// Converts a sample by area to one by solid angle; `None` where it is seen edge-on, or is the
     /// reference point itself.
     pub fn by_solid_angle(&self, sample: ShapeSample) -> Option<ShapeSample> {
-        let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
+        let pdf = self.pdf_per_solid_angle(sample.pdf, sample.p.p, sample.n);
         (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
     }
 }

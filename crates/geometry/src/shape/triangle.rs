@@ -63,9 +63,9 @@ impl Triangle {
         if self.n.is_some() || self.s.is_some() {
             let mix = |v: &[Vec3; 3]| Vec3::from(barycentric(v, b).as_vec3());
             let ns = self.n.and_then(|n| mix(&n).try_normalize()).unwrap_or(n);
-            let ss = self.s.map(|s| mix(&s)).filter(|s| s.length_squared() > 0.0).unwrap_or(dpdu);
+            let ss = self.s.map(|s| mix(&s)).filter(|s| *s != Vec3::ZERO).unwrap_or(dpdu);
             let ts = ns.cross(ss);
-            let (ss, ts) = if ts.length_squared() > 0.0 { (ts.cross(ns), ts) } else { coordinate_system(ns) };
+            let (ss, ts) = if ts != Vec3::ZERO { (ts.cross(ns), ts) } else { coordinate_system(ns) };
             let dn = self.n.and_then(|n| by_texture(self.sides(&n).map(|e| e.as_dvec3())));
             let [dndu, dndv] = dn.unwrap_or([Vec3::ZERO; 2]);
             surface.set_shading(Shading { n: ns, dpdu: ss, dpdv: ts, dndu, dndv });
@@ -77,8 +77,7 @@ impl Triangle {
     #[inline]
     pub(crate) fn patch(&self) -> Option<Patch> {
         let sides = self.sides(&self.p);
-        let n = sides[0].cross(sides[1]);
-        if self.s.is_some() || n.length_squared() < f32::MIN_POSITIVE {
+        if self.s.is_some() || !has_area(sides) {
             return None;
         }
         let twist = Vec3::ZERO;
@@ -124,8 +123,7 @@ impl Triangle {
     pub(crate) fn flat_shape(&self) -> Option<FlatShape> {
         let sides = self.sides(&self.p);
         let [n, others @ ..] = [Vec2::ZERO, Vec2::X, Vec2::Y].map(|b| self.outside(b));
-        let has_area = sides[0].cross(sides[1]).length_squared() >= f32::MIN_POSITIVE;
-        let is_flat = has_area && others == [n; 2];
+        let is_flat = has_area(sides) && others == [n; 2];
         is_flat.then_some(FlatShape { corner: self.p[0], sides, n, is_triangle: true })
     }
 
@@ -162,4 +160,9 @@ impl Triangle {
     fn sides<V: Copy + std::ops::Sub<Output = V>>(&self, v: &[V; 3]) -> [V; 2] {
         [v[1] - v[0], v[2] - v[0]]
     }
+}
+
+/// Whether floats have a normal of two sides.
+pub(super) fn has_area([a, b]: [Vector3; 2]) -> bool {
+    a.balanced().cross(b.balanced()).length_squared() >= f32::MIN_POSITIVE
 }

@@ -73,7 +73,7 @@ pub fn instance(
     groups: &[Group],
     motions: [u32; 2],
 ) -> [Words; QUADRUPLES] {
-    let steps = path.ids().iter().map(|&id| world.render_from_instance(id).start().matrix().as_dmat4());
+    let steps = path.ids().iter().map(|&id| world.render_from_instance(id).start().in_doubles());
     let [x, y, z] = rows(steps.product());
     let last = path.ids().last().map_or(u32::MAX, |id| id.0);
     let group = path.ids().last().map_or(0, |&id| world.group_of_instance(id).0);
@@ -96,7 +96,7 @@ pub fn motions(world: &World, path: &InstancePath) -> Vec<MotionKeys> {
         return Vec::new();
     }
     let at_rest = |step: &AnimatedTransform| {
-        let matrix = step.start().matrix().as_dmat4();
+        let matrix = step.start().in_doubles();
         MotionKeys {
             times: [0.0, 1.0],
             translations: [matrix.w_axis.truncate(); 2],

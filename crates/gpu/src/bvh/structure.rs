@@ -63,8 +63,7 @@ impl Bvh {
         }
         let identity = Place { group: 0, rows: rows(&DMat4::IDENTITY), item: OUTSIDE };
         let placed = bvh.instances.iter().filter_map(|(path, item)| {
-            let steps =
-                path.ids().iter().map(|&id| world.render_from_instance(id).start().matrix().as_dmat4());
+            let steps = path.ids().iter().map(|&id| world.render_from_instance(id).start().in_doubles());
             let group = world.group_of_instance(*path.ids().last()?).0 as usize;
             Some(Place { group, rows: rows(&steps.product()), item: *item })
         });

@@ -25,7 +25,7 @@
 //! Sources: [Baum 1989], [Cohen 1993].
 
 use geometry::{RayStats, SurfacePoint};
-use math::{Normal3, Point3, Point3Error, Ray, Vector3};
+use math::{Normal3, Point3, Point3Error, Ray, Vector3, balance};
 use scene::{Interfaces, Scene};
 use std::f32::consts::TAU;
 
@@ -58,7 +58,7 @@ pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
     }
     let above = &above[..len];
     let side = |i: usize| {
-        let (a, b) = (above[i], above[(i + 1) % len]);
+        let (a, b) = (above[i].balanced(), above[(i + 1) % len].balanced());
         let cross = a.cross(b);
         let sin = cross.length();
         // An edge that is seen end-on, or has no length, contributes 0.
@@ -127,7 +127,8 @@ impl Emitter {
         if area.dot(n) < 0.0 {
             corners.reverse();
         }
-        let flat = 0.5 * area.length();
+        let scale = balance(area.abs().max_element());
+        let flat = 0.5 * (area * scale).length() * balance(scale);
         let bulge = if flat > 0.0 { patch.area / flat } else { 0.0 };
         Self { corners, center, n, points, light: patch.quarter_factors(side), bulge, faint: 0.0, turn: 0 }
     }
@@ -161,7 +162,9 @@ impl Emitter {
         let (to, to_n) = self.points[quarter][i];
         let way = to.p - from.p.p;
         let cos = way.dot(from.n);
-        let g = cos.abs() * -way.dot(to_n) / way.length_squared().powi(2);
+        let scale = balance(way.abs().max_element());
+        let unit = way * scale;
+        let g = unit.dot(from.n).abs() * -unit.dot(to_n) / unit.length_squared().powi(2) * scale * scale;
         let ray = || Ray::between(from.p, from.n, to, to_n, time);
         (g > 0.0 && g.is_finite()).then(|| (g, usize::from(cos < 0.0), ray()))
     }

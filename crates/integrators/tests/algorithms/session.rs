@@ -10,16 +10,16 @@ use alhazen_integrators::{
     Control, Limits, PassError, PixelLoop, RayIntegrator, Session, Stop, Tracer, build,
 };
 use description::{
-    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc, PathDesc,
-    PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc,
-    SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, Engine, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    PathDesc, PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc,
+    ShapeDesc, SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
 use film::{Film, PassSet};
 use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, xyz_from};
 
 use crate::support::{at, diffuse, emission, finished, glass, session, sphere, v, white_sky};
 
@@ -321,6 +321,44 @@ impl RayIntegrator for &'static Recorder {
         let d = ray.ray.d;
         self.0.lock().unwrap().push([d.x, d.y, d.z, lambda[0]].map(f32::to_bits));
         SampledSpectrum::ZERO
+    }
+}
+
+#[test]
+fn without_jitter_a_sky_has_the_colour_of_the_formats_wavelengths() {
+    let places = [0.5, 0.75, 1.0, 0.25];
+    let lambda = places.map(|u| 538.0 - 138.888_889 * libm::atanh(0.856_910_62 - 1.827_501_97 * u));
+    let pdf = lambda.map(|lambda| 0.003_939_804_2 / libm::cosh(0.0072 * (lambda - 538.0)).powi(2));
+    let lambda = SampledWavelengths::new(lambda.map(|lambda| lambda as f32), pdf.map(|pdf| pdf as f32));
+    let xyz = xyz_from(&SampledSpectrum::ONE, &lambda);
+    let expected = RgbColorSpace::srgb().rgb_from_xyz().apply_f32([xyz.x, xyz.y, xyz.z]);
+    assert!(expected[0] > 1.5 && expected[2] < 0.6, "far from white: {expected:?}");
+    let algorithms: [IntegratorDesc; 8] = [
+        IntegratorDesc::RayCasting,
+        IntegratorDesc::Whitted(WhittedDesc::default()),
+        IntegratorDesc::Path(PathDesc::default()),
+        IntegratorDesc::SimplePath(SimplePathDesc::default()),
+        IntegratorDesc::Bdpt(BdptDesc::default()),
+        IntegratorDesc::Sppm(SppmDesc::default()),
+        IntegratorDesc::Mlt(MltDesc::default()),
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+    ];
+    for (algorithm, engine) in
+        algorithms.into_iter().flat_map(|a| [(a.clone(), Engine::Wavefront), (a, Engine::Scalar)])
+    {
+        let mut desc = SceneDesc::default();
+        white_sky(&mut desc);
+        desc.film.resolution = [4, 4];
+        desc.film.save_fp16 = false;
+        desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 2 }, seed: None };
+        desc.options.disable_wavelength_jitter = true;
+        desc.options.engine = engine;
+        desc.integrator.value = algorithm;
+        let picture = finished(&desc, build(&desc).unwrap().integrator).state().develop().unwrap();
+        for (found, expected) in picture.rgb(1, 2).into_iter().zip(expected) {
+            let name = desc.integrator.value.name();
+            assert!((found / expected - 1.0).abs() < 2e-3, "{name}, {engine:?}: {found}, not {expected}");
+        }
     }
 }
 

@@ -13,14 +13,16 @@
 //! than about 10⁻² are better sampled by area.
 
 use lanes::{Real, atan2, sin_cos};
-use math::{Point3, Vec2, Vector3};
+use math::{Point3, Vec2, Vector3, balance};
 
 /// A rectangle as seen from a point, for each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalRectangle<R: Real = f32> {
     origin: Point3<R>,
+    /// A power of two by which lengths are multiplied, whose powers would overflow or vanish.
+    unit: R,
     axes: [Vector3<R>; 3],
-    /// One by the lengths of the sides.
+    /// One by the lengths of the sides, in these units as all that follow.
     scales: [R; 2],
     x: [R; 2],
     y: [R; 2],
@@ -33,17 +35,21 @@ impl<R: Real> SphericalRectangle<R> {
     /// The rectangle with a corner and two sides at right angles, seen from `p`.
     #[inline(always)]
     pub fn new(p: Point3<R>, corner: Point3<R>, side_x: Vector3<R>, side_y: Vector3<R>) -> Self {
+        let d = corner - p;
+        let largest = d.abs().max(side_x.abs().max(side_y.abs())).max_element();
+        let unit = balance(largest);
+        let (d, side_x, side_y) = (d * unit, side_x * unit, side_y * unit);
         let (length_x, length_y) = (side_x.length(), side_y.length());
         let scales = [R::one() / length_x, R::one() / length_y];
         let (axis_x, axis_y) = (side_x * scales[0], side_y * scales[1]);
         let axis_z = axis_x.cross(axis_y);
-        let d = corner - p;
         let z = d.dot(axis_z);
         let is_behind = z.gt(R::zero());
         let axis_z = Vector3::select(is_behind, -axis_z, axis_z);
         let (x, y) = (d.dot(axis_x), d.dot(axis_y));
         let mut rectangle = Self {
             origin: p,
+            unit,
             axes: [axis_x, axis_y, axis_z],
             scales,
             x: [x, x + length_x],
@@ -102,7 +108,7 @@ impl<R: Real> SphericalRectangle<R> {
     /// The `u` that [`sample`](Self::sample) sends to a point of the rectangle.
     #[inline(always)]
     pub fn invert(&self, point: Point3<R>) -> Vec2<R> {
-        let d = point - self.origin;
+        let d = (point - self.origin) * self.unit;
         let x = d.dot(self.axes[0]).clamp(self.x[0], self.x[1]);
         let y = d.dot(self.axes[1]).clamp(self.y[0], self.y[1]);
         let [h0, h1, h] = [self.height(x, self.y[0]), self.height(x, self.y[1]), self.height(x, y)];

@@ -17,7 +17,7 @@
 //! of the triangle itself, so that points lie inside of it however small it looks.
 
 use lanes::{Real, atan2, sin_cos};
-use math::{Point3, Vec2, Vec3, Vector3};
+use math::{Point3, Vec2, Vec3, Vector3, balance};
 
 /// Barycentric coordinates, uniform over a triangle.
 #[inline(always)]
@@ -44,7 +44,7 @@ pub fn invert_uniform_triangle(b: [f32; 3]) -> Vec2 {
 /// A triangle as seen from a point, for each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalTriangle<R: Real = f32> {
-    /// From the point to corner 0.
+    /// From the point to corner 0, all lengths in units of a power of two near the largest.
     to_corner: Vector3<R>,
     /// From corner 0 to corners 1 and 2.
     sides: [Vector3<R>; 2],
@@ -65,7 +65,10 @@ impl<R: Real> SphericalTriangle<R> {
     pub fn new(corners: [Point3<R>; 3], p: Point3<R>) -> Self {
         let [p0, p1, p2] = corners;
         let (v0, v1, v2) = (p0 - p, p1 - p, p2 - p);
-        let sides = [p1 - p0, p2 - p0];
+        // Powers of lengths may overflow or vanish.
+        let unit = balance(v0.abs().max(v1.abs().max(v2.abs())).max_element());
+        let (v0, v1, v2) = (v0 * unit, v1 * unit, v2 * unit);
+        let sides = [(p1 - p0) * unit, (p2 - p0) * unit];
         let (l0, l1, l2) = (v0.length(), v1.length(), v2.length());
         let (a, b, c) = (v0 * (R::one() / l0), v1 * (R::one() / l1), v2 * (R::one() / l2));
         // All corners have the same product with the normal; that of the nearest is rounded least.

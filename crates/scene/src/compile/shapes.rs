@@ -15,7 +15,7 @@ use geometry::{
     Instance, MeshAttributes, MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
 use image::require_memory;
-use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
+use math::{AnimatedTransform, Bounds2, Bounds3, DMat4, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
 use std::sync::Arc;
@@ -42,15 +42,22 @@ impl Compiler<'_> {
                 None => self.singular("shape", &shape.origin),
             };
         }
-        if let Some(instance) = self.moving(run) {
+        let render_from_world = self.render_from_world;
+        if let Some(instance) = self.moving(run, &render_from_world) {
             self.add_instance(GroupId::TOP, instance, shape.origin.span);
         }
     }
 
-    /// Compiles a moving shape (or strands) to an instance of its own group.
-    pub(super) fn moving(&mut self, run: &[&Stated<ShapeDesc>]) -> Option<Instance> {
+    /// Compiles a moving shape (or strands) to an instance of its own group, in a space.
+    pub(super) fn moving(
+        &mut self,
+        run: &[&Stated<ShapeDesc>],
+        space_from_world: &DMat4,
+    ) -> Option<Instance> {
         let shape = run[0];
-        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
+        let TransformDesc { start, end, times } = shape.world_from_object;
+        let [start, end] = [start, end].map(|moved| *space_from_world * moved);
+        let Some(render_from_instance) = AnimatedTransform::new(start, end, times) else {
             self.singular("shape", &shape.origin);
             return None;
         };

@@ -31,12 +31,15 @@ impl Compiler<'_> {
         transform: &Transform,
     ) -> Option<Geometry> {
         let height = self.float_texture(height, shape.origin.parameter("displacement"));
+        // Of points in render space, wherever those of the group are.
+        let render_from_object = Transform::from_f64(self.render_from_world * shape.world_from_object.start);
+        let render_from_object = render_from_object.unwrap_or(*transform);
         let (textures, edge_scale) = (self.textures.textures(), self.desc.options.displacement_edge_scale);
         let result =
             displaced(joined(triangles, patches), transform, edge_length * edge_scale, |p, n, uv| {
                 let context = TextureContext {
-                    p: transform.point(p),
-                    n: transform.normal(n).normalize_or_zero(),
+                    p: render_from_object.point(p),
+                    n: render_from_object.normal(n).normalize_or_zero(),
                     uv,
                     ..Default::default()
                 };

@@ -175,7 +175,7 @@ impl LightModel for AreaLight {
     ) -> f32 {
         self.with_emitter(part.world(), part.primitive, context.time, |emitter| match point {
             Some((p, n)) if self.shines_through_holes(part, emitter) => {
-                Some(emitter.pdf_area(p, n) * context.area_per_solid_angle(p, n))
+                Some(context.pdf_per_solid_angle(emitter.pdf_area(p, n), p, n))
             }
             _ => Some(emitter.pdf_from(context, wi)),
         })

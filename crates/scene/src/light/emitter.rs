@@ -10,6 +10,7 @@ use geometry::{InstancePath, Shape, ShapeSample, World};
 use lanes::Real;
 use math::{
     Bounds3, DirectionCone, MACHINE_EPSILON, Normal3, Point3, Point3Error, Transform, Vec2, Vec3, Vector3,
+    balance,
 };
 
 use super::LightSampleContext;
@@ -179,30 +180,35 @@ fn inward(inverse: &Transform, context: &LightSampleContext) -> LightSampleConte
     }
 }
 
-fn axes(transform: &Transform) -> [Vec3; 3] {
-    [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| transform.vector(axis))
+/// The axes times a power of two, which keeps products of three lengths from overflow.
+fn axes(transform: &Transform) -> ([Vec3; 3], f32) {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| transform.vector(axis));
+    let scale = balance(axes.iter().fold(0.0, |largest, axis| axis.abs().max_element().max(largest)));
+    (axes.map(|axis| axis * scale), scale)
 }
 
-fn determinant(transform: &Transform) -> f32 {
-    let [x, y, z] = axes(transform);
+fn determinant([x, y, z]: [Vec3; 3]) -> f32 {
     x.cross(y).dot(z)
 }
 
 /// |det M|·|M⁻ᵀn|.
 fn area_factor(transform: &Transform, n: Normal3) -> f32 {
-    determinant(transform).abs() * transform.normal(n).length()
+    let (axes, scale) = axes(transform);
+    let length = balance(scale);
+    determinant(axes).abs() * (transform.normal(n) * length).length() * length * length
 }
 
 /// |det M⁻¹|/|M⁻¹ω|³.
 #[inline(always)]
 pub(super) fn solid_angle_factor<R: Real>(inverse: &Transform, w: Vector3<R>) -> R {
-    let length = inverse.vector_lanes(w).length();
-    R::splat(determinant(inverse).abs()) / (length * length * length)
+    let (axes, scale) = axes(inverse);
+    let length = (inverse.vector_lanes(w) * R::splat(scale)).length();
+    R::splat(determinant(axes).abs()) / (length * length * length)
 }
 
 /// Whether the transform scales all lengths by the same factor.
 pub(super) fn is_similarity(transform: &Transform) -> bool {
-    let axes = axes(transform);
+    let (axes, _) = axes(transform);
     let squared = axes[0].length_squared();
     let tolerance = 1e-5 * squared;
     axes.iter().all(|a| (a.length_squared() - squared).abs() <= tolerance)

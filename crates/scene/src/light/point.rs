@@ -5,7 +5,7 @@
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
 use lanes::{Each, Real};
-use math::{AnimatedTransform, Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vec3, Vector3};
+use math::{AnimatedTransform, Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vec3, Vector3, balance};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -36,17 +36,20 @@ impl PointLight {
         lambda: &SampledWavelengths<R>,
     ) -> (SampledSpectrum<R>, Vector3<R>, R::Mask) {
         let p = Vec3::from_array(self.p.to_array().each(R::splat));
-        let (wi, distance2, is_apart) = towards(p, from);
-        (self.intensity.sample(lambda) / distance2, wi, is_apart)
+        let (wi, [distance2, scale], is_apart) = towards(p, from);
+        (self.intensity.sample(lambda) / distance2 * scale * scale, wi, is_apart)
     }
 }
 
-/// The direction to a point, the square of its distance, and whether that is above zero.
+/// The direction to a point, the square of its distance times a power of two, whose square keeps
+/// that from overflow, and whether the distance is above zero.
 #[inline(always)]
-fn towards<R: Real>(p: Point3<R>, from: Point3<R>) -> (Vector3<R>, R, R::Mask) {
+fn towards<R: Real>(p: Point3<R>, from: Point3<R>) -> (Vector3<R>, [R; 2], R::Mask) {
     let way = p - from;
+    let scale = balance(way.abs().max_element());
+    let way = way * scale;
     let distance2 = way.length_squared();
-    (way / distance2.sqrt(), distance2, distance2.gt(R::zero()))
+    (way / distance2.sqrt(), [distance2, scale], distance2.gt(R::zero()))
 }
 
 /// Bounds of the point over all times.
@@ -62,11 +65,11 @@ pub(super) fn sample_point(
     context: &LightSampleContext,
     l: impl FnOnce(Vector3, f32) -> SampledSpectrum,
 ) -> Option<LightLiSample> {
-    let (wi, distance2, is_apart) = towards(p, context.p.p);
+    let (wi, [distance2, scale], is_apart) = towards(p, context.p.p);
     if !is_apart {
         return None;
     }
-    let l = l(-wi, distance2);
+    let l = l(-wi, distance2) * scale * scale;
     (!l.is_black()).then(|| LightLiSample { l, wi, pdf: 1.0, p: Some(Point3Error::exact(p)), n: Vec3::ZERO })
 }
 
