@@ -85,7 +85,8 @@ fn FlatShape_rectangle(this_: FlatShape, reference: ShapeSampleContext) -> SeenR
 
 fn FlatShape_pdf_by_area(this_: FlatShape, reference: ShapeSampleContext, p: vec3f) -> f32 {
     let cross_1 = Vec3_cross(this_.sides[0], this_.sides[1]);
-    return ShapeSampleContext_area_per_solid_angle(reference, p, cross_1 * select(1.0f, 0.5f, this_.is_triangle));
+    let n = cross_1 * select(1.0f, 0.5f, this_.is_triangle);
+    return ShapeSampleContext_pdf_per_solid_angle(reference, 1.0f, p, n);
 }
 
 fn FlatShape_point(this_: FlatShape, uv: vec2f) -> Point3Error {

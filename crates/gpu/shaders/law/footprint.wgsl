@@ -17,18 +17,22 @@ fn Footprint_new(argument_0: array<vec3f, 2>, argument_1: array<vec3f, 2>) -> Fo
     let dpdy = argument_0[1];
     let dpdu = argument_1[0];
     let dpdv = argument_1[1];
-    let a = Vec3_dot(dpdu, dpdu);
-    let b = Vec3_dot(dpdu, dpdv);
-    let c = Vec3_dot(dpdv, dpdv);
+    let scale_u = balance(Vec3_max_element(abs(dpdu)));
+    let scale_v = balance(Vec3_max_element(abs(dpdv)));
+    let dpdu_1 = dpdu * scale_u;
+    let dpdv_1 = dpdv * scale_v;
+    let a = Vec3_dot(dpdu_1, dpdu_1);
+    let b = Vec3_dot(dpdu_1, dpdv_1);
+    let c = Vec3_dot(dpdv_1, dpdv_1);
     let inverse = or_zero(1.0f / difference_of_products(a, c, b, b));
-    let x = Vec3_dot(dpdu, dpdx);
-    let y = Vec3_dot(dpdv, dpdx);
-    let dudx = bounded(difference_of_products(c, x, b, y) * inverse);
-    let dvdx = bounded(difference_of_products(a, y, b, x) * inverse);
-    let x_1 = Vec3_dot(dpdu, dpdy);
-    let y_1 = Vec3_dot(dpdv, dpdy);
-    let dudy = bounded(difference_of_products(c, x_1, b, y_1) * inverse);
-    let dvdy = bounded(difference_of_products(a, y_1, b, x_1) * inverse);
+    let x = Vec3_dot(dpdu_1, dpdx);
+    let y = Vec3_dot(dpdv_1, dpdx);
+    let dudx = bounded((difference_of_products(c, x, b, y) * inverse) * scale_u);
+    let dvdx = bounded((difference_of_products(a, y, b, x) * inverse) * scale_v);
+    let x_1 = Vec3_dot(dpdu_1, dpdy);
+    let y_1 = Vec3_dot(dpdv_1, dpdy);
+    let dudy = bounded((difference_of_products(c, x_1, b, y_1) * inverse) * scale_u);
+    let dvdy = bounded((difference_of_products(a, y_1, b, x_1) * inverse) * scale_v);
     return Footprint(dpdx, dpdy, dudx, dudy, dvdx, dvdy);
 }
 

@@ -4,6 +4,7 @@
 // A rectangle as seen from a point, for each lane.
 struct SphericalRectangle {
     origin: vec3f,
+    unit: f32,
     axes: array<vec3f, 3>,
     scales: vec2f,
     x: vec2f,
@@ -14,20 +15,25 @@ struct SphericalRectangle {
 
 // The rectangle with a corner and two sides at right angles, seen from `p`.
 fn SphericalRectangle_new(p: vec3f, corner: vec3f, side_x: vec3f, side_y: vec3f) -> SphericalRectangle {
-    let length_x = Vec3_length(side_x);
-    let length_y = Vec3_length(side_y);
+    let d = corner - p;
+    let largest = Vec3_max_element(Vec3_max(abs(d), Vec3_max(abs(side_x), abs(side_y))));
+    let unit = balance(largest);
+    let d_1 = d * unit;
+    let side_x_1 = side_x * unit;
+    let side_y_1 = side_y * unit;
+    let length_x = Vec3_length(side_x_1);
+    let length_y = Vec3_length(side_y_1);
     let scales_0 = 1.0f / length_x;
     let scales_1 = 1.0f / length_y;
-    let axis_x = side_x * scales_0;
-    let axis_y = side_y * scales_1;
+    let axis_x = side_x_1 * scales_0;
+    let axis_y = side_y_1 * scales_1;
     let axis_z = Vec3_cross(axis_x, axis_y);
-    let d = corner - p;
-    let z = Vec3_dot(d, axis_z);
+    let z = Vec3_dot(d_1, axis_z);
     let is_behind = z > 0.0f;
     let axis_z_1 = select(axis_z, -axis_z, is_behind);
-    let x = Vec3_dot(d, axis_x);
-    let y = Vec3_dot(d, axis_y);
-    var rectangle = SphericalRectangle(p, array<vec3f, 3>(axis_x, axis_y, axis_z_1), vec2f(scales_0, scales_1), vec2f(x, x + length_x), vec2f(y, y + length_y), -abs(z), vec2f(0.0f, 0.0f));
+    let x = Vec3_dot(d_1, axis_x);
+    let y = Vec3_dot(d_1, axis_y);
+    var rectangle = SphericalRectangle(p, unit, array<vec3f, 3>(axis_x, axis_y, axis_z_1), vec2f(scales_0, scales_1), vec2f(x, x + length_x), vec2f(y, y + length_y), -abs(z), vec2f(0.0f, 0.0f));
     rectangle.phi = vec2f(SphericalRectangle_phi_at(rectangle, rectangle.x.x), SphericalRectangle_phi_at(rectangle, rectangle.x.y));
     return rectangle;
 }
@@ -84,7 +90,7 @@ fn SphericalRectangle_sample(this_: SphericalRectangle, u: vec2f) -> vec2f {
 
 // The `u` that [`sample`](Self::sample) sends to a point of the rectangle.
 fn SphericalRectangle_invert(this_: SphericalRectangle, point: vec3f) -> vec2f {
-    let d = point - this_.origin;
+    let d = (point - this_.origin) * this_.unit;
     let x = real_min(real_max(Vec3_dot(d, this_.axes[0]), this_.x.x), this_.x.y);
     let y = real_min(real_max(Vec3_dot(d, this_.axes[1]), this_.y.x), this_.y.y);
     let h0 = SphericalRectangle_height(this_, x, this_.y.x);

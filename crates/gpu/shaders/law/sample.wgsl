@@ -22,12 +22,15 @@ fn ShapeSampleContext_spawn_ray(this_: ShapeSampleContext, w: vec3f) -> Ray {
     return Ray_spawn(this_.p, this_.n, w, this_.time);
 }
 
-// dA/dω = d²/|cos θ| of an area at `p` with unit normal `n`; with a normal of another length,
-// divided by that.
-fn ShapeSampleContext_area_per_solid_angle(this_: ShapeSampleContext, p: vec3f, n: vec3f) -> f32 {
+// The density per solid angle of a density per area at `p` with unit normal `n`: times dA/dω =
+// d²/|cos θ|; with a normal of another length, divided by that.
+fn ShapeSampleContext_pdf_per_solid_angle(this_: ShapeSampleContext, pdf_area: f32, p: vec3f, n: vec3f) -> f32 {
     let toward = p - this_.p.p;
-    let distance2 = Vec3_length_squared(toward);
-    return (distance2 * sqrt(distance2)) / abs(Vec3_dot(n, toward));
+    let scale_1 = balance(Vec3_max_element(abs(toward)));
+    let toward_1 = toward * scale_1;
+    let distance2 = Vec3_length_squared(toward_1);
+    let unit = balance(scale_1);
+    return ((pdf_area * unit) * ((distance2 * sqrt(distance2)) / abs(Vec3_dot(n, toward_1)))) * unit;
 }
 
 // Weights of the corners of the unit square for bilinear sampling by the cosine at this point,
@@ -35,7 +38,7 @@ fn ShapeSampleContext_area_per_solid_angle(this_: ShapeSampleContext, p: vec3f, 
 fn ShapeSampleContext_cosine_weights(this_: ShapeSampleContext, corners: array<vec3f, 4>) -> vec4f {
     var weights_1 = vec4f(0.0f, 0.0f, 0.0f, 0.0f);
     for (var i = 0u; i < 4; i++) {
-        let w = corners[i];
+        let w = Vec3_balanced(corners[i]);
         let cosine = abs(Vec3_dot(w, this_.ns) * coarse_inverse_sqrt(Vec3_length_squared(w)));
         weights_1[i] = real_max(cosine, 0.01f);
     }

@@ -31,21 +31,25 @@ fn SphericalTriangle_new(corners: array<vec3f, 3>, p: vec3f) -> SphericalTriangl
     let v0 = p0 - p;
     let v1 = p1 - p;
     let v2 = p2 - p;
-    let sides_0 = p1 - p0;
-    let sides_1 = p2 - p0;
-    let l0 = Vec3_length(v0);
-    let l1 = Vec3_length(v1);
-    let l2 = Vec3_length(v2);
-    let a = v0 * (1.0f / l0);
-    let b = v1 * (1.0f / l1);
-    let c = v2 * (1.0f / l2);
+    let unit = balance(Vec3_max_element(Vec3_max(abs(v0), Vec3_max(abs(v1), abs(v2)))));
+    let v0_1 = v0 * unit;
+    let v1_1 = v1 * unit;
+    let v2_1 = v2 * unit;
+    let sides_0 = (p1 - p0) * unit;
+    let sides_1 = (p2 - p0) * unit;
+    let l0 = Vec3_length(v0_1);
+    let l1 = Vec3_length(v1_1);
+    let l2 = Vec3_length(v2_1);
+    let a = v0_1 * (1.0f / l0);
+    let b = v1_1 * (1.0f / l1);
+    let c = v2_1 * (1.0f / l2);
     let n = Vec3_cross(sides_0 * (1.0f / l1), sides_1 * (1.0f / l2));
-    let nearest = select(v0, v1, l1 < l0);
-    let nearest_1 = select(nearest, v2, l2 < real_min(l0, l1));
+    let nearest = select(v0_1, v1_1, l1 < l0);
+    let nearest_1 = select(nearest, v2_1, l2 < real_min(l0, l1));
     let volume = abs(Vec3_dot(nearest_1, n) * (1.0f / l0));
     let one_plus_cos = 0.5f * Vec3_length_squared(a + b);
     let solid_angle = 2.0f * arc_atan2(volume, one_plus_cos + Vec3_dot(c, a + b));
-    return SphericalTriangle(v0, array<vec3f, 2>(sides_0, sides_1), vec3f(l0, l1, l2), a, b, one_plus_cos, volume, solid_angle);
+    return SphericalTriangle(v0_1, array<vec3f, 2>(sides_0, sides_1), vec3f(l0, l1, l2), a, b, one_plus_cos, volume, solid_angle);
 }
 
 // Where it has a solid angle. Elsewhere all else is meaningless.

@@ -46,6 +46,20 @@ fn SampledWavelengths_sample_visible(u: f32) -> SampledWavelengths {
     return SampledWavelengths(turned_by(quarter, lambda), turned_by(quarter, pdf));
 }
 
+// The wavelengths that pbrt-v4 samples as the eye sees them from u = 0.5, so that renderers
+// can be compared at the same ones: those of the density ∝ sech²(0.0072 (λ − 538))
+// [Radziszewski 2009] at 0.5, 0.75, 1 and 0.25 of its integral.
+fn SampledWavelengths_fixed_visible() -> SampledWavelengths {
+    return SampledWavelengths(vec4f(wavelengths_FIXED.x, wavelengths_FIXED.y, wavelengths_FIXED.z, wavelengths_FIXED.w), vec4f(wavelengths_FIXED_PDF.x, wavelengths_FIXED_PDF.y, wavelengths_FIXED_PDF.z, wavelengths_FIXED_PDF.w));
+}
+
+// The wavelengths that pbrt-v4 samples uniformly over `min..max` from u = 0.5: at 0.5, 0.75, 1
+// and 0.25 of the range.
+fn SampledWavelengths_fixed_uniform_in(min_1: f32, max_1: f32) -> SampledWavelengths {
+    let pdf = 1.0f / (max_1 - min_1);
+    return SampledWavelengths(vec4f(real_min(fma(max_1 - min_1, 0.5f, min_1), max_1), real_min(fma(max_1 - min_1, 0.75f, min_1), max_1), max_1, real_min(fma(max_1 - min_1, 0.25f, min_1), max_1)), vec4f(pdf, pdf, pdf, pdf));
+}
+
 // The wavelengths in nanometres.
 fn SampledWavelengths_lambda(this_: SampledWavelengths) -> vec4f {
     return this_.lambda;
@@ -97,6 +111,10 @@ fn turned_by(quarter: f32, numbers: vec4f) -> vec4f {
     let d_1 = select(d, numbers.y, by_two);
     return vec4f(select(a_1, b_1, by_one), select(b_1, c_1, by_one), select(c_1, d_1, by_one), select(d_1, a_1, by_one));
 }
+
+const wavelengths_FIXED: vec4f = vec4f(545.903f, 616.85626f, 830.0f, 479.15405f);
+
+const wavelengths_FIXED_PDF: vec4f = vec4f(0.0039270754f, 0.0029000742f, 0.00022832123f, 0.0033093247f);
 
 const wavelengths_TANH_CENTER: f32 = 569.0f;
 

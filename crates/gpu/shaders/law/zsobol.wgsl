@@ -3,9 +3,10 @@
 
 const zsobol_SCRAMBLES: u32 = 0x9e3779b9;
 
-// Two-dimensional Sobol' points distributed over the picture along a Morton curve. The number of
-// samples is rounded up to a power of two; beyond it each round has scrambles of its own.
+// Two-dimensional Sobol' points distributed over the picture along a Morton curve, in rounds of
+// the next power of two of samples, each with scrambles of its own.
 struct ZSobol {
+    samples_per_pixel: u32,
     log2_samples: u32,
     log2_side: u32,
     randomize: u32,

@@ -85,9 +85,10 @@ pub fn info(bytes: &[u8], name: &str) -> Result<ImageInfo, ImageError> {
         }
         Format::Tiff => match tiff::Tiff::open(bytes)? {
             Some(mut file) => {
-                let (size, names, sample) = file.info()?;
-                let channels = names.iter().map(|&name| (name.to_owned(), sample)).collect();
-                Ok(single_layer(format, size, channels))
+                let (bits, is_float) = file.sample()?;
+                let sample = if is_float { Sample::Float(bits) } else { Sample::Integer(bits) };
+                let channels = file.channels().iter().map(|&name| (name.to_owned(), sample)).collect();
+                Ok(single_layer(format, file.size(), channels))
             }
             None => raster_info(bytes, format),
         },

@@ -11,7 +11,6 @@ use tiff::tags::{SampleFormat, Tag};
 use tiff::{ColorType, TiffError};
 
 use super::ReadOptions;
-use super::info::Sample;
 use crate::{
     encoding::ColorEncoding,
     error::ImageError,
@@ -107,15 +106,20 @@ impl<'a> Tiff<'a> {
         }))
     }
 
-    /// Size, names of channels, and how a value is stored.
-    pub fn info(&mut self) -> Result<([u32; 2], &'static [&'static str], Sample), ImageError> {
-        let format = self.decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).map_err(from_library)?;
-        let is_float = format.unwrap_or_default().first() == Some(&SampleFormat::IEEEFP.to_u16());
-        let bits = u32::from(self.bits);
-        Ok((self.size, self.channels(), if is_float { Sample::Float(bits) } else { Sample::Integer(bits) }))
+    /// Width and height.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
     }
 
-    fn channels(&self) -> &'static [&'static str] {
+    /// The bits of a value, and whether it is a float.
+    pub fn sample(&mut self) -> Result<(u32, bool), ImageError> {
+        let format = self.decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).map_err(from_library)?;
+        let is_float = format.unwrap_or_default().first() == Some(&SampleFormat::IEEEFP.to_u16());
+        Ok((self.bits.into(), is_float))
+    }
+
+    /// The names of the channels.
+    pub fn channels(&self) -> &'static [&'static str] {
         match self.read.len() {
             _ if self.palette.is_some() => &["R", "G", "B"],
             1 => &["Y"],

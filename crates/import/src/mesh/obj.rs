@@ -10,7 +10,7 @@ use math::{DVec3, Vec2, Vec3};
 
 use super::notes::Notes;
 use super::text::{name, statements, unmarked, words};
-use super::{Mesh, MeshError, invalid, polygon};
+use super::{Mesh, MeshError, decode_colors, invalid, polygon};
 use crate::number;
 
 /// An OBJ file: one mesh per material.
@@ -92,7 +92,7 @@ fn read(bytes: &[u8], by_material: bool) -> Result<Obj, MeshError> {
         })?;
     }
     let (parts, smooth) = (std::mem::take(&mut reader.parts), std::mem::take(&mut reader.smooth));
-    if super::decode_colors(&mut reader.colors) {
+    if decode_colors(&mut reader.colors) {
         reader.notes.add_at("vertices", "colours beyond 1 are taken as codes up to 255");
     }
     let mut parts: Vec<_> =

@@ -1,4 +1,5 @@
-//! The outline of a scene's surfaces as a camera sees it, and the place from which it fills a frame.
+//! The outline of a scene's surfaces as a camera sees it, and the place from which it fills a
+//! frame.
 //!
 //! A point (x, y, z), with z the depth, is seen at most a slope s beside the axis of a camera at
 //! (cx, cy, cz) if x − s z ≤ cx − s cz and −x − s z ≤ −cx − s cz. With A and B the largest left
