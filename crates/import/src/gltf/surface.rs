@@ -115,7 +115,7 @@ impl Part<'_, '_, '_> {
     }
 
     /// From the coordinates of meshes to those of a texture.
-    fn from_mesh(&self, texture: &TextureRef) -> DAffine2 {
+    fn texture_from_mesh(&self, texture: &TextureRef) -> DAffine2 {
         let placed = self.placed(texture);
         match placed == self.coordinates {
             true => DAffine2::IDENTITY,
@@ -126,7 +126,8 @@ impl Part<'_, '_, '_> {
     /// An image over (u, v); `None` if it cannot be decoded.
     fn uv_image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<UvImageDesc> {
         let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
-        let columns = self.from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
+        let columns =
+            self.texture_from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
         let is_nearest = texture.filter == TextureFilter::Point;
         Some(UvImageDesc { image, columns, wrap: texture.wrap, is_nearest })
     }
@@ -134,7 +135,7 @@ impl Part<'_, '_, '_> {
     /// An image as a texture; `None` if it cannot be decoded.
     fn image(&mut self, texture: &TextureRef, encoding: Encoding, edit: Edit) -> Option<ImageTextureDesc> {
         let image = self.builder.pictures.add(texture, encoding, edit, &mut self.builder.desc.images)?;
-        let from_mesh = self.from_mesh(texture);
+        let from_mesh = self.texture_from_mesh(texture);
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {
             MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
@@ -230,7 +231,7 @@ impl Part<'_, '_, '_> {
 
     fn normal_map(&mut self, normals: Option<&(TextureRef, f32)>, is_mirrored: bool) -> Option<UvImageDesc> {
         let (texture, scale) = normals?;
-        let [x, y] = [DVec2::X, DVec2::Y].map(|axis| self.from_mesh(texture).transform_vector2(axis));
+        let [x, y] = [DVec2::X, DVec2::Y].map(|axis| self.texture_from_mesh(texture).transform_vector2(axis));
         if !(x.x > 0.0 && y.y > 0.0 && x.y == 0.0 && y.x == 0.0) {
             let message = "a normal map that is turned against another one bends surfaces in its directions";
             self.warn(&texture.pointer, message);

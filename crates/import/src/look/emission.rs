@@ -65,7 +65,7 @@ impl Emitting {
 fn parts(coordinates: [f64; 3], mode: EdgeMode, count: usize) -> [[usize; 2]; 2] {
     let least = coordinates.into_iter().fold(f64::INFINITY, f64::min);
     let most = coordinates.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    if !(least.abs().max(most.abs()) < LARGEST) {
+    if least.abs().max(most.abs()) >= LARGEST {
         return [[0, count], [0, 0]];
     }
     // Lookups interpolate between neighbours.

@@ -250,7 +250,7 @@ impl Builder<'_, '_> {
     }
 
     /// From the coordinates of meshes to those of a texture.
-    fn from_mesh(&self, texture: &Texture) -> DAffine2 {
+    fn texture_from_mesh(&self, texture: &Texture) -> DAffine2 {
         match texture.transform == self.coordinates.transform {
             true => DAffine2::IDENTITY,
             false => texture.transform * self.coordinates.transform.inverse(),
@@ -260,14 +260,15 @@ impl Builder<'_, '_> {
     /// An image over (u, v).
     fn uv_image(&mut self, texture: &Texture, edit: Edit) -> Option<UvImageDesc> {
         let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
-        let columns = self.from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
+        let columns =
+            self.texture_from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
         Some(UvImageDesc { image, columns, wrap: texture.wrap, is_nearest: false })
     }
 
     /// An image as a texture.
     fn texture(&mut self, texture: &Texture, edit: Edit) -> Option<ImageTextureDesc> {
         let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
-        let from_mesh = self.from_mesh(texture);
+        let from_mesh = self.texture_from_mesh(texture);
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {
             MappingDesc::Uv { scale: [x.x as f32, y.y as f32], delta: delta.as_vec2().to_array() }
