@@ -15,6 +15,9 @@ PREPARE = """
 import multiprocessing, os, signal, sys, threading, time
 import alhazen, numpy
 
+# What is not written when a process is forked would be written twice.
+sys.stdout.reconfigure(line_buffering=True)
+
 def scene():
     builder = alhazen.SceneBuilder()
     builder.film(xresolution=16, yresolution=16)
@@ -51,7 +54,7 @@ def threads():
 
 def run(code, seconds=120):
     result = subprocess.run(
-        [sys.executable, "-W", "ignore::DeprecationWarning", "-c", PREPARE + code],
+        [sys.executable, "-W", "ignore", "-c", PREPARE + code],
         capture_output=True,
         text=True,
         timeout=seconds,
@@ -114,7 +117,7 @@ print(values == [work(seed) for seed in range(4)] and values[0] == first)
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/task"), reason="counts threads in /proc")
 def test_no_thread_outlives_its_call(tmp_path):
-    code = f"path = {str(tmp_path / 'a')!r}\n" + """
+    code = f"path = {str(tmp_path / 'a.pbrt')!r}\n" + """
 open(path, "w").write("WorldBegin")
 before = threads()
 scene(); alhazen.load(path); work(0)
@@ -131,12 +134,20 @@ print(threads() - before)
 def test_a_process_forked_in_the_midst_of_a_render_says_so():
     code = """
 job = alhazen.compile(scene(), spp=1 << 30)
-thread = threading.Thread(target=lambda: job.render(time=2.0))
+begun, ended = threading.Event(), threading.Event()
+
+def go_on(progress):
+    begun.set()
+    if ended.is_set():
+        raise SystemExit
+
+thread = threading.Thread(target=lambda: job.render(progress=go_on))
 thread.start()
-time.sleep(0.5)
+begun.wait()
 for do in (lambda: job.render(), lambda: work(0), lambda: alhazen.load(b""), scene):
     print(forked(do))
-print(forked(lambda: print(forked(scene), flush=True)))
+print(forked(lambda: print(forked(scene))))
+ended.set()
 thread.join()
 print(forked(lambda: work(0)), work(0) > 0)
 """
