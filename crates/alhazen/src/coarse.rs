@@ -40,8 +40,8 @@ pub(crate) fn warning(scene: &Scene, view: &View, resolution: [i32; 2]) -> Optio
     Some(Diagnostic { help: Some(help), ..warning })
 }
 
-/// The largest error, in render space, of the origin of a ray in the spaces of nested instances, and
-/// the instance of that.
+/// The largest error, in render space, of the origin of a ray in the spaces of nested instances,
+/// and the instance of that.
 fn error_within(scene: &Scene, path: &[InstanceId], ray: &Ray) -> Option<(InstanceId, f64)> {
     let mut outward = DMat4::IDENTITY;
     let errors = path.iter().map(|&id| {

@@ -121,8 +121,8 @@ impl Overrides {
         Ok(())
     }
 
-    /// The number of passes of a render that has planned some, `u32::MAX` where it has no limit: where
-    /// time or noise ends the render, and no samples per pixel were asked for.
+    /// The number of passes of a render that has planned some, `u32::MAX` where it has no limit:
+    /// where time or noise ends the render, and no samples per pixel were asked for.
     pub fn passes(&self, planned: u32, ends_otherwise: bool) -> u32 {
         if ends_otherwise && self.samples_per_pixel.is_none() { u32::MAX } else { planned }
     }

@@ -107,8 +107,9 @@ impl SamplerKind {
         }
     }
 
-    /// The samples per pixel for which they are arranged: sequences over the whole image, and filters
-    /// of textures with them, are for the next power of two, of which the samples are the first.
+    /// The samples per pixel for which they are arranged: sequences over the whole image, and
+    /// filters of textures with them, are for the next power of two, of which the samples are the
+    /// first.
     pub fn arranged_samples(&self) -> u32 {
         let samples = self.samples_per_pixel().max(1);
         match self {

@@ -1,8 +1,8 @@
 //! A transform and its inverse in double precision, with error bounds of transformed points.
 //!
-//! The matrix is the scene's, in floats but for its translation; its inverse is computed in doubles,
-//! so that the two are inverse to a few parts in 10¹⁶. A round trip then costs only the rounding to floats, |x|·ε per
-//! coordinate, whatever the matrix.
+//! The matrix is the scene's, in floats but for its translation; its inverse is computed in
+//! doubles, so that the two are inverse to a few parts in 10¹⁶. A round trip then costs only the
+//! rounding to floats, |x|·ε per coordinate, whatever the matrix.
 
 use math::{DMat3, DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
 

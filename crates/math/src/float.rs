@@ -2,7 +2,7 @@
 //!
 //! Sources: [Higham 2002 §3.1] for γ(n); [Kahan 2004] for the difference of products.
 
-use lanes::{Int, Real};
+use lanes::Real;
 
 /// Half of the distance from 1 to the next float: the largest relative rounding error of one
 /// operation.
@@ -70,15 +70,6 @@ pub fn difference_of_products<R: Real>(a: R, b: R, c: R, d: R) -> R {
 #[inline(always)]
 pub fn sum_of_products<R: Real>(a: R, b: R, c: R, d: R) -> R {
     difference_of_products(a, b, -c, d)
-}
-
-/// A power of two whose product with `x` ≥ 0 is from one to two; less for denormal numbers, and up
-/// to four for the largest ones. A product with it has the same digits.
-#[inline(always)]
-pub fn balance<R: Real>(x: R) -> R {
-    // Its exponent is 254, twice that of one, without that of x, which is at most 253.
-    let exponent = x.min(R::splat(1.7e38)).to_bits() & R::Int::splat(0x7f80_0000);
-    R::from_bits(R::Int::splat(0x7f00_0000).wrapping_sub(exponent))
 }
 
 /// Cross product without the cancellation of the naive formula.

@@ -4,6 +4,7 @@
 //! transforms ([`Transform::point`], [`Transform::vector`], [`Transform::normal`]).
 
 mod animated;
+mod balance;
 mod bounds;
 mod cone;
 mod elementary;
@@ -19,6 +20,7 @@ mod transform;
 mod vector;
 
 pub use animated::{AnimatedTransform, MotionKeys};
+pub use balance::balance;
 pub use bounds::{Bounds2, Bounds2i, Bounds3};
 pub use cone::{DirectionCone, bound_subtended_directions};
 pub use elementary::map_lanes;

@@ -31,8 +31,8 @@ pub struct Call {
 }
 
 impl Call {
-    /// Counts a call, with Python's lock, which a process is forked with, too. An error in a process
-    /// that was forked in the midst of others.
+    /// Counts a call, with Python's lock, which a process is forked with, too. An error in a
+    /// process that was forked in the midst of others.
     pub fn begin(_py: Python) -> PyResult<Self> {
         let process = u64::from(process::id()) << u32::BITS;
         let begun = CALLS.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |calls| match calls & COUNT {

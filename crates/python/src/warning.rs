@@ -29,8 +29,8 @@ pub fn warn_of_render(py: Python, messages: &[String]) -> PyResult<()> {
     warn(&py.get_type::<RenderWarning>(), messages)
 }
 
-/// Warns at the line that has called the package, so that Python shows what is found again and again
-/// by the same line once.
+/// Warns at the line that has called the package, so that Python shows what is found again and
+/// again by the same line once.
 fn warn(category: &Bound<'_, PyType>, messages: &[String]) -> PyResult<()> {
     if messages.is_empty() {
         return Ok(());

@@ -51,10 +51,3 @@ fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 fn sum_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
     return difference_of_products(a, b, -c, d);
 }
-
-// A power of two whose product with `x` ≥ 0 is from one to two; less for denormal numbers, and up
-// to four for the largest ones. A product with it has the same digits.
-fn balance(x: f32) -> f32 {
-    let exponent = bitcast<u32>(real_min(x, 1.7e38f)) & 0x7f800000u;
-    return bitcast<f32>(0x7f000000u - exponent);
-}

@@ -67,8 +67,8 @@ impl DirectLighting {
         }
     }
 
-    /// The MIS weight of light from `light` that a ray along `wi` hits at `point`; 1 without an `origin`,
-    /// where no light sample could have found it.
+    /// The MIS weight of light from `light` that a ray along `wi` hits at `point`; 1 without an
+    /// `origin`, where no light sample could have found it.
     fn weight(&self, light: LightRef, origin: Option<&Origin>, wi: Vector3, point: LightPoint) -> f32 {
         let Some(Origin { context, pdf }) = origin else { return 1.0 };
         let pmf = self.lights.pmf(context, light.id());

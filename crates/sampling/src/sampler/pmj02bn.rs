@@ -17,9 +17,9 @@
 //! pbrt-v4 has tables of points that also keep their distance, and shifts them by the values of
 //! blue-noise textures, which moves them between elementary intervals.
 //!
-//! A round has the next power of two of samples, of which a pixel takes the first where that is more
-//! than it is to take. Each further round has a sequence of its own. So have tiles, of 2¹⁶ pixels a side where there is one sample per
-//! pixel, and of 2¹³ where there are 64.
+//! A round has the next power of two of samples, of which a pixel takes the first where that is
+//! more than it is to take. Each further round has a sequence of its own. So have tiles, of 2¹⁶
+//! pixels a side where there is one sample per pixel, and of 2¹³ where there are 64.
 
 use super::address::{Address, interleaved};
 use super::randomize::Randomize;
@@ -28,8 +28,8 @@ use crate::mix_word;
 use lanes::{Each, Int};
 use math::Vec2;
 
-/// Progressive multi-jittered (0, 2) points, distributed over pixels along a Z-order curve, in rounds
-/// of the next power of two of samples, each with points of its own.
+/// Progressive multi-jittered (0, 2) points, distributed over pixels along a Z-order curve, in
+/// rounds of the next power of two of samples, each with points of its own.
 #[derive(Clone, Debug)]
 pub struct Pmj02Bn {
     samples_per_pixel: u32,

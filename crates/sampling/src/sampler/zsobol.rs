@@ -3,10 +3,10 @@
 //! the error is blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
 //! The seed selects both the permutations and the scrambles: all pixels share the scrambles, so
-//! that by them alone the errors of two seeds would be correlated. A round has the next power of two
-//! of samples, of which a pixel takes the first where that is more than it is to take. Beyond it,
-//! each further round has scrambles and permutations of its own. All hashes are of 32 bits, so that
-//! lanes of a vector can each compute a coordinate.
+//! that by them alone the errors of two seeds would be correlated. A round has the next power of
+//! two of samples, of which a pixel takes the first where that is more than it is to take. Beyond
+//! it, each further round has scrambles and permutations of its own. All hashes are of 32 bits, so
+//! that lanes of a vector can each compute a coordinate.
 
 use super::address::{Address, interleaved};
 use super::randomize::Randomize;

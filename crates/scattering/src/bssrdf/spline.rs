@@ -5,8 +5,8 @@
 
 use math::find_interval;
 
-/// Ascending nodes, or a value for each. The first and the last are there twice, so that the four on
-/// which a place of the spline depends follow one another.
+/// Ascending nodes, or a value for each. The first and the last are there twice, so that the four
+/// on which a place of the spline depends follow one another.
 #[derive(Clone, Debug)]
 pub(super) struct Nodes(Vec<f32>);
 

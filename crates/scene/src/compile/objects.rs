@@ -7,8 +7,8 @@
 //! The space of an object is world space, translated so that the origin is that of its first shape:
 //! then the coordinates within are no larger than the object, and the camera's and the instance's
 //! translation are summed in doubles, where one may all but cancel the other. An object with an
-//! instance that moves is in render space, as the interpolation of a rotation depends on the origin,
-//! and the format interpolates about this one.
+//! instance that moves is in render space, as the interpolation of a rotation depends on the
+//! origin, and the format interpolates about this one.
 
 use super::Compiler;
 use super::curves::are_strands;

@@ -6,10 +6,9 @@
 //! when both sides emit. Where an alpha texture cuts the surface out, it does not emit; a surface
 //! with the constant alpha 0 is an invisible light, which rays never hit but light sampling still
 //! finds. Rays pass through holes and may meet a round surface a second time: where that emits, the
-//! surface is sampled by area, and the density of a direction is that of the point which the ray has
-//! hit.
-//! Emitted rays are uniform in area (patches may follow an image) and cosine-distributed, on
-//! either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
+//! surface is sampled by area, and the density of a direction is that of the point which the ray
+//! has hit. Emitted rays are uniform in area (patches may follow an image) and cosine-distributed,
+//! on either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
 
 use super::emitter::{Emitter, motion_bounds};
 use super::{

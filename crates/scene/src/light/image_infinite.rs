@@ -11,9 +11,9 @@
 //! distribution, and start uniformly on the disk that is perpendicular to them and covers the
 //! scene.
 //!
-//! A transform M other than a similarity stretches solid angles: a density around the direction ω of
-//! render space has the factor |det M⁻¹|/|M⁻¹ω|³, and the weight of a pixel, its solid angle, the
-//! reciprocal of that.
+//! A transform M other than a similarity stretches solid angles: a density around the direction ω
+//! of render space has the factor |det M⁻¹|/|M⁻¹ω|³, and the weight of a pixel, its solid angle,
+//! the reciprocal of that.
 //!
 //! Directions to a moving environment are transformed at the shutter time; its pixels have their
 //! weights at the start of motion.

@@ -1,7 +1,7 @@
 //! Where light leaves a body, by its diffusion profile.
 //!
-//! A probe of the [profile](Profiles) may meet the body several times; if n, one of the points is chosen
-//! with probability 1/n.
+//! A probe of the [profile](Profiles) may meet the body several times; if n, one of the points is
+//! chosen with probability 1/n.
 
 use math::Ray;
 use sampling::{WeightedReservoir, hash};
