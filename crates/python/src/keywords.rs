@@ -121,7 +121,7 @@ pub fn layers(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
 
 /// Seconds of a render.
 pub fn time(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
-    let is_time = |seconds: f64| seconds >= 0.0 && seconds < 1e15;
+    let is_time = |seconds: f64| (0.0..1e15).contains(&seconds);
     number(value, "time", "seconds, a number of 0 or more", is_time)
 }
 
