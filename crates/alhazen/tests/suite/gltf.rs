@@ -1,6 +1,6 @@
 //! Pictures of glTF scenes against closed forms, and of the samples of other authors.
 
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::common::{data, files_below};
 use alhazen::import::{Files, MemoryAssets, import};
@@ -145,11 +145,16 @@ fn the_camera_sees_through_the_backs_of_single_sided_surfaces() {
 #[test]
 fn a_camera_in_a_closed_box_sees_what_is_outside_of_it() {
     // A box around the camera at z = 5, whose outside is its front, above a lit surface.
-    let turns = [[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]].into_iter().chain(
-        [[0.5_f32.sqrt(), 0.0], [-0.5_f32.sqrt(), 0.0], [0.0, 0.5_f32.sqrt()], [0.0, -0.5_f32.sqrt()]]
-            .map(|[x, y]| [x, y, 0.0, 0.5_f32.sqrt()]),
-    );
-    let faces = turns.map(|[x, y, z, w]| {
+    let half = FRAC_1_SQRT_2;
+    let turns = [
+        [0.0, 0.0, 0.0, 1.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [half, 0.0, 0.0, half],
+        [-half, 0.0, 0.0, half],
+        [0.0, half, 0.0, half],
+        [0.0, -half, 0.0, half],
+    ];
+    let faces = turns.into_iter().map(|[x, y, z, w]| {
         // Where the turn takes +z.
         let n = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
         let [a, b, c] = [n[0], n[1], 5.0 + n[2]];

@@ -1,7 +1,7 @@
 //! Backs of single-sided surfaces, which the camera does not see, by both engines.
 
 use alhazen_gpu::{Algorithm, Schedule};
-use description::{BdptDesc, LightTracingDesc, PathDesc, SimplePathDesc, SppmDesc, VolPathDesc, WhittedDesc};
+use description::{BdptDesc, LightTracingDesc, PathDesc, SimplePathDesc, SppmDesc, WhittedDesc};
 use spectrum::RgbColorSpace;
 
 use crate::pictures::Case;
@@ -61,7 +61,7 @@ fn backs_have_the_picture_of_the_cpu() {
         Algorithm::Whitted(WhittedDesc::default()),
         Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb()),
         Algorithm::SimplePath(SimplePathDesc { max_depth: 2, ..Default::default() }),
-        Algorithm::VolPath(VolPathDesc { max_depth: 3, ..Default::default() }),
+        Algorithm::VolPath(PathDesc { max_depth: 3, ..Default::default() }),
     ] {
         assert_eq!(case.compare("backs", &algorithm), None, "{algorithm:?}");
     }
