@@ -269,14 +269,14 @@ mod tests {
 
     #[test]
     fn fixed_wavelengths_are_those_of_the_format() {
-        let fixed = SampledWavelengths::fixed_visible();
+        let fixed = SampledWavelengths::<f32>::fixed_visible();
         for (i, u) in [0.5, 0.75, 1.0, 0.25].into_iter().enumerate() {
             let lambda = 538.0 - 138.888_889 * libm::atanh(0.856_910_62 - 1.827_501_97 * u);
             let pdf = 0.003_939_804_2 / libm::cosh(0.0072 * (lambda - 538.0)).powi(2);
             assert!((f64::from(fixed[i]) - lambda).abs() < 1e-4, "{u}: {lambda}");
             assert!((f64::from(fixed.pdf()[i]) / pdf - 1.0).abs() < 1e-6, "{u}: {pdf}");
         }
-        let fixed = SampledWavelengths::fixed_uniform_in(400.0, 700.0);
+        let fixed = SampledWavelengths::<f32>::fixed_uniform_in(400.0, 700.0);
         assert_eq!(*fixed.lambda(), [550.0, 625.0, 700.0, 475.0]);
         assert_eq!(fixed.pdf().0, [1.0 / 300.0; N]);
     }

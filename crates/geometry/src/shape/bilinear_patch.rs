@@ -19,8 +19,8 @@ use crate::patch::Patch;
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
-    Bounds3, DVec3, DirectionCone, Normal3, Point3, Point3Error, Ray, Transform, Vec2, Vec3, face_forward,
-    gamma,
+    Bounds3, DVec3, DirectionCone, Normal3, Point3, Point3Error, Ray, Transform, Vec2, Vec3, balance,
+    face_forward, gamma,
 };
 use sampling::PiecewiseConstant2d;
 use sampling::warp::{bilinear_pdf, sample_bilinear};
@@ -359,9 +359,11 @@ impl BilinearPatch {
         Some(seen).filter(SeenRectangle::is_valid)
     }
 
-    /// The area element at the corners.
+    /// The area element at the corners, times a power of two, as sampling squares it.
     fn area_weights(&self) -> [f32; 4] {
-        [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| self.cross(uv).length() as f32)
+        let weights = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| self.cross(uv).length() as f32);
+        let scale = balance(weights.into_iter().fold(0.0, f32::max));
+        weights.map(|weight| weight * scale)
     }
 
     fn sample_at(&self, uv: Vec2, pdf: f32) -> ShapeSample {

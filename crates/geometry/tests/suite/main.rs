@@ -13,6 +13,7 @@ mod instances;
 mod instruction_sets;
 mod motion;
 mod points;
+mod sizes;
 mod solids;
 mod sphere_sets;
 mod tessellation;

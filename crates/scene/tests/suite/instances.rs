@@ -1,6 +1,6 @@
 //! Positions of instances and of the shapes in them, at rest and in motion.
 
-use crate::common::{scene, sphere};
+use crate::common::{scene, sphere, triangles};
 use alhazen_scene::{RayStats, Scene};
 use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, TransformDesc};
 use math::{DMat4, DVec3, Ray, Vec3};
@@ -54,6 +54,31 @@ fn instances_rotate_about_the_origin_of_render_space() {
         assert!(there(&scene, -eye, 1.0, 1.0));
         assert!(there(&scene, x, y, 0.5), "from {eye}");
     }
+}
+
+#[test]
+fn the_distance_of_the_camera_does_not_move_scaled_instances() {
+    // The plane y = 0 of an object, seen from (0, 3, −4) down to the origin.
+    let square = || {
+        let corners = [[-5.0, 0.0, -5.0], [-5.0, 0.0, 5.0], [5.0, 0.0, 5.0], [5.0, 0.0, -5.0]];
+        ShapeDesc::from(triangles(&corners, &[[0, 1, 2], [0, 2, 3]]))
+    };
+    let eye = DVec3::new(0.0, 3.0, -4.0);
+    let ray = Ray::new(Vec3::ZERO, Vec3::new(0.02, -0.6, 0.8), 0.0);
+    let check = |scene: Scene, what: &str| {
+        let (_, t) = scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).expect(what);
+        assert!((t - 5.0).abs() < 1e-3, "{what}: {t}");
+    };
+    for scale in [1.0, 1e4, 3e7, 1e9, 1e12] {
+        let at = TransformDesc::fixed(DMat4::from_scale(DVec3::splat(scale)));
+        check(placed(square(), at, eye), &format!("scaled by {scale:e}"));
+    }
+    // An object that is described far away, and brought back by its instance.
+    let far = DVec3::new(1e6, 3e5, -2e6) + DVec3::splat(0.1);
+    let shape =
+        ShapeDesc { world_from_object: TransformDesc::fixed(DMat4::from_translation(far)), ..square() };
+    let back = TransformDesc::fixed(DMat4::from_translation(-far));
+    check(placed(shape, back, eye), "from far away");
 }
 
 #[test]
