@@ -191,6 +191,49 @@ Translate 1 0 0
 Shape "sphere" "float radius" 0.4
 "#;
 
+/// Bodies whose paths a probe leads under the surface: smooth and rough ones, shapes and meshes, one
+/// that is textured, one with bumps, one that shines, and one that is a part of a mix.
+const BODIES: &str = r#"
+LookAt 0 1.5 5 0 0.8 0 0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb"
+WorldBegin
+LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
+LightSource "infinite" "rgb L" [ 0.2 0.3 0.4 ]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 4 4 3 ]
+    Shape "bilinearmesh" "point3 P" [ -1 3 -1  -1 3 1  1 3 -1  1 3 1 ]
+AttributeEnd
+Texture "tiles" "spectrum" "checkerboard" "float uscale" 5 "float vscale" 5
+    "rgb tex1" [ 0.9 0.6 0.3 ] "rgb tex2" [ 0.3 0.6 0.8 ]
+Texture "squares" "float" "checkerboard" "float uscale" 4 "float vscale" 4 "float tex1" 0 "float tex2" 1
+Texture "bumps" "float" "fbm"
+Texture "height" "float" "scale" "texture tex" "bumps" "float scale" 0.05
+MakeNamedMaterial "skin" "string type" "subsurface" "string name" "Skin1" "float scale" 8
+MakeNamedMaterial "clay" "string type" "diffuse"
+MakeNamedMaterial "both" "string type" "mix" "string materials" [ "skin" "clay" ] "texture amount" "squares"
+Material "subsurface" "texture reflectance" "tiles" "rgb mfp" [ 0.2 0.1 0.05 ]
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+NamedMaterial "both"
+Shape "bilinearmesh" "point3 P" [ -3 0 -2  3 0 -2  -3 2 -2  3 2 -2 ]
+AttributeBegin
+    Translate -1.4 0.5 0.5
+    NamedMaterial "skin"
+    Shape "sphere" "float radius" 0.5
+    Translate 1 0 0
+    Material "subsurface" "rgb mfp" [ 0.1 0.05 0.02 ] "rgb reflectance" [ 0.8 0.5 0.4 ] "float roughness" 0.3
+    Shape "sphere" "float radius" 0.4
+    Translate 1 0 0
+    Material "subsurface" "rgb sigma_a" [ 0.5 1 2 ] "rgb sigma_s" [ 9 9 9 ] "texture displacement" "height"
+    Shape "trianglemesh" "point3 P" [ -0.4 -0.5 0.3  0.4 -0.5 0.3  0 -0.5 -0.4  0 0.4 0 ]
+        "integer indices" [ 0 1 3  1 2 3  2 0 3  0 2 1 ]
+    AreaLightSource "diffuse" "rgb L" [ 0.5 0.1 0.1 ]
+    Translate 0.9 0 0
+    NamedMaterial "skin"
+    Shape "sphere" "float radius" 0.3
+AttributeEnd
+"#;
+
 /// Normal maps on meshes with tangents and without, on a sphere and on an instance, under a coat
 /// with other normals; bump maps; a mirror and glass. Textures are filtered.
 const MAPS: &str = r#"
@@ -243,8 +286,13 @@ fn maps() -> (SceneDesc, String) {
 
 /// The scenes of the folder and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
-    let texts =
-        [(LIGHTS, "lights"), (SURFACES, "surfaces"), (MEDIA, "media"), (PRINCIPLED, "principled surfaces")];
+    let texts = [
+        (LIGHTS, "lights"),
+        (SURFACES, "surfaces"),
+        (MEDIA, "media"),
+        (PRINCIPLED, "principled surfaces"),
+        (BODIES, "bodies"),
+    ];
     let texts = texts.map(|(text, name)| {
         let (path, assets) = scene_text(text);
         (small(path, &assets), name.to_string())

@@ -417,7 +417,7 @@ impl<'a> Walk<'a> {
         let u = tracer.sampler.get_1d();
         let heroes = Heroes::by_throughput(self.beta, self.lambda.secondary_terminated(), u);
         let exit = match sample {
-            Some(sample) => tracer.exit(entry, body, sample, &heroes),
+            Some(sample) => tracer.exit(&entry.into(), body, sample.wi, &heroes),
             None => tracer.emerge(self.paths.scene, entry, body, &self.lambda, &heroes),
         };
         let Some(exit) = exit else { return false };

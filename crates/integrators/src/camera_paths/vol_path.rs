@@ -352,7 +352,7 @@ impl VolPath {
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let hero = path.heroes.hero;
-        let Some(exit) = tracer.exit(entry, body, sample, &path.heroes) else {
+        let Some(exit) = tracer.exit(&entry.into(), body, sample.wi, &path.heroes) else {
             return (SampledSpectrum::ZERO, false);
         };
         path.throughput.beta *= exit.value / exit.density[hero];

@@ -231,7 +231,8 @@ impl<'a> Batch<'a> {
                 Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
                 Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::Measured(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Subsurface(_) | Material::Mix(_) | Material::Interface => {
+                Material::Subsurface(body) => algorithm.shade_body(self, (id, body), (turns, rows)),
+                Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
             }
@@ -239,7 +240,8 @@ impl<'a> Batch<'a> {
         self.columns.lanes = lanes;
     }
 
-    fn dispatch<M: MaterialModel, A: AtVertices>(
+    /// Shades hits of a material.
+    pub(super) fn dispatch<M: MaterialModel, A: AtVertices>(
         &mut self,
         algorithm: &A,
         (id, material): (MaterialId, &M),

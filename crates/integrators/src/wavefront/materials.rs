@@ -1,7 +1,9 @@
 //! The materials that are shaded in lanes.
 
 use lanes::{Int, Real};
-use scene::material::{Material, MaterialEntry, MaterialId};
+use scattering::SubsurfaceMethod;
+use scene::material::{Material, MaterialEntry, MaterialId, SubsurfaceInside, SubsurfaceMaterial};
+use scene::texture::Textures;
 use scene::{GeometryEntry, Scene, View};
 
 /// How the hits of a material are shaded.
@@ -30,8 +32,8 @@ impl LaneMaterials {
     /// In place of the material where there is no hit.
     pub const NOTHING: u32 = u32::MAX;
 
-    /// Those of a view.
-    pub fn new(scene: &Scene, view: &View) -> Self {
+    /// Those of a view, for an algorithm that follows paths under surfaces in lanes or does not.
+    pub fn new(scene: &Scene, view: &View, follows_bodies: bool) -> Self {
         let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
         let shading = |entry: &MaterialEntry| {
             let (is_in_lanes, is_constant) = match &entry.material {
@@ -45,7 +47,13 @@ impl LaneMaterials {
                 | Material::Hair(_) => (true, false),
                 Material::Measured(_) => (true, true),
                 Material::OpenPbr(surface) => (!surface.may_be_a_body(textures), false),
-                Material::Subsurface(_) | Material::Mix(_) | Material::Interface => (false, false),
+                // Where paths enter bodies no footprints are known.
+                Material::Subsurface(body) => {
+                    let is_plain = !with_footprints || is_constant(body, textures);
+                    let diffuses = body.method == SubsurfaceMethod::Diffusion;
+                    (follows_bodies && diffuses && is_plain, true)
+                }
+                Material::Mix(_) | Material::Interface => (false, false),
             };
             match (!view.options.force_diffuse && is_in_lanes, with_footprints && !is_constant) {
                 (false, _) => Shading::Scalar,
@@ -75,4 +83,15 @@ impl LaneMaterials {
     pub fn shading(&self, MaterialId(id): MaterialId) -> Shading {
         self.shading[id as usize]
     }
+}
+
+/// Whether a body is the same everywhere.
+fn is_constant(body: &SubsurfaceMaterial, textures: &Textures) -> bool {
+    let spectra = match body.inside {
+        SubsurfaceInside::Coefficients { sigma_a, sigma_s, .. } => [sigma_a, sigma_s],
+        SubsurfaceInside::Reflectance { reflectance, mfp, .. } => [reflectance, mfp],
+    };
+    let roughness = [body.roughness.u, body.roughness.v];
+    spectra.into_iter().all(|id| textures.is_constant(id))
+        && roughness.into_iter().all(|id| textures.constant(id).is_some())
 }

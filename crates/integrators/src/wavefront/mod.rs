@@ -21,6 +21,7 @@ mod ambient_occlusion;
 mod area_lights;
 mod batch;
 mod begin;
+mod bodies;
 mod columns;
 mod emission;
 mod finish;
@@ -76,6 +77,9 @@ pub trait WaveIntegrator: RayIntegrator {
 
     /// Whether it knows media.
     const KNOWS_MEDIA: bool = false;
+
+    /// Whether it follows paths under surfaces whose boundaries are shaded in lanes.
+    const FOLLOWS_BODIES: bool = false;
 
     /// Continues each active path from its hit: adds light, asks for shadow rays, and gives the
     /// paths that go on their next rays.
@@ -146,7 +150,7 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.algorithm.prepare(scene, view, control)?;
-        self.materials = LaneMaterials::new(scene, view);
+        self.materials = LaneMaterials::new(scene, view, A::FOLLOWS_BODIES);
         self.media = LaneMedia::new(scene);
         self.area_lights = AreaLights::new(scene);
         Ok(())

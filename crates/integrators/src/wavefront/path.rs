@@ -7,7 +7,7 @@ use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
-use scene::material::MaterialModel;
+use scene::material::{MaterialId, MaterialModel, SubsurfaceMaterial};
 use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
@@ -27,6 +27,8 @@ use crate::transport::subsurface::entered;
 use crate::{Path, Tracer};
 
 impl WaveIntegrator for Path {
+    const FOLLOWS_BODIES: bool = true;
+
     fn shade(&self, batch: &mut Batch) {
         batch.classify(self.settings.max_depth, &self.direct);
         batch.shade_in_lanes(self);
@@ -90,23 +92,70 @@ impl AtVertices for Path {
     #[inline(always)]
     fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
         shade: &mut Shade<M, Self>,
+        vertices: Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+    ) {
+        shade.go_on(vertices, bsdf, contexts);
+    }
+
+    fn shade_body(&self, batch: &mut Batch, body: (MaterialId, &SubsurfaceMaterial), hits: (&[u32], &[u32])) {
+        batch.shade_body(self, body, hits);
+    }
+}
+
+/// What path tracing does at vertices.
+pub(super) trait PathVertices: AtVertices {
+    /// The algorithm.
+    fn path(&self) -> &Path;
+
+    /// Where light from the side of `cos_i` passes to that of `cos_o`.
+    #[inline(always)]
+    fn lets_pass<R: Real>(_cos_o: R, _cos_i: R) -> R::Mask {
+        R::Mask::splat(true)
+    }
+
+    /// Takes the lanes of a mask whose paths go on under the surface, of the throughput `beta`;
+    /// gives which they are.
+    #[inline(always)]
+    fn take_entering<R: Real, M>(
+        _shade: &mut Shade<M, Self>,
+        _vertices: &Vertices<R>,
+        _sample: &BsdfSample<R>,
+        _beta: SampledSpectrum<R>,
+        _mask: R::Mask,
+    ) -> R::Mask {
+        R::Mask::splat(false)
+    }
+}
+
+impl PathVertices for Path {
+    #[inline(always)]
+    fn path(&self) -> &Path {
+        self
+    }
+}
+
+impl<M: MaterialModel, A: PathVertices> Shade<'_, '_, M, A> {
+    /// Samples light and BSDF at the vertices.
+    #[inline(always)]
+    pub fn go_on<R: Real, B: Scatter<R>>(
+        &mut self,
         mut vertices: Vertices<R>,
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
     ) {
         let samples_light = bsdf.flags().is_non_specular();
-        let media = shade.segments.media.as_ref().map(|columns| {
-            let place = (vertices.turns, &shade.hits.geometry[..]);
-            VerticesInMedia::new(shade.pass.media, columns, place, vertices.lambda.secondary_terminated())
+        let media = self.segments.media.as_ref().map(|columns| {
+            let place = (vertices.turns, &self.hits.geometry[..]);
+            VerticesInMedia::new(self.pass.media, columns, place, vertices.lambda.secondary_terminated())
         });
         let (address, has_media) = (&mut vertices.address, media.is_some());
-        let numbers = VertexNumbers::draw(&shade.pass, address, samples_light, B::CHOOSES, has_media);
-        shade.connect((&vertices, media.as_ref()), bsdf, contexts, &numbers, samples_light);
-        shade.scatter((&vertices, media.as_ref()), bsdf, contexts, numbers.bsdf);
+        let numbers = VertexNumbers::draw(&self.pass, address, samples_light, B::CHOOSES, has_media);
+        self.connect((&vertices, media.as_ref()), bsdf, contexts, &numbers, samples_light);
+        self.scatter((&vertices, media.as_ref()), bsdf, contexts, numbers.bsdf);
     }
-}
 
-impl<M: MaterialModel> Shade<'_, '_, M, Path> {
     /// Next-event estimation of the lanes that are not specular.
     #[inline(always)]
     fn connect<R: Real, B: Scatter<R>>(
@@ -121,14 +170,14 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         if !samples.any() {
             return;
         }
-        let sampling = (&self.pass, &self.algorithm.direct, &mut *self.light_samples);
+        let sampling = (&self.pass, &self.algorithm.path().direct, &mut *self.light_samples);
         let light = lights::sample(sampling, None, contexts, numbers.light, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let f = bsdf.f(wo, wi, TransportMode::Radiance);
         let scattered = f * l * wi.dot(ns).abs();
         let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
-        let lit = valid & !scattered.is_black();
+        let lit = valid & !scattered.is_black() & A::lets_pass(wo.dot(ns), wi.dot(ns));
         let (ray, t_max) = light.shadow_rays(p, n, time);
         if let Some(media) = media {
             // The weight depends on what the rays pass.
@@ -171,13 +220,14 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         let eta_scale = R::gather(&self.segments.eta_scale, turns.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let valid = valid & vertices.active;
+        let valid = valid & !A::take_entering(self, vertices, &sample, beta, valid);
 
         let depth = R::Int::gather(&self.segments.depth, turns.indices);
         let Roulette { survives, weight, dimension } =
             play(&self.pass, vertices.address, depth, beta * eta_scale, valid);
         dimension.scatter(survives, &mut self.paths.dimension, rows.indices);
         let is_specular = flags.is_specular();
-        if self.algorithm.settings.regularize {
+        if self.algorithm.regularizes() {
             rows.each_of(survives & !is_specular, |_, row| self.paths.rough_before[row] = true);
         }
         let segment = Segment {

@@ -1,5 +1,6 @@
 //! What stages hand to each other.
 
+use super::bodies::Entering;
 use super::segments::Segments;
 use super::shadows::{Passages, ShadowRays};
 use crate::transport::path_state::PathState;
@@ -16,6 +17,8 @@ pub(super) struct Queues {
     /// Those of scenes with media.
     pub passages: Passages,
     pub waiting: Waiting,
+    /// Paths that go on under the surface of a body.
+    pub entering: Entering,
 }
 
 /// Rays that wait until their path has no other: a stack for each path. All stacks share memory,

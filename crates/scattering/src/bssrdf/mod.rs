@@ -116,7 +116,7 @@ impl<'a> Bssrdf<'a> {
     /// The profiles of the wavelengths.
     pub fn profiles(&self) -> Profiles<'a> {
         let Self { table, sigma_t, albedo } = *self;
-        Profiles { table, sigma_t, profiles: albedo.0.map(|albedo| table.profile(albedo)) }
+        Profiles { table, sigma_t, profiles: table.profiles(albedo) }
     }
 }
 
@@ -137,14 +137,9 @@ impl Profiles<'_> {
 
     /// The profile at a distance and its density over a plane, of each wavelength.
     fn at_radius(&self, r: f32) -> (SampledSpectrum, SampledSpectrum) {
-        let (mut profile, mut density) = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
-        for i in 0..N {
-            let sigma_t = self.sigma_t[i];
-            let (value, pdf) = self.table.at_radius(&self.profiles[i], r * sigma_t);
-            profile[i] = value * sqr(sigma_t);
-            density[i] = pdf * sqr(sigma_t);
-        }
-        (profile, density)
+        let per_area = self.sigma_t * self.sigma_t;
+        let (profile, density) = self.table.at_radii(&self.profiles, self.sigma_t * r);
+        (profile * per_area, density * per_area)
     }
 
     /// A distance with the density of the profile of wavelength number `hero`; `None` without a

@@ -3,7 +3,9 @@
 //!
 //! Source: [Pharr 2016 §8.6.1, §13.3.3].
 
+use lanes::Each;
 use math::find_interval;
+use spectrum::{N, SampledSpectrum};
 
 /// Ascending nodes, or a value for each. The first and the last are there twice, so that the four
 /// on which a place of the spline depends follow one another.
@@ -32,8 +34,27 @@ impl Nodes {
         four(&self.0, i)
     }
 
+    /// The same for four intervals: the first nodes of each, the second ones, and so on.
+    #[inline]
+    pub fn around_each(&self, intervals: [usize; N]) -> [SampledSpectrum; 4] {
+        let mut nodes = [SampledSpectrum::ZERO; 4];
+        for (i, &interval) in intervals.iter().enumerate() {
+            let four = self.around(interval);
+            for k in 0..4 {
+                nodes[k][i] = four[k];
+            }
+        }
+        nodes
+    }
+
+    /// Whether `x` lies between the first and the last.
+    #[inline]
+    pub fn has_between(&self, x: f32) -> bool {
+        self.0.first().is_some_and(|&first| first <= x) && self.0.last().is_some_and(|&last| x <= last)
+    }
+
     /// The interval of `x`; the first or the last beyond them.
-    fn interval(&self, x: f32) -> usize {
+    pub fn interval(&self, x: f32) -> usize {
         let nodes = self.all();
         let (mut i, mut step) = (0, (nodes.len() - 1).next_power_of_two() / 2);
         while step > 0 {
@@ -63,19 +84,11 @@ pub(super) struct Weights {
 impl Weights {
     /// Those at `x`; `None` beyond the first and last of the nodes.
     pub fn at(nodes: &Nodes, x: f32) -> Option<Self> {
-        let [.., last] = nodes.0[..] else { return None };
-        if !(nodes.0[0] <= x && x <= last) {
-            return None;
-        }
-        let first = nodes.interval(x);
-        let [before, here, next, after] = nodes.around(first);
-        let width = next - here;
-        let t = (x - here) / width;
-        let [near, from_slope, to_slope] =
-            [1.0 - t * t * (3.0 - 2.0 * t), t * (1.0 - t) * (1.0 - t), -t * t * (1.0 - t)];
-        let from = from_slope * width / (next - before);
-        let to = to_slope * width / (after - here);
-        Some(Self { first, weights: [-from, near - to, 1.0 - near + from, to] })
+        nodes.has_between(x).then(|| {
+            let first = nodes.interval(x);
+            let weights = weights(nodes.around_each([first; N]), SampledSpectrum::splat(x));
+            Self { first, weights: weights.each(|weights| weights[0]) }
+        })
     }
 
     /// The sum of the weighted values of the four nodes.
@@ -84,6 +97,19 @@ impl Weights {
         let ([a, b, c, d], [p, q, r, s]) = (self.weights, values);
         a * p + b * q + c * r + d * s
     }
+}
+
+/// The weights of four nodes for places between the middle ones, four at once.
+#[inline]
+pub(super) fn weights(nodes: [SampledSpectrum; 4], x: SampledSpectrum) -> [SampledSpectrum; 4] {
+    let [before, here, next, after] = nodes;
+    let width = next - here;
+    let t = (x - here) / width;
+    let rest = 1.0 - t;
+    let near = 1.0 - t * t * (3.0 - 2.0 * t);
+    let from = t * rest * rest * width / (next - before);
+    let to = -t * t * rest * width / (after - here);
+    [-from, near - to, 1.0 - near + from, to]
 }
 
 /// The cubic polynomial between two nodes, as the coefficients of the powers of t in [0, 1].

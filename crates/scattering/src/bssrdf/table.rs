@@ -6,7 +6,9 @@ use super::spline::{self, Nodes, Weights};
 use super::{SubsurfaceMethod, walks};
 use crate::TrowbridgeReitz;
 use crate::grid::Place;
+use lanes::Each;
 use math::{Vector3, lerp};
+use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;
 use std::fmt;
 use std::sync::OnceLock;
@@ -15,6 +17,8 @@ use std::sync::OnceLock;
 const ALBEDOS: usize = 100;
 /// Radii in a geometric progression, after 0.
 const RADII: usize = 64;
+const FIRST_RADIUS: f64 = 2.5e-3;
+const RATIO: f64 = 1.2;
 
 /// The radial profiles of all media of one asymmetry and index of refraction, in mean free paths.
 #[derive(Clone)]
@@ -132,7 +136,7 @@ impl BssrdfTable {
         let medium = HalfSpace::new(f64::from(g), f64::from(eta));
         let spacing = |i: usize| 1.0 - libm::exp(-8.0 * i as f64 / (ALBEDOS - 1) as f64);
         let albedos: Vec<f32> = (0..ALBEDOS).map(|i| (spacing(i) / spacing(ALBEDOS - 1)) as f32).collect();
-        let progression = (0..RADII - 1).map(|i| (2.5e-3 * 1.2f64.powi(i as i32)) as f32);
+        let progression = (0..RADII - 1).map(|i| (FIRST_RADIUS * RATIO.powi(i as i32)) as f32);
         let radii: Vec<f32> = std::iter::once(0.0).chain(progression).collect();
         let (albedos, radii) = (Nodes::new(&albedos), Nodes::new(&radii));
         let [mut profile, mut cdf] = [const { Vec::new() }; 2];
@@ -180,7 +184,8 @@ impl BssrdfTable {
     /// The share of the light that entered which leaves again, for an albedo in [0, 1], by the
     /// profile.
     pub fn effective_albedo(&self, albedo: f32) -> f32 {
-        self.profile(albedo).total.max(0.0)
+        let at = Weights::at(&self.albedos, albedo).unwrap_or_default();
+        at.sum(self.effective_albedos.around(at.first)).max(0.0)
     }
 
     /// The albedo of a medium that returns a share of the light that entered, or the nearest to it
@@ -209,30 +214,73 @@ impl BssrdfTable {
         self.boundary().gain(facets, w)
     }
 
-    /// The profile of a medium with an albedo in [0, 1].
-    pub(super) fn profile(&self, albedo: f32) -> Profile {
-        let at = Weights::at(&self.albedos, albedo).unwrap_or_default();
-        Profile { at, total: at.sum(self.effective_albedos.around(at.first)) }
+    /// The profiles of media with albedos in [0, 1].
+    pub(super) fn profiles(&self, albedos: SampledSpectrum) -> [Profile; N] {
+        let first = albedos.0.each(|albedo| self.albedos.interval(albedo));
+        let weights = spline::weights(self.albedos.around_each(first), albedos);
+        let mut profiles = [Profile::default(); N];
+        for i in 0..N {
+            if self.albedos.has_between(albedos[i]) {
+                let at = Weights { first: first[i], weights: weights.each(|weights| weights[i]) };
+                profiles[i] = Profile { at, total: at.sum(self.effective_albedos.around(at.first)) };
+            }
+        }
+        profiles
     }
 
-    /// A profile at a radius, per area, and its density, which has the integral 1 over the plane.
-    pub(super) fn at_radius(&self, profile: &Profile, r: f32) -> (f32, f32) {
-        let Some(at) = Weights::at(&self.radii, r) else { return (0.0, 0.0) };
-        let Profile { at: albedo, total } = profile;
-        // The sums over radii, of four albedos at once.
-        let mut sums = [0.0; 4];
-        for (i, weight) in at.weights.into_iter().enumerate() {
-            let values = self.profile.at(albedo.first, at.first + i);
-            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+    /// The profile of each wavelength at a radius, per area, and its density, which has the integral
+    /// 1 over the plane.
+    pub(super) fn at_radii(
+        &self,
+        profiles: &[Profile; N],
+        r: SampledSpectrum,
+    ) -> (SampledSpectrum, SampledSpectrum) {
+        let first = r.0.each(|r| self.interval(r));
+        let weights = spline::weights(self.radii.around_each(first), r);
+        let [mut value, mut total] = [SampledSpectrum::ZERO; 2];
+        for i in 0..N {
+            let Profile { at: albedo, total: of } = &profiles[i];
+            // The sums over radii, of four albedos at once.
+            let mut sums = [0.0; 4];
+            for (node, weight) in weights.iter().enumerate() {
+                let values = self.profile.at(albedo.first, first[i] + node);
+                for k in 0..4 {
+                    sums[k] += weight[i] * values[k];
+                }
+            }
+            (value[i], total[i]) = (albedo.sum(sums), *of);
         }
-        let value = (albedo.sum(sums) / (TAU * if r > 0.0 { r } else { 1.0 })).max(0.0);
-        (value, if *total > 0.0 { value / total } else { 0.0 })
+        let around = r.map(|r| TAU * if r > 0.0 { r } else { 1.0 });
+        let value = (value / around).clamp_zero();
+        let density = value / total;
+        let mut found = (SampledSpectrum::ZERO, SampledSpectrum::ZERO);
+        for i in 0..N {
+            if self.radii.has_between(r[i]) {
+                found.0[i] = value[i];
+                found.1[i] = if total[i] > 0.0 { density[i] } else { 0.0 };
+            }
+        }
+        found
+    }
+
+    /// The interval of a radius. The bits of a float grow with its logarithm, but for a third of an
+    /// interval.
+    #[inline]
+    fn interval(&self, r: f32) -> usize {
+        const FIRST: i32 = (FIRST_RADIUS as f32).to_bits() as i32;
+        /// Intervals for a bit of the mantissa: 1 over the logarithm of the ratio, to base 2.
+        const STEPS: f32 = (3.801_784_016_923_93 / (1 << 23) as f64) as f32;
+        let steps = (r.to_bits() as i32).saturating_sub(FIRST) as f32 * STEPS;
+        // The interval before the one that is found by it.
+        let before = (steps.max(0.0) as usize).min(RADII - 4);
+        let radii = &self.radii.all()[before..];
+        before + usize::from(radii[1] <= r) + usize::from(radii[2] <= r)
     }
 
     /// A radius with the density of a profile; `None` if it is zero.
     pub(super) fn sample_radius(&self, profile: &Profile, u: f32) -> Option<f32> {
         let at = &profile.at;
-        let values = |i: usize| [0, 1, 2, 3].map(|node| at.sum(self.profile.at(at.first, i + node)));
+        let values = |i: usize| [0, 1, 2, 3].each(|node| at.sum(self.profile.at(at.first, i + node)));
         let cdf = |i: usize| at.sum(self.cdf.at(at.first, i + 1));
         spline::sample(&self.radii, values, cdf, u)
     }

@@ -57,7 +57,7 @@ impl Tracer<'_> {
         let entering = lobe.f(s.shading.n, s.wo, TransportMode::Radiance) * (cosines * PI);
         let (mut surface, value, density) = match body.profile() {
             Some(bssrdf) => {
-                let (surface, density) = self.probe(entry, &bssrdf.profiles(), heroes.hero)?;
+                let (surface, density) = self.probe(&entry.into(), &bssrdf.profiles(), heroes.hero)?;
                 (surface, entering, density)
             }
             None => {
@@ -66,7 +66,7 @@ impl Tracer<'_> {
                 let wi = -Frame::from_z(s.n).from_local(sample_cosine_hemisphere(u));
                 let passes = 1.0 - fr_dielectric(-wi.dot(s.n).abs(), inside.eta);
                 let least = if body.is_smooth() { 0.0 } else { LEAVES_ROUGH };
-                let walked = self.walk(entry, &inside, wi, heroes, least)?;
+                let walked = self.walk(&entry.into(), &inside, wi, heroes, least)?;
                 let value = walked.value * entering * (passes / walked.probability);
                 (walked.surface, value, walked.density)
             }

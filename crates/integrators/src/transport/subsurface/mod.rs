@@ -14,14 +14,36 @@ mod emerge;
 mod probe;
 mod walk;
 
+use math::{Normal3, Point3Error, Vector3};
 use scattering::{Body, Bsdf, BsdfSample, Bxdf};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
+use scene::material::MaterialId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::media::Heroes;
 use super::path_state::{PathState, Scattered};
+
+/// The point where a path enters a body.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry {
+    pub p: Point3Error,
+    /// Geometric and shading normal.
+    pub n: Normal3,
+    pub ns: Normal3,
+    pub time: f32,
+    /// The material of the body's surfaces, before the choice of a mix.
+    pub material: MaterialId,
+}
+
+impl From<&SurfaceInteraction> for Entry {
+    #[inline]
+    fn from(SurfaceInteraction { surface, material, .. }: &SurfaceInteraction) -> Self {
+        let (p, n, ns) = (surface.p, surface.n, surface.shading.n);
+        Self { p, n, ns, time: surface.time, material: *material }
+    }
+}
 
 /// The other point of a path under a surface.
 pub(crate) struct Exit<'a> {
@@ -47,24 +69,24 @@ pub(crate) fn entered<'b, 'a>(
 }
 
 impl Tracer<'_> {
-    /// Samples where a path from the camera leaves a body that it enters at `entry` by `sample` of
-    /// its boundary; `None` if it does not.
+    /// Samples where a path from the camera leaves a body that it enters at `entry` along `wi`;
+    /// `None` if it does not. Profiles do not depend on the direction.
     pub(crate) fn exit<'a>(
         &mut self,
-        entry: &SurfaceInteraction,
+        entry: &Entry,
         body: Body<'_, 'a>,
-        sample: &BsdfSample,
+        wi: Vector3,
         heroes: &Heroes,
     ) -> Option<Exit<'a>> {
         let (mut surface, value, density) = match body.profile() {
             Some(bssrdf) => {
                 let profiles = bssrdf.profiles();
                 let (surface, density) = self.probe(entry, &profiles, heroes.hero)?;
-                let value = profiles.at(surface.p().distance(entry.p()));
+                let value = profiles.at(surface.p().distance(entry.p.p));
                 (surface, value, density)
             }
             None => {
-                let walked = self.walk(entry, &body.interior(), sample.wi, heroes, 0.0)?;
+                let walked = self.walk(entry, &body.interior(), wi, heroes, 0.0)?;
                 (walked.surface, walked.value, walked.density)
             }
         };
@@ -91,9 +113,20 @@ impl PathState {
         let medium = self.medium;
         self.scatter(entry, context, scattered);
         self.medium = medium;
+        self.pass_under(tracer, &entry.into(), (body, scattered.sample.wi), lambda)
+    }
+
+    /// Leads the path out of a body that it has entered in a direction.
+    pub(crate) fn pass_under<'a>(
+        &mut self,
+        tracer: &mut Tracer,
+        entry: &Entry,
+        (body, wi): (Body<'_, 'a>, Vector3),
+        lambda: &SampledWavelengths,
+    ) -> Option<Exit<'a>> {
         let u = tracer.sampler.get_1d();
         let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
-        let exit = tracer.exit(entry, body, &scattered.sample, &heroes)?;
+        let exit = tracer.exit(entry, body, wi, &heroes)?;
         self.beta *= exit.value / heroes.mean(exit.density);
         self.eta_scale /= body.eta() * body.eta();
         Some(exit)

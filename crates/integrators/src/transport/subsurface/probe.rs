@@ -9,6 +9,7 @@ use scattering::Profiles;
 use scene::SurfaceInteraction;
 use spectrum::SampledSpectrum;
 
+use super::Entry;
 use crate::transport::Tracer;
 
 impl Tracer<'_> {
@@ -16,16 +17,17 @@ impl Tracer<'_> {
     /// wavelength as the hero.
     pub(super) fn probe(
         &mut self,
-        entry: &SurfaceInteraction,
+        entry: &Entry,
         profiles: &Profiles,
         hero: usize,
     ) -> Option<(SurfaceInteraction, SampledSpectrum)> {
         let (uc, u, seed) = (self.sampler.get_1d(), self.sampler.get_2d(), self.sampler.get_1d());
-        let (p, n) = (entry.p(), entry.surface.shading.n);
+        let (p, n) = (entry.p.p, entry.ns);
         let probe = profiles.sample_probe(n, hero, uc, u)?;
-        let mut ray = Ray::new(p + probe.start, probe.direction, entry.surface.time);
+        let mut ray = Ray::new(p + probe.start, probe.direction, entry.time);
         let end = ray.at(probe.length);
         let mut met = WeightedReservoir::new(hash(&[seed.to_bits()]));
+        let mut kept = None;
         loop {
             let rest = (end - ray.o).dot(probe.direction);
             if !(rest > 0.0 && self.may_trace()) {
@@ -33,11 +35,11 @@ impl Tracer<'_> {
             }
             let Some((surface, _)) = self.scene.intersect(&ray, rest, self.stats) else { break };
             ray = surface.spawn_ray(probe.direction);
-            if surface.material == entry.material {
-                met.add(surface, 1.0);
+            if surface.material == entry.material && met.add((), 1.0) {
+                kept = Some(surface);
             }
         }
-        let surface = met.sample()?.clone();
+        let surface = kept?;
         let d = surface.p() - p;
         let density = profiles.probe_pdf(n, d, surface.surface.n) * met.sample_probability();
         Some((surface, density))

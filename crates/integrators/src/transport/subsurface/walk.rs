@@ -14,6 +14,7 @@ use scattering::{Interior, fr_dielectric, reflect};
 use scene::SurfaceInteraction;
 use spectrum::SampledSpectrum;
 
+use super::Entry;
 use crate::transport::Tracer;
 use crate::transport::media::{Heroes, attenuation};
 
@@ -38,7 +39,7 @@ impl Tracer<'_> {
     /// with the probability with which that lets light out, but at least with `least`.
     pub(super) fn walk(
         &mut self,
-        entry: &SurfaceInteraction,
+        entry: &Entry,
         inside: &Interior,
         wi: Vector3,
         heroes: &Heroes,
@@ -46,7 +47,7 @@ impl Tracer<'_> {
     ) -> Option<Walked> {
         let Interior { sigma_s, sigma_t, phase, eta } = *inside;
         let (mut value, mut density) = (SampledSpectrum::ONE, SampledSpectrum::ONE);
-        let mut ray = entry.spawn_ray(wi);
+        let mut ray = Ray::spawn(entry.p, entry.n, wi, entry.time);
         let (mut u, mut rng) = self.collisions();
         for _ in 0..MAX_EVENTS {
             let free = sampling::warp::sample_exponential(u, sigma_t[heroes.hero]);
@@ -85,12 +86,7 @@ impl Tracer<'_> {
     }
 
     /// The first point of the body of `entry` that a ray meets from inside within a distance.
-    fn boundary(
-        &mut self,
-        ray: &Ray,
-        t_max: f32,
-        entry: &SurfaceInteraction,
-    ) -> Option<(SurfaceInteraction, f32)> {
+    fn boundary(&mut self, ray: &Ray, t_max: f32, entry: &Entry) -> Option<(SurfaceInteraction, f32)> {
         let from: Point3 = ray.o;
         let mut ray = *ray;
         loop {
