@@ -192,12 +192,12 @@ fn subsurface_materials_scatter_by_their_parameters() {
     assert!(bodies.iter().all(|body| std::sync::Arc::ptr_eq(&body.table, &bodies[0].table)));
     let [skin, same, grey] =
         [0, 1, 2].map(|i| bodies[i].bxdf(scene.textures(), &Default::default(), &lambda()).bssrdf);
-    assert_eq!(skin.profile(0.1), same.profile(0.1));
-    assert!(skin.profile(0.1).min_component() > 0.0);
+    assert_eq!(skin.profiles().at(0.1), same.profiles().at(0.1));
+    assert!(skin.profiles().at(0.1).min_component() > 0.0);
     assert!((grey.effective_albedo()[0] - 0.4).abs() < 1e-3);
     let ones = spectrum::SampledSpectrum::ONE;
     let (table, method) = (&bodies[0].table, SubsurfaceMethod::Diffusion);
     let facets = scattering::TrowbridgeReitz::new(0.0, 0.0);
     let expected = scattering::Bssrdf::from_reflectance(table, method, &facets, ones * 0.4, ones * 0.5);
-    assert!((grey.profile(0.2) - expected.profile(0.2)).max_component() < 1e-3);
+    assert!((grey.profiles().at(0.2) - expected.profiles().at(0.2)).max_component() < 1e-3);
 }
