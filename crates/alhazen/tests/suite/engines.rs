@@ -191,8 +191,8 @@ Translate 1 0 0
 Shape "sphere" "float radius" 0.4
 "#;
 
-/// Bodies whose paths a probe leads under the surface: smooth and rough ones, shapes and meshes, one
-/// that is textured, one with bumps, one that shines, and one that is a part of a mix.
+/// Bodies whose paths a probe leads under the surface: smooth and rough ones, shapes and meshes,
+/// one that is textured, one with bumps, one that shines, and one that is a part of a mix.
 const BODIES: &str = r#"
 LookAt 0 1.5 5 0 0.8 0 0 1 0
 Camera "perspective" "float fov" 50

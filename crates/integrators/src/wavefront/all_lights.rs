@@ -9,6 +9,7 @@ use scene::light::{Light, LightId, LightSampleContext};
 use scene::material::MaterialModel;
 use spectrum::SampledSpectrum;
 
+use super::batch::AtHits;
 use super::lights::{self, LightLanes};
 use super::numbers::{draw_2d, draw_two};
 use super::shade::{AtVertices, Shade, Vertices};
@@ -69,6 +70,8 @@ impl AtVertices for AllLights {
         next.scatter(lit | specular, &mut shade.paths.dimension, vertices.rows.indices);
     }
 }
+
+impl AtHits for AllLights {}
 
 impl<M: MaterialModel> Shade<'_, '_, M, AllLights> {
     /// Connects lanes to one point of every light.

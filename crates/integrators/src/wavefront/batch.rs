@@ -6,7 +6,7 @@ use math::CameraEnd;
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
-use scene::material::{Material, MaterialId, MaterialModel};
+use scene::material::{Material, MaterialId, MaterialModel, SubsurfaceMaterial};
 use scene::{GeometryEntry, Interfaces, SurfaceInteraction};
 use spectrum::SampledWavelengths;
 
@@ -27,6 +27,14 @@ use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
 use crate::transport::path_state::PathState;
 use crate::transport::pixel_samples::PixelSamples;
+
+/// An algorithm that shades hits in lanes.
+pub(super) trait AtHits: AtVertices {
+    /// Shades hits on a body, of which indices and paths are given.
+    fn shade_body(&self, _: &mut Batch, _: (MaterialId, &SubsurfaceMaterial), _: (&[u32], &[u32])) {
+        unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
+    }
+}
 
 /// The paths of some tiles, one for each pixel that takes a sample. Between the stages here an
 /// algorithm [shades](super::WaveIntegrator::shade) the hits.
@@ -196,7 +204,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Shades the hits that are shaded in lanes.
-    pub(super) fn shade_in_lanes<A: AtVertices>(&mut self, algorithm: &A) {
+    pub(super) fn shade_in_lanes<A: AtHits>(&mut self, algorithm: &A) {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {

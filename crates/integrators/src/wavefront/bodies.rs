@@ -1,8 +1,8 @@
 //! The hits of path tracing on bodies that scatter light under their surface.
 //!
 //! The boundary is glass, and is shaded in lanes as glass is. Paths that enter by it wait until the
-//! kernel has ended; then a probe finds for each where it leaves (`transport/subsurface/`), one path
-//! after another.
+//! kernel has ended; then a probe finds for each where it leaves (`transport/subsurface/`), one
+//! path after another.
 
 use lanes::{Int, Mask, Real};
 use scattering::{Body, Bsdf, BsdfSample, Scatter};
@@ -14,20 +14,11 @@ use spectrum::{SampledSpectrum, Spectrum};
 
 use super::batch::{Batch, BatchColumns};
 use super::path::PathVertices;
+use super::queues::Entering;
 use super::shade::{AtVertices, Shade, Vertices};
-use super::spectra::Spectra;
 use crate::transport::path_state::PathState;
 use crate::transport::subsurface::Entry;
 use crate::{Path, Tracer};
-
-/// Paths that go on under the surface of a body, in the order of their hits.
-#[derive(Default)]
-pub(super) struct Entering {
-    rows: Vec<u32>,
-    turns: Vec<u32>,
-    /// Throughput beyond the boundary.
-    beta: Spectra,
-}
 
 /// Path tracing at the boundaries of bodies.
 struct AtBoundary<'a>(&'a Path);

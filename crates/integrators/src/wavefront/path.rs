@@ -11,7 +11,7 @@ use scene::material::{MaterialId, MaterialModel, SubsurfaceMaterial};
 use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
-use super::batch::{Batch, BatchColumns, Vertex};
+use super::batch::{AtHits, Batch, BatchColumns, Vertex};
 use super::columns::Rows;
 use super::lights::{self, LightLanes};
 use super::media::VerticesInMedia;
@@ -98,7 +98,9 @@ impl AtVertices for Path {
     ) {
         shade.go_on(vertices, bsdf, contexts);
     }
+}
 
+impl AtHits for Path {
     fn shade_body(&self, batch: &mut Batch, body: (MaterialId, &SubsurfaceMaterial), hits: (&[u32], &[u32])) {
         batch.shade_body(self, body, hits);
     }

@@ -1,8 +1,8 @@
 //! What stages hand to each other.
 
-use super::bodies::Entering;
 use super::segments::Segments;
 use super::shadows::{Passages, ShadowRays};
+use super::spectra::Spectra;
 use crate::transport::path_state::PathState;
 
 /// The queues of a batch.
@@ -19,6 +19,15 @@ pub(super) struct Queues {
     pub waiting: Waiting,
     /// Paths that go on under the surface of a body.
     pub entering: Entering,
+}
+
+/// Paths that go on under the surface of a body, in the order of their hits.
+#[derive(Default)]
+pub(super) struct Entering {
+    pub rows: Vec<u32>,
+    pub turns: Vec<u32>,
+    /// Throughput beyond the boundary.
+    pub beta: Spectra,
 }
 
 /// Rays that wait until their path has no other: a stack for each path. All stacks share memory,

@@ -7,11 +7,10 @@ use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Scatter};
 use scene::Footprint;
 use scene::light::LightSampleContext;
-use scene::material::{MaterialId, MaterialModel, SubsurfaceMaterial};
+use scene::material::MaterialModel;
 use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::batch::Batch;
 use super::columns::Rows;
 use super::lights::Samples;
 use super::pass::Pass;
@@ -35,11 +34,6 @@ pub(super) trait AtVertices: Sized {
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
     );
-
-    /// Shades hits on a body, of which indices and paths are given, in lanes.
-    fn shade_body(&self, _: &mut Batch, _: (MaterialId, &SubsurfaceMaterial), _: (&[u32], &[u32])) {
-        unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
-    }
 }
 
 /// Shades hits of one material.

@@ -228,8 +228,8 @@ impl BssrdfTable {
         profiles
     }
 
-    /// The profile of each wavelength at a radius, per area, and its density, which has the integral
-    /// 1 over the plane.
+    /// The profile of each wavelength at a radius, per area, and its density, which has the
+    /// integral 1 over the plane.
     pub(super) fn at_radii(
         &self,
         profiles: &[Profile; N],
