@@ -223,8 +223,7 @@ impl Job {
     /// index: which one. count: their number. alternate: whether its passes alternate between two
     /// films, from which the noise of the picture is estimated. limited: whether time or noise ends
     /// the render of all parts, so that without spp of compile() the number of passes has no limit.
-    /// threads, progress, preview: as
-    /// those of render().
+    /// threads, progress, preview: as those of render().
     #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     #[pyo3(signature = (
         index, count, *, alternate=false, limited=false, threads=None, progress=None, preview=None

@@ -387,10 +387,11 @@ class Job:
     ) -> Image:
         """Renders a picture.
 
-        time: seconds after which no pass is begun. noise: the relative error at which it ends.
-        threads: their number, by default one for each core. progress: True for a line with the time
-        left on standard error, or a function that is called with a Progress after passes. preview:
-        called with an Image now and then, at last with the result.
+        time: seconds after which no pass is begun. noise: the relative error at which it ends. With
+        one of these and no spp of compile(), the number of passes has no limit. threads: their
+        number, by default one for each core. progress: True for a line with the time left on
+        standard error, or a function that is called with a Progress after passes. preview: called
+        with an Image now and then, at last with the result.
 
         Ctrl-C ends it with KeyboardInterrupt; an exception of a callback ends it, too.
         """
