@@ -302,14 +302,17 @@ fn pictures_of_light_and_relief_are_drawn() {
     let lamp = plain("Ke 2 2 2\nmap_Ke colors.png\n");
     let (shape, _) = first(&lamp);
     let light = &lamp.area_lights[shape.area_light.unwrap()];
-    assert_eq!(lamp.images[light.image.unwrap()].image.rgb(1, 0), [0.0, 0.0, 2.0]);
+    assert_eq!(lamp.images[light.image.unwrap().image].image.rgb(1, 0), [0.0, 0.0, 2.0]);
+    let placed = plain("Ke 1 1 1\nmap_Ke -s 2 3 1 -o 0.5 0.25 0 -clamp on colors.png\n");
+    let image = placed.area_lights[first(&placed).0.area_light.unwrap()].image.unwrap();
+    assert_eq!((image.columns, image.wrap), ([[2.0, 0.0], [0.0, 3.0], [0.5, 0.25]], WrapMode::Clamp));
     let bumps = plain("map_Bump -bm 0.5 hole.png\n");
     let height = number_of(&bumps, first(&bumps).1.displacement.as_ref().unwrap());
     assert_eq!((height.scale, first(&bumps).1.normal_map), (0.5, None));
     for statement in ["norm", "map_Bump", "bump"] {
         let relief = plain(&format!("{statement} normals.png\n"));
         let (shape, material) = first(&relief);
-        let normals = &relief.images[material.normal_map.unwrap()].image;
+        let normals = &relief.images[material.normal_map.unwrap().image].image;
         let expected = [200.0, 100.0, 230.0].map(|code: f32| code / 255.0);
         assert_eq!(normals.rgb(1, 0), expected, "{statement}");
         assert!(material.displacement.is_none());

@@ -256,12 +256,12 @@ fn normal_maps_are_codes() {
         token inputs:sourceColorSpace = \"raw\"";
     let desc = without_errors(textured("normal3f inputs:normal", "rgb", usual, None));
     let map = desc.materials[shape(&desc).material.unwrap()].normal_map.expect("a normal map");
-    assert_eq!(desc.images[map].image.rgb(1, 0), [1.0, 0.8, 0.6]);
+    assert_eq!(desc.images[map.image].image.rgb(1, 0), [1.0, 0.8, 0.6]);
     let halved =
         usual.replace("(2, 2, 2, 1)", "(1, 1, 2, 1)").replace("(-1, -1, -1, 0)", "(-0.5, -0.5, -1, 0)");
     let desc = without_errors(textured("normal3f inputs:normal", "rgb", &halved, None));
     let map = desc.materials[shape(&desc).material.unwrap()].normal_map.expect("a normal map");
-    let [x, ..] = desc.images[map].image.rgb(1, 0);
+    let [x, ..] = desc.images[map.image].image.rgb(1, 0);
     assert!((x - 0.75).abs() < 1e-6, "(1 − 0.5 + 1)/2, not {x}");
 }
 
