@@ -49,7 +49,7 @@ fn job(name: &str, overrides: &Overrides) -> Job {
 #[test]
 fn a_gathered_picture_has_the_mean_of_path_tracing() {
     let settings = [("maxdepth", "5"), ("gather", "1"), ("tolerance", "0.004"), ("patchsize", "90")];
-    let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 24, 96, &settings));
+    let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 24, 128, &settings));
     let reference = overrides("path", 24, 2048, &[("maxdepth", "5"), ("sampler", "sobol")]);
     let reference = render_scene(&scene("cornell-box.pbrt"), &reference);
     let ((found, _), (expected, _)) = (means(&found, 24), means(&reference, 24));

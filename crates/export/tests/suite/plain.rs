@@ -114,6 +114,8 @@ fn plain(desc: &SceneDesc) -> SceneDesc {
     let fixed = |handle: &mut Handle<ImageDesc>| *handle = picture(&images, *handle);
     desc.film.layers.iter_mut().for_each(|layer| layer.span = Span::NONE);
     still(&mut desc.camera.camera_from_world);
+    // The camera of a file that has none is written for the size of its film.
+    desc.camera.shows = None;
     if let CameraKind::Realistic(camera) = &mut desc.camera.kind
         && let ApertureDesc::Image(image) = &mut camera.aperture
     {

@@ -777,7 +777,8 @@ def options(
     filtering.
 
     disablewavelengthjitter: true or false, by default false. Use the same wavelengths for every
-    sample.
+    sample, those of pbrt-v4: 545.9, 616.9, 830 and 479.2 nm, or of a spectral film 0.5, 0.75, 1 and
+    0.25 of its range.
 
     displacementedgescale: a number above 0, by default 1. Factor on the edge length to which
     displaced surfaces are tessellated.
