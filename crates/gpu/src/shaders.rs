@@ -36,8 +36,8 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 62] = laws! {
-    "address" "arc" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
+const LAWS: [&str; 63] = laws! {
+    "address" "arc" "balance" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
     "diffuse" "diffuse_transmission" "direct" "disk" "dispersion" "dots" "error" "exponential" "flags"
     "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hair" "hash"
     "hash_sequence" "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"

@@ -28,7 +28,7 @@ fn world_of(unit: f32, are_few: bool) -> World {
 /// The points of hits of some rays in units of `unit`, computed in batches.
 fn points(unit: f32, are_few: bool) -> Vec<Option<(Hit, SurfacePoint, [Vec3; 5])>> {
     let (rng, world) = (&mut Rng::new(7, 0), world_of(unit, are_few));
-    let rays: RayBuffer = (0..600)
+    let rays: RayBuffer = (0..3000)
         .map(|_| {
             let o = point_in(rng, 3.0);
             (Ray::new(o * unit, point_in(rng, 1.0) - o * 0.5, 0.0), f32::INFINITY)
