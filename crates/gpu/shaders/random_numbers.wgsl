@@ -17,7 +17,7 @@ fn coordinates(is_pair: bool) -> vec2f {
     let head = words_at(at);
     let key = head.y;
     if (HAS_ZSOBOL && head.x == ZSOBOL) {
-        return ZSobol_at_2d(ZSobol(head.z, head.w, word(at + 4), key, place), place);
+        return ZSobol_at_2d(ZSobol(1u << head.z, head.z, head.w, word(at + 4), key, place), place);
     }
     if (HAS_RARE_SAMPLERS) {
         switch (head.x) {

@@ -82,7 +82,7 @@ fn has_weights() -> bool {
 
 // The balance heuristic, from the other strategies' densities over that of this one; 0 if their sum
 // is no number.
-fn balance(others: f32) -> f32 {
+fn balance_heuristic(others: f32) -> f32 {
     let sum = 1 + others;
     let is_finite = (bitcast<u32>(sum) & 0x7fffffffu) < 0x7f800000u;
     return select(0, 1 / sum, is_finite);
@@ -192,7 +192,7 @@ fn lights_met(walk: Subpath, before: ShapeSampleContext, hit: Hit, s: Surface) -
             }
             let end = light_end(point, before.p.p, wi, direct);
             let by_light = select(0, end.emission / end.cos_theta * walk.partial.vc, ARE_CONNECTED);
-            weight = balance(end.direct * walk.partial.vcm + by_light);
+            weight = balance_heuristic(end.direct * walk.partial.vcm + by_light);
         }
         sum += hero_of(walk.beta * l, SampledWavelengths_secondary_terminated(walk.lambda)) * weight;
     }
@@ -315,7 +315,7 @@ fn light_along(connection: Connection, v: Vertex, is_vertex: bool, other: Vertex
     if (!HAS_CAMERA_PATHS || c.is_only) {
         return l;
     }
-    return l * balance(others);
+    return l * balance_heuristic(others);
 }
 
 // The vertex where a walk has hit a surface at the distance `t`.

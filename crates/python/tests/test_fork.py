@@ -144,7 +144,7 @@ def go_on(progress):
 thread = threading.Thread(target=lambda: job.render(progress=go_on))
 thread.start()
 begun.wait()
-for do in (lambda: job.render(), lambda: work(0), lambda: alhazen.load(b""), scene):
+for do in (lambda: job.render(), lambda: work(0), lambda: alhazen.load(b"PK"), scene):
     print(forked(do))
 print(forked(lambda: print(forked(scene))))
 ended.set()

@@ -303,7 +303,7 @@ pub const LAWS: [Law; 50] = [
         var samples = array(0u, 3u, 6u, 12u);
         var sides = array(5u, 14u, 4u, 20u);
         let address = Address(array(u32(x[6] * 1000.0), u32(x[7] * 1000.0)), u32(x[8] * 5000.0), u32(x[9] * 99.0));
-        let sampler_ = ZSobol(samples[kind], sides[kind], kind, mix_word(7), address);
+        let sampler_ = ZSobol(1u << samples[kind], samples[kind], sides[kind], kind, mix_word(7), address);
         let a = ZSobol_at_2d(sampler_, address);
         y[0] = a.x; y[1] = a.y; y[2] = ZSobol_at_1d(sampler_, address);"),
     law!("PaddedSobol" 0.0 0.0,

@@ -61,7 +61,6 @@ fn backs_have_the_picture_of_the_cpu() {
         Algorithm::Whitted(WhittedDesc::default()),
         Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb()),
         Algorithm::SimplePath(SimplePathDesc { max_depth: 2, ..Default::default() }),
-        Algorithm::VolPath(PathDesc { max_depth: 3, ..Default::default() }),
     ] {
         assert_eq!(case.compare("backs", &algorithm), None, "{algorithm:?}");
     }
