@@ -115,9 +115,10 @@ fn normals_keep_their_side() {
 }
 
 #[test]
-fn a_bump_map_too_steep_for_floats_changes_nothing() {
+fn a_bump_map_as_steep_as_floats_allow_has_a_normal() {
     let found = shaded(&raised(sheet(), |desc| ramp(desc, 3e38, 0.0)), above(Vec2::new(0.3, 0.6))).surface;
-    assert_eq!((found.shading.n, found.shading.dpdu), (Vec3::Z, found.dpdu));
+    let (n, dpdu) = (found.shading.n, found.shading.dpdu);
+    assert!((n - Vec3::new(-1.0, 0.0, 0.0)).length() < 1e-3 && dpdu.is_finite(), "{n:?} {dpdu:?}");
 }
 
 #[test]
