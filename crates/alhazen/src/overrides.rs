@@ -59,7 +59,7 @@ impl Overrides {
             let changed = integrator_called(name, &desc.integrator)
                 .ok_or_else(|| unknown("integrator", name, &drawn::<IntegratorDesc>()))?;
             if changed.name() != desc.integrator.name() {
-                // What is wrong with it is not a fault of the scene's statement.
+                // Its fault is not one of the scene's statement.
                 desc.integrator.origin.span = Span::NONE;
             }
             desc.integrator.value = changed;

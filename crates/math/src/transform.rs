@@ -8,7 +8,7 @@ use lanes::{Each, Real};
 pub struct Transform {
     m: Mat4,
     inverse: Mat4,
-    /// What rounding to floats has left of the translation.
+    /// The rest of the translation after rounding to floats.
     rest: Vec3,
 }
 

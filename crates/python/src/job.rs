@@ -20,10 +20,10 @@ use crate::scene::{Scene, load};
 use crate::value::Chosen;
 use crate::warning::{warn_of_render, warn_of_scene};
 
-/// What chooses an integrator.
+/// Arguments that choose an integrator.
 const ALGORITHM: &str = "the name of an algorithm, or alhazen.settings.integrator";
 
-/// What changes settings.
+/// Arguments that change settings.
 const SETTINGS: &str = "a dict from names to values, or settings of alhazen.settings, one or a list of them";
 
 /// A scene compiled for rendering with certain settings. What is rendered several times, whole or

@@ -6,7 +6,7 @@ use pyo3::types::PyString;
 
 use crate::errors::{wrong_type, wrong_value};
 
-/// What a crop is.
+/// The form of a crop.
 pub const CROP: &str = "four fractions of the picture's width and height from 0 to 1, (x0, x1, y0, y1) \
      with x0 < x1 and y0 < y1, such as (0.25, 0.75, 0, 1)";
 

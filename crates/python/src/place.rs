@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// That of the code that calls; `None` if it is no Python.
+    /// The place of the code that calls; `None` if it is no Python.
     pub fn of_caller(py: Python) -> Option<Self> {
         let find = || -> PyResult<Self> {
             let frame = py.import("sys")?.call_method0("_getframe")?;

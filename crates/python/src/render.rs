@@ -113,11 +113,11 @@ impl Drop for Callbacks {
     }
 }
 
-/// What a job is to render, from an empty film on.
+/// The order of a job, which begins with an empty film.
 pub struct Order {
     /// The passes.
     pub passes: Range<u32>,
-    /// What ends them.
+    /// The limits that end them.
     pub limits: Limits,
     /// Whether they alternate between two films.
     pub alternates: bool,

@@ -136,7 +136,7 @@ fn the_camera_sees_through_the_backs_of_single_sided_surfaces() {
         close(found, [if shows_front { 0.0 } else { 2.0 }; 3]);
         close(seen(&[LAMP, &black(true)], "", &nodes), [0.0; 3]);
     }
-    // What emits on its front is as invisible from behind.
+    // An emitter on its front is as invisible from behind.
     let nodes = r#"{"name": "at", "mesh": 0}, {"name": "at", "mesh": 0, "translation": [0, 0, 1],
         "rotation": [0, 1, 0, 0]}"#;
     close(seen(&[LAMP], "", nodes), [2.0; 3]);

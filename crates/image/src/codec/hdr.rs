@@ -12,7 +12,7 @@ use crate::{
     metadata::ImageMetadata,
 };
 
-/// What precedes the pixels.
+/// The header before the pixels.
 struct Header {
     /// Width and height of the picture.
     size: [usize; 2],

@@ -22,7 +22,7 @@ const PALETTE: u16 = 3;
 const BLACK_IS_ZERO: u8 = 1;
 const ASSOCIATED: u16 = 1;
 
-/// What a file has, before its pixels are decoded.
+/// The layout of a file, before its pixels are decoded.
 pub struct Tiff<'a> {
     decoder: Decoder<Cursor<Cow<'a, [u8]>>>,
     /// The length of the file.

@@ -19,8 +19,8 @@ use crate::images;
 use crate::log::Log;
 use crate::look::{Coordinates, Principled, Surface};
 
-/// What vertices add to the colour of a material: nothing, a factor, or an image that has the
-/// factor of the material in it.
+/// The paint of vertices on a material: nothing, a factor, or an image that has the factor of the
+/// material in it.
 #[derive(Clone, Copy)]
 pub(super) enum Paint {
     None,

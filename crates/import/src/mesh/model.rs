@@ -27,7 +27,7 @@ pub struct Mesh {
     pub triangle_faces: Vec<i32>,
     /// The file's own number for each quadrilateral; or empty.
     pub quad_faces: Vec<i32>,
-    /// What of the file's surface is not in the mesh.
+    /// Parts of the file's surface that are not in the mesh.
     pub warnings: Vec<String>,
 }
 

@@ -61,7 +61,7 @@ pub(crate) struct Map {
     /// Factors on texture coordinates, and what is then added to them.
     pub(crate) scale: [f32; 2],
     pub(crate) offset: [f32; 2],
-    /// What is added to values that are multiplied by `gain`.
+    /// The offset of values that are multiplied by `gain`.
     pub(crate) base: f32,
     pub(crate) gain: f32,
     /// A factor on bumps.

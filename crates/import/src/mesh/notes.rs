@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Display;
 
-/// What of a file is not in its mesh, each said once, at its first place.
+/// Parts of a file that are not in its mesh, each said once, at its first place.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     said: HashSet<String>,

@@ -20,7 +20,7 @@ pub(crate) struct Obj {
     pub(crate) libraries: Vec<String>,
     /// Material names (empty for none) and the faces with each.
     pub(crate) parts: Vec<(String, Mesh)>,
-    /// What of the file is not in the meshes.
+    /// Parts of the file that are not in the meshes.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn read_obj_parts(bytes: &[u8]) -> Result<Obj, MeshError> {
 /// The normal of a corner.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum NormalOf {
-    /// That of its face alone.
+    /// The normal of its face alone.
     Face,
     /// One of the file.
     Given(u32),

@@ -20,7 +20,7 @@ const STEPS: usize = 8;
 /// Instances are nested to this depth.
 const DEEPEST: usize = 8;
 /// Instances of an object of more points than this together are taken for their boxes.
-const MOST_POINTS: usize = 1 << 26;
+const MAX_POINTS: usize = 1 << 26;
 
 /// The points at the outline of surfaces, while the shutter is open.
 pub(crate) struct Outline {
@@ -104,7 +104,7 @@ impl Outline {
             let handle = Handle::new(index as u32);
             let object = &objects[handle];
             let of_object = instances.iter().filter(|(_, instance)| instance.object == handle);
-            let whole = (count.saturating_mul(point_count(&object.shapes)) > MOST_POINTS).then(|| {
+            let whole = (count.saturating_mul(point_count(&object.shapes)) > MAX_POINTS).then(|| {
                 let mut outline = Self::empty(self.axes, self.slopes);
                 let inside = (&object.shapes, &object.instances);
                 outline.add_all(inside, objects, &[DMat4::IDENTITY], depth + 1);

@@ -69,7 +69,7 @@ fn fill(
 ) {
     let world_from_mesh = match format {
         Format::Ply | Format::Obj => DMat4::IDENTITY,
-        // What is made layer by layer has z up, and its front towards −y.
+        // An object made layer by layer has z up, and its front towards −y.
         Format::Stl => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
     };
     for text in obj.warnings {

@@ -102,9 +102,9 @@ pub(crate) struct Interpreter<'a> {
 
 impl<'a> Interpreter<'a> {
     const DEEPEST_INCLUDE: usize = 64;
-    const MOST_FILES: usize = 10_000;
+    const MAX_FILES: usize = 10_000;
     /// Files may be included again and again, but a few that double each other would not end.
-    const MOST_INCLUDES: usize = 1_000_000;
+    const MAX_INCLUDES: usize = 1_000_000;
     const DEEPEST_BLOCK: usize = 10_000;
 
     pub(crate) fn new(assets: &'a dyn AssetSource) -> Self {
@@ -335,8 +335,8 @@ impl<'a> Interpreter<'a> {
             return None;
         }
         self.included += 1;
-        if self.included > Self::MOST_INCLUDES {
-            let message = format!("files are included more than {} times", Self::MOST_INCLUDES);
+        if self.included > Self::MAX_INCLUDES {
+            let message = format!("files are included more than {} times", Self::MAX_INCLUDES);
             self.report.error("include-limit", message, name.span);
             return None;
         }
@@ -357,8 +357,8 @@ impl<'a> Interpreter<'a> {
         if let Some(&file) = self.files.get(path) {
             return Some(file);
         }
-        if self.files.len() > Self::MOST_FILES {
-            let message = format!("more than {} different files are included", Self::MOST_FILES);
+        if self.files.len() > Self::MAX_FILES {
+            let message = format!("more than {} different files are included", Self::MAX_FILES);
             self.report.error("include-limit", message, span);
             return None;
         }

@@ -46,7 +46,7 @@ impl PathVertices for AtBoundary<'_> {
         self.0
     }
 
-    /// What comes out has been scattered under the surface.
+    /// Light that comes out has been scattered under the surface.
     #[inline(always)]
     fn lets_pass<R: Real>(cos_o: R, cos_i: R) -> R::Mask {
         !(cos_o.gt(R::zero()) & cos_i.lt(R::zero()))

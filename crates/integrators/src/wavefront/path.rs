@@ -106,7 +106,7 @@ impl AtHits for Path {
     }
 }
 
-/// What path tracing does at vertices.
+/// Path tracing at vertices.
 pub(super) trait PathVertices: AtVertices {
     /// The algorithm.
     fn path(&self) -> &Path;

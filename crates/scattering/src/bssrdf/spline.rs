@@ -82,7 +82,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Those at `x`; `None` beyond the first and last of the nodes.
+    /// The values at `x`; `None` beyond the first and last of the nodes.
     pub fn at(nodes: &Nodes, x: f32) -> Option<Self> {
         nodes.has_between(x).then(|| {
             let first = nodes.interval(x);

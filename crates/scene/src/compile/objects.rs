@@ -33,7 +33,7 @@ struct Objects {
     built: HashMap<usize, Placeable>,
     /// The objects being compiled, each nested in the one before.
     open: Vec<usize>,
-    /// Those that have an instance that moves.
+    /// Objects that have an instance that moves.
     moving: HashSet<usize>,
 }
 

@@ -30,7 +30,7 @@ fn emitted_rays_carry_the_power() {
         if case.name == "disk, image" {
             continue;
         }
-        // That of a stretched environment takes the solid angles at the centres of few pixels.
+        // The power of a stretched environment takes the solid angles at the centres of few pixels.
         if case.name.contains("stretched") || case.name.contains("sheared") {
             continue;
         }

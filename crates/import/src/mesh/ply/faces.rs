@@ -35,7 +35,7 @@ fn vertex(corner: f64, vertices: usize) -> Result<u32, MeshError> {
     }
 }
 
-/// What a property of a face is.
+/// The role of a property of a face.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Corners,
