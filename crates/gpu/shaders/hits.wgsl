@@ -1,10 +1,10 @@
 // Hits of rays, and rays that meet triangles; `shapes.wgsl` has those that meet what is not one.
 //
 // A kernel that traces declares the buffers `world`, `triangles` and `items`; `src/bvh/` has their
-// formats. It has `accepts`, which says whether a hit on a surface that is marked counts, because it
-// is cut out or single-sided; `accepts_all`, whether all hits of the ray count;
-// `HAS_CURVES`, whether there are curves; `ribbon_normal`, the normal of one; `HAS_MOTION`, whether
-// instances move; and `moved_rows`, the matrix of one at the time of rays.
+// formats. It has `accepts`, which says whether a hit counts on a surface that is cut out or
+// single-sided; `accepts_all`, whether all hits of the ray count; `HAS_CURVES`, whether there are
+// curves; `ribbon_normal`, the normal of one; `HAS_MOTION`, whether instances move; and
+// `moved_rows`, the matrix of one at the time of rays.
 //
 // Its `trace` is that of `trace.wgsl` or of `ray_query.wgsl`.
 

@@ -33,7 +33,7 @@ pub struct Job {
     job: Arc<Mutex<alhazen::Job>>,
     order: RenderOrder,
     #[pyo3(get)]
-    /// What is rendered differently than described.
+    /// Differences between the picture and its description.
     warnings: Vec<String>,
 }
 

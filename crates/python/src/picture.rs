@@ -221,7 +221,7 @@ impl Picture {
         self.pixels.clone_ref(py)
     }
 
-    /// What is known about the picture, such as the integrator and the samples per pixel.
+    /// Facts about the picture, such as the integrator and the samples per pixel.
     #[getter]
     fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let metadata = PyDict::new(py);

@@ -107,7 +107,7 @@ impl Drop for Callbacks {
     /// Ends the line of a bar, also that of a render that has failed.
     fn drop(&mut self) {
         if let Some(bar) = self.progress.as_ref().filter(|_| self.has_bar) {
-            // What it writes is not part of the result.
+            // A failure to write is not one of the render.
             let _ = Python::attach(|py| bar.call_method0(py, "close"));
         }
     }

@@ -94,7 +94,7 @@ impl Scene {
         &self.path
     }
 
-    /// What was found while it was read, such as parameters that have no effect.
+    /// Warnings of its reading, such as of parameters that have no effect.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.lines(&self.imported.diagnostics)

@@ -22,7 +22,7 @@ pub type Owner = Arc<()>;
 #[pyclass(frozen, module = "alhazen")]
 #[derive(Clone)]
 pub struct Reference {
-    /// What it is, such as "material".
+    /// The kind of object, such as "material".
     #[pyo3(get)]
     pub kind: &'static str,
     /// Its name in the scene.

@@ -131,7 +131,7 @@ def test_warnings_are_told_at_the_line_of_the_program(tmp_path):
         with pytest.warns(alhazen.SceneWarning, match="light") as told:
             do(scene, spp=1)
         assert len(told) == 1 and told[0].filename == __file__
-    # What the same line finds again and again is shown once.
+    # A warning that a line repeats is shown once.
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("default")
         for _ in range(3):

@@ -15,7 +15,7 @@ PREPARE = """
 import multiprocessing, os, signal, sys, threading, time
 import alhazen, numpy
 
-# What is not written when a process is forked would be written twice.
+# Buffered text would be written by the child, too.
 sys.stdout.reconfigure(line_buffering=True)
 
 def scene():
@@ -30,7 +30,7 @@ def work(seed):
     return float(alhazen.render(scene(), spp=1, seed=seed).pixels.mean())
 
 def forked(do):
-    # What a child's function gives: "done", an error, or "hangs".
+    # The result of a child: "done", an error, or "hangs".
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:

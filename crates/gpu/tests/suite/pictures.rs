@@ -209,6 +209,9 @@ impl Case {
             Algorithm::Whitted(desc) => self.by_rays(Whitted::new(*desc)),
             Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
             Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
+            Algorithm::VolPath(desc) if self.desc.media.is_empty() => {
+                self.by_rays(integrators::Path::new(*desc, Interfaces::Pass))
+            }
             Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
             Algorithm::SimpleVolPath(desc) => self.by_rays(VolPath::simple(desc.max_depth)),
             Algorithm::SimplePath(desc) => self.by_rays(SimplePath(*desc)),

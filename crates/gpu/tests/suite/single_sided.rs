@@ -57,6 +57,7 @@ fn backs_have_the_picture_of_the_cpu() {
     let case = Case::of_text(BACKS);
     for algorithm in [
         path(),
+        Algorithm::VolPath(PathDesc { max_depth: 3, ..PathDesc::default() }),
         Algorithm::RayCasting,
         Algorithm::Whitted(WhittedDesc::default()),
         Algorithm::AmbientOcclusion(Default::default(), RgbColorSpace::srgb()),

@@ -32,7 +32,7 @@ impl LaneMaterials {
     /// In place of the material where there is no hit.
     pub const NOTHING: u32 = u32::MAX;
 
-    /// Those of a view, for an algorithm that follows paths under surfaces in lanes or does not.
+    /// The materials of a view, for an algorithm that follows paths under surfaces in lanes or not.
     pub fn new(scene: &Scene, view: &View, follows_bodies: bool) -> Self {
         let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
         let shading = |entry: &MaterialEntry| {

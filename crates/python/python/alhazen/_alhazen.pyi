@@ -25,7 +25,7 @@ class Scene:
         """The file that it was loaded from."""
     @property
     def warnings(self) -> list[str]:
-        """What was found while it was read, such as parameters that have no effect."""
+        """Warnings of its reading, such as of parameters that have no effect."""
     @property
     def resolution(self) -> tuple[int, int]:
         """Width and height of the picture in pixels."""
@@ -93,7 +93,7 @@ class Image:
         """The pixels of all channels: height × width × number of channels."""
     @property
     def metadata(self) -> dict[str, Any]:
-        """What is known about the picture, such as the integrator and the samples per pixel."""
+        """Facts about the picture, such as the integrator and the samples per pixel."""
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
     ) -> NDArray[numpy.float32]: ...
@@ -180,7 +180,7 @@ class Reference:
     """A thing of a SceneBuilder that others refer to: a texture, material, medium or object."""
     @property
     def kind(self) -> str:
-        """What it is, such as "material"."""
+        """The kind of object, such as "material"."""
     @property
     def name(self) -> str:
         """Its name in the scene."""
@@ -372,7 +372,7 @@ class Job:
         """The scene file."""
     @property
     def warnings(self) -> list[str]:
-        """What is rendered differently than described."""
+        """Differences between the picture and its description."""
     @property
     def passes(self) -> int:
         """The number of passes that are planned, each of one sample per pixel."""

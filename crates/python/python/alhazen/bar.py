@@ -13,7 +13,7 @@ INTERVAL, WIDTH = 0.1, 24
 
 
 class Bar:
-    """What progress=True shows: passes or shards done, and the time left.
+    """The bar of progress=True: passes or shards done, and the time left.
 
     In a terminal and in a notebook the line is rewritten; in a file there is a line for each tenth.
 

@@ -245,7 +245,7 @@ def _shards(saved: Film) -> tuple[int, set[int]]:
 
 
 def _planned(task: _Task, time: float | None) -> tuple[int, bytes, list[str], list[str]]:
-    """What `_plan` says, unless all cores are in use for longer than the render may take."""
+    """The result of `_plan`, unless all cores are in use for longer than the render may take."""
     is_free = ray.available_resources().get("CPU", 0) >= task.threads
     reference, begin = task.start(_plan), clock.monotonic()
     try:

@@ -61,13 +61,27 @@ struct PixelWeights<'a> {
 }
 
 impl PixelWeights<'_> {
+    /// Rows or columns of an image within which a stretch changes little.
+    const FINE: u32 = 256;
+
     fn at(&self, x: u32, y: u32) -> f32 {
         let [width, height] = [self.image.width(), self.image.height()];
-        let weight = self.projection.row_solid_angle(y, height);
-        let Some(render_from_light) = self.stretch else { return weight };
-        let st = Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
-        let w = render_from_light.vector(self.projection.direction(st)).normalize();
-        weight / solid_angle_factor(&render_from_light.inverse(), w)
+        let Some(render_from_light) = self.stretch else {
+            return self.projection.row_solid_angle(y, height);
+        };
+        // The mean of the strata of a pixel.
+        let strata = Self::FINE.div_ceil(width.min(height));
+        let [columns, rows] = [width, height].map(|size| size * strata);
+        let mut sum = 0.0;
+        for j in y * strata..(y + 1) * strata {
+            let solid_angle = self.projection.row_solid_angle(j, rows);
+            for i in x * strata..(x + 1) * strata {
+                let st = Vec2::new((i as f32 + 0.5) / columns as f32, (j as f32 + 0.5) / rows as f32);
+                let w = render_from_light.vector(self.projection.direction(st)).normalize();
+                sum += solid_angle / solid_angle_factor(&render_from_light.inverse(), w);
+            }
+        }
+        sum / (strata * strata) as f32
     }
 }
 

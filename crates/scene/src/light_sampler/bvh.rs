@@ -15,7 +15,7 @@ use super::cluster::{Cluster, NUMBERS};
 use super::infinite::{InfiniteLights, separated};
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use lanes::{Int, Mask, Real};
-use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
+use math::{Bounds3, ONE_MINUS_EPSILON, balance, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -343,5 +343,8 @@ fn cost(b: &LightBounds, parent: &Bounds3, axis: usize) -> f32 {
                 + b.cos_theta_o);
     let d = parent.diagonal();
     let regular = d.max_element() / d[axis];
-    b.phi * solid_angle * regular * b.bounds.surface_area()
+    // Areas relative to the parent: power times area would vanish or overflow.
+    let side = b.bounds.diagonal() * balance(d.max_element());
+    let area = 2.0 * (side.x * side.y + side.y * side.z + side.z * side.x);
+    b.phi * solid_angle * regular * area
 }
