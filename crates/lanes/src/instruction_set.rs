@@ -30,15 +30,15 @@ impl InstructionSet {
     pub const ALL: [Self; 6] =
         [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Portable, Self::Scalar];
 
-    /// Those that processors of this build choose by themselves, and `Scalar`.
+    /// Those that processors of this build choose by themselves; every one has the last.
     pub const CHOSEN: &[Self] = if cfg!(target_arch = "aarch64") {
-        &[Self::Neon, Self::Scalar]
+        &[Self::Neon]
     } else if cfg!(not(target_arch = "x86_64")) {
-        &[Self::Portable, Self::Scalar]
+        &[Self::Portable]
     } else if cfg!(target_feature = "avx2") {
-        &[Self::Avx512, Self::Avx2, Self::Scalar]
+        &[Self::Avx512, Self::Avx2]
     } else {
-        &[Self::Avx512, Self::Avx2, Self::Sse2, Self::Scalar]
+        &[Self::Avx512, Self::Avx2, Self::Sse2]
     };
 
     /// The environment variable that names the instruction set to use: `avx512`, `avx2`, `neon`,
@@ -99,11 +99,11 @@ impl InstructionSet {
     }
 
     /// As [`dispatch`](Self::dispatch), for a kernel of so much code that it is compiled only for
-    /// the [`CHOSEN`](Self::CHOSEN) sets: another one runs it lane by lane, with the same results.
+    /// the [`CHOSEN`](Self::CHOSEN) sets: another one runs it by the last of them, with the same
+    /// results.
     ///
     /// # Panics
     /// If the processor does not have it.
-    // Not inlined, which would copy the code of one lane to each part of a crate that calls it.
     pub fn dispatch_large<K: Kernel>(self, kernel: K) -> K::Output {
         assert!(self.is_available(), "{self:?} on a processor without it");
         let task = Widest(kernel);
@@ -112,15 +112,16 @@ impl InstructionSet {
             match self {
                 #[cfg(target_arch = "x86_64")]
                 Self::Avx512 => avx512::run(task),
-                #[cfg(target_arch = "x86_64")]
+                #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+                _ => avx2::run(task),
+                #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
                 Self::Avx2 => avx2::run(task),
                 #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
-                Self::Sse2 => sse2::run(task),
+                _ => sse2::run(task),
                 #[cfg(target_arch = "aarch64")]
-                Self::Neon => neon::run(task),
+                _ => neon::run(task),
                 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-                Self::Portable => portable::run(task),
-                _ => scalar::run(task),
+                _ => portable::run(task),
             }
         }
     }

@@ -10,9 +10,8 @@ pub trait LaneFunction {
     fn results<R: Real>(&self, u: &[R]) -> Vec<R>;
 }
 
-/// Asserts that each lane of the instruction sets that processors choose gives the bits of
-/// [`Scalar`](InstructionSet::Scalar), which are those of single floats, for `rounds` times `count`
-/// numbers per lane. A quarter of the numbers are multiples of ¼, so that special cases occur. All
+/// Asserts that each lane of the instruction sets that processors choose gives the bits of single
+/// floats, for `rounds` times `count` numbers per lane. A quarter of the numbers are multiples of ¼, so that special cases occur. All
 /// NaNs count as the same.
 ///
 /// Sets that no processor of this build chooses are those of other builds; the operations of all
@@ -32,10 +31,8 @@ pub fn lanes_agree(function: &impl LaneFunction, count: usize, rounds: usize) {
             })
             .collect();
         let run = Run { function, numbers: &numbers };
-        // Not `run::<f32>()`, which would be one more copy of the function to compile.
-        let expected = InstructionSet::Scalar.dispatch_large(run);
-        let others = InstructionSet::CHOSEN.iter().filter(|&&set| set != InstructionSet::Scalar);
-        for set in others.filter(|set| set.is_available()) {
+        let expected = run.run::<f32>();
+        for set in InstructionSet::CHOSEN.iter().filter(|set| set.is_available()) {
             let found = set.dispatch_large(run);
             assert_eq!(found.len(), expected.len());
             for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {

@@ -102,7 +102,12 @@ impl PointColumns {
         R::Int::select(found, R::Int::splat(1), R::Int::splat(0)).store(&mut self.found[first..]);
     }
 
-    /// Sets one point.
+    /// Sets the point at a place, up to which there is room then.
+    pub fn put(&mut self, place: usize, point: &SurfacePoint) {
+        self.reset(place + 1);
+        self.set_one(place, point);
+    }
+
     fn set_one(&mut self, place: usize, point: &SurfacePoint) {
         let SurfacePoint { p, n, shading, dpdu, dpdv, uv, .. } = point;
         let mut columns = self.values.iter_mut();

@@ -12,7 +12,6 @@
 
 use description::PathDesc;
 use math::RayDifferential;
-use scattering::{Bsdf, each_bxdf};
 use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -109,14 +108,11 @@ impl PathsFrom for Path {
             bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
-            let (light, scattered) = each_bxdf!(bsdf.bxdf, bxdf => {
-                let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                let light = match bsdf.flags().is_non_specular() {
-                    true => direct.sample(tracer, (&surface, &context), &bsdf, lambda),
-                    false => None,
-                };
-                (light, Scattered::sample(&surface, &bsdf, tracer.sampler))
-            });
+            let light = match bsdf.flags().is_non_specular() {
+                true => direct.sample(tracer, (&surface, &context), &bsdf, lambda),
+                false => None,
+            };
+            let scattered = Scattered::sample(&surface, &bsdf, tracer.sampler);
             let is_first = path.depth == 1 && tracer.takes_parts();
             if let Some(Connection { light, wi, l: found, .. }) = light {
                 let found = path.beta * found;

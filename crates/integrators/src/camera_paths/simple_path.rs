@@ -13,7 +13,7 @@
 use description::SimplePathDesc;
 use math::{RayDifferential, Vector3};
 use sampling::warp;
-use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, TransportMode};
 use scene::light_sampler::UniformLightSampler;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -65,17 +65,14 @@ impl RayIntegrator for SimplePath {
                 return l;
             }
             depth += 1;
-            let onward = each_bxdf!(bsdf.bxdf, bxdf => {
-                let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if self.0.sample_lights {
-                    l += beta * one_light(tracer, &surface, &bsdf, lambda);
-                }
-                if self.0.sample_bsdf {
-                    by_bsdf(tracer, &surface, &bsdf)
-                } else {
-                    Some(uniform(tracer, &surface, &bsdf))
-                }
-            });
+            if self.0.sample_lights {
+                l += beta * one_light(tracer, &surface, &bsdf, lambda);
+            }
+            let onward = if self.0.sample_bsdf {
+                by_bsdf(tracer, &surface, &bsdf)
+            } else {
+                Some(uniform(tracer, &surface, &bsdf))
+            };
             let Some(Onward { wi, weight, specular }) = onward else { return l };
             beta *= weight;
             specular_bounce = specular;
@@ -86,10 +83,10 @@ impl RayIntegrator for SimplePath {
 }
 
 /// Next-event estimation by one light, chosen uniformly.
-fn one_light<B: Scatter>(
+fn one_light(
     tracer: &mut Tracer,
     surface: &SurfaceInteraction,
-    bsdf: &Bsdf<B>,
+    bsdf: &Bsdf<Bxdf>,
     lambda: &SampledWavelengths,
 ) -> SampledSpectrum {
     let context = light_context(surface, bsdf.flags());
@@ -109,7 +106,7 @@ fn one_light<B: Scatter>(
 }
 
 /// A direction sampled from the BSDF.
-fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Option<Onward> {
+fn by_bsdf(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<Bxdf>) -> Option<Onward> {
     let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
     let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, Directions::All)?;
     let cos_theta = sample.wi.dot(surface.surface.shading.n).abs();
@@ -118,7 +115,7 @@ fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: 
 }
 
 /// A uniform direction, on the sides of the surface to which it scatters.
-fn uniform<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Onward {
+fn uniform(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<Bxdf>) -> Onward {
     let (s, u) = (&surface.surface, tracer.sampler.get_2d());
     let (mut wi, mut pdf) = (warp::sample_uniform_sphere(u), warp::uniform_sphere_pdf());
     if !bsdf.flags().contains(BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION) {

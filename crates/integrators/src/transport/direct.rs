@@ -16,7 +16,7 @@ use math::{
     Frame, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec2, Vec3, Vector3, offset_ray_origin,
 };
 use sampling::{Sampler, warp};
-use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, TransportMode};
 use scene::light::{Light, LightId, LightLiSample, LightPoint, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
@@ -120,11 +120,11 @@ impl DirectLighting {
 
     /// Next-event estimation: direct light that a surface scatters to `wo`; `None` if none arrives.
     #[doc(alias = "SampleLd")]
-    pub fn sample<B: Scatter>(
+    pub fn sample(
         &self,
         tracer: &mut Tracer,
         vertex: (&SurfaceInteraction, &LightSampleContext),
-        bsdf: &Bsdf<B>,
+        bsdf: &Bsdf<Bxdf>,
         lambda: &SampledWavelengths,
     ) -> Option<Connection> {
         let connection = self.connect(tracer.scene, tracer.sampler, vertex, bsdf, lambda)?;
@@ -154,12 +154,12 @@ impl DirectLighting {
     }
 
     /// [`sample`](Self::sample) before its shadow ray is traced; `None` if no light arrives.
-    pub fn connect<B: Scatter>(
+    pub fn connect(
         &self,
         scene: &Scene,
         sampler: &mut Sampler,
         (surface, context): (&SurfaceInteraction, &LightSampleContext),
-        bsdf: &Bsdf<B>,
+        bsdf: &Bsdf<Bxdf>,
         lambda: &SampledWavelengths,
     ) -> Option<Connection> {
         let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
@@ -277,27 +277,24 @@ pub(crate) fn connect_all(
         return around;
     }
     let context = light_context(surface, bsdf.flags());
-    each_bxdf!(bsdf.bxdf, bxdf => {
-        let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-        for light in (0..scene.lights().len() as u32).map(LightId) {
-            let u = sampler.get_2d();
-            if let (true, Light::UniformInfinite(sky)) = (ambient, scene.light(light).row()) {
-                let (wo, ns) = (surface.surface.wo, surface.surface.shading.n);
-                let (wi, pdf) = sample_ambient(wo, ns, bsdf.flags(), u);
-                let l = sky.radiance.sample(lambda);
-                let l = scattered(surface, &bsdf, &LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO });
-                around += l.safe_div(SampledSpectrum::splat(pdf));
-                continue;
-            }
-            let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
-            let l = scattered(surface, &bsdf, &sample);
-            if !l.is_black() {
-                let (ray, t_max) = sample.shadow_ray(&surface.surface);
-                let l = l / sample.pdf;
-                connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
-            }
+    for light in (0..scene.lights().len() as u32).map(LightId) {
+        let u = sampler.get_2d();
+        if let (true, Light::UniformInfinite(sky)) = (ambient, scene.light(light).row()) {
+            let (wo, ns) = (surface.surface.wo, surface.surface.shading.n);
+            let (wi, pdf) = sample_ambient(wo, ns, bsdf.flags(), u);
+            let l = sky.radiance.sample(lambda);
+            let l = scattered(surface, bsdf, &LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO });
+            around += l.safe_div(SampledSpectrum::splat(pdf));
+            continue;
         }
-    });
+        let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
+        let l = scattered(surface, bsdf, &sample);
+        if !l.is_black() {
+            let (ray, t_max) = sample.shadow_ray(&surface.surface);
+            let l = l / sample.pdf;
+            connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
+        }
+    }
     around
 }
 
@@ -325,9 +322,9 @@ pub(crate) fn sample_ambient<R: Real>(
 
 /// The light of a light sample that a surface scatters to `wo`: f·|cos|·L, without visibility and
 /// density.
-pub(crate) fn scattered<B: Scatter>(
+pub(crate) fn scattered(
     surface: &SurfaceInteraction,
-    bsdf: &Bsdf<B>,
+    bsdf: &Bsdf<Bxdf>,
     light: &LightLiSample,
 ) -> SampledSpectrum {
     let cos_theta = light.wi.dot(surface.surface.shading.n).abs();

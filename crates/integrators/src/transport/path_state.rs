@@ -3,7 +3,7 @@
 use film::FirstEvent;
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
+use scattering::{Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
@@ -48,11 +48,7 @@ pub(crate) struct Scattered {
 
 impl Scattered {
     /// Samples the BSDF for the outgoing direction of `surface`; `None` without a sample.
-    pub fn sample<B: Scatter>(
-        surface: &SurfaceInteraction,
-        bsdf: &Bsdf<B>,
-        sampler: &mut Sampler,
-    ) -> Option<Self> {
+    pub fn sample(surface: &SurfaceInteraction, bsdf: &Bsdf<Bxdf>, sampler: &mut Sampler) -> Option<Self> {
         let wo = surface.surface.wo;
         let (uc, u) = (sampler.get_1d(), sampler.get_2d());
         let sample = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All)?;

@@ -3,16 +3,14 @@
 use geometry::PatchPoints;
 use lanes::{Each, Int, Mask, Real};
 use math::{Ray, RayDifferential, Vec2, Vec3, offset_ray_origin};
-use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
+use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::Interfaces;
 use scene::light::{Light, LightId, LightSampleContext};
-use scene::material::MaterialModel;
 use spectrum::SampledSpectrum;
 
-use super::batch::AtHits;
 use super::lights::{self, LightLanes};
 use super::numbers::{draw_2d, draw_two};
-use super::shade::{AtVertices, Shade, Vertices};
+use super::shade::{Request, Stage, Vertices};
 use super::shadows::Shadow;
 use crate::transport::direct::{DirectLighting, sample_ambient};
 use crate::transport::path_state::PathState;
@@ -43,122 +41,177 @@ impl AllLights {
     }
 }
 
-impl AtVertices for AllLights {
-    #[inline(always)]
-    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
-        shade: &mut Shade<M, Self>,
-        mut vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    ) {
-        let (flags, active) = (bsdf.flags(), vertices.active);
-        let mut next = vertices.address.dimension;
-        let lit = active & flags.is_non_specular();
-        if lit.any() {
-            shade.connect_all(&mut vertices, bsdf, contexts, lit);
-            next = R::Int::select(lit, vertices.address.dimension, next);
-        }
-        if !shade.algorithm.casts_shadows {
-            return;
-        }
-        let specular = active & flags.is_specular();
-        if specular.any() {
-            vertices.address.dimension = next;
-            shade.wait_for_specular(&mut vertices, bsdf, specular);
-            next = R::Int::select(specular, vertices.address.dimension, next);
-        }
-        next.scatter(lit | specular, &mut shade.paths.dimension, vertices.rows.indices);
-    }
+/// The lights at vertices, one after another; then the rays of specular surfaces.
+pub(super) struct LightsInTurn<'b, R: Real> {
+    lights: &'b AllLights,
+    vertices: Vertices<R>,
+    contexts: LightSampleContext<R>,
+    /// The lanes that scatter light of lights.
+    lit: R::Mask,
+    /// Those that reflect or refract rays.
+    specular: R::Mask,
+    flags: BxdfFlags<R>,
+    /// Whether BSDFs choose among lobes.
+    chooses: bool,
+    /// The next light.
+    id: u32,
+    /// The one before; whether it is a sky that casts no shadows.
+    light: Option<(LightLanes<R>, bool)>,
+    /// Radiance that needs no shadow rays.
+    sum: SampledSpectrum<R>,
+    /// The next dimension of the lanes that are not lit.
+    unlit: R::Int,
+    /// Numbers of samples that reflect and that transmit.
+    numbers: [(R, Vec2<R>); 2],
+    /// Whether rays that are transmitted come next.
+    transmits: bool,
 }
 
-impl AtHits for AllLights {}
-
-impl<M: MaterialModel> Shade<'_, '_, M, AllLights> {
-    /// Connects lanes to one point of every light.
+impl<'b, R: Real> LightsInTurn<'b, R> {
+    /// Begins with the first light.
     #[inline(always)]
-    fn connect_all<R: Real, B: Scatter<R>>(
-        &mut self,
-        vertices: &mut Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-        lit: R::Mask,
-    ) {
-        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
-        let AllLights { casts_shadows, has_ambient, direct } = self.algorithm;
-        let flags = bsdf.flags();
-        let mut sum = self.paths.l.get::<R>(rows);
-        for id in 0..self.pass.pixels.scene.lights().len() as u32 {
-            let light = self.pass.pixels.scene.light(LightId(id)).row();
-            // There is nothing to choose where light comes from one direction or point.
-            let u = if matches!(light, Light::Distant(_) | Light::Point(_)) {
-                vertices.address.skip(2);
-                Vec2::splat(R::zero())
-            } else {
-                draw_2d::<R>(&self.pass, &mut vertices.address)
-            };
-            let sky = match light {
-                Light::UniformInfinite(sky) if *has_ambient => Some(sky),
-                _ => None,
-            };
-            let light = if let Some(sky) = sky {
-                let (wi, pdf) = sample_ambient(wo, ns, flags, u);
-                LightLanes::from_afar(sky.radiance.sample(&vertices.lambda), wi, pdf, lit)
-            } else {
-                let sampling = (&self.pass, direct, &mut *self.light_samples);
-                let (id, numbers) = (Some(LightId(id)), (R::zero(), u));
-                lights::sample(sampling, id, contexts, numbers, &vertices.lambda, lit)
-            };
-            let LightLanes { valid, l, wi, pdf, .. } = light;
-            if !valid.any() {
-                continue;
-            }
-            let scattered = bsdf.f(wo, wi, TransportMode::Radiance) * l * wi.dot(ns).abs();
-            let valid = valid & !scattered.is_black();
-            let l = vertices.beta * (scattered / pdf);
-            if !casts_shadows || sky.is_some() {
-                sum = SampledSpectrum::select(valid, sum + l, sum);
-                continue;
-            }
-            let (ray, t_max) = light.shadow_rays(p, n, time);
-            let shadow = Shadow { l, ray, t_max };
-            let [stopped, passing] = &mut self.queues.shadows;
-            stopped.append(rows, valid & !light.passes, &shadow);
-            passing.append(rows, valid & light.passes, &shadow);
+    pub fn begin(
+        lights: &'b AllLights,
+        stage: &mut Stage,
+        (vertices, contexts): (Vertices<R>, LightSampleContext<R>),
+        flags: BxdfFlags<R>,
+        chooses: bool,
+    ) -> (Self, Request<R>) {
+        let active = vertices.active;
+        let mut state = Self {
+            lights,
+            contexts,
+            lit: active & flags.is_non_specular(),
+            specular: active & flags.is_specular(),
+            flags,
+            chooses,
+            id: 0,
+            light: None,
+            sum: stage.paths.l.get::<R>(vertices.rows),
+            unlit: vertices.address.dimension,
+            numbers: [(R::zero(), Vec2::splat(R::zero())); 2],
+            transmits: true,
+            vertices,
+        };
+        let request = state.advance(stage);
+        (state, request)
+    }
+
+    /// Goes on to the next light that has a sample.
+    #[inline(always)]
+    fn advance(&mut self, stage: &mut Stage) -> Request<R> {
+        if !self.lit.any() {
+            return self.reflect(stage);
         }
-        if !casts_shadows || *has_ambient {
-            self.paths.l.set(rows, lit, sum);
+        while self.id < stage.pass.pixels.scene.lights().len() as u32 {
+            let (light, is_ambient) = self.sample(stage);
+            self.id += 1;
+            if light.valid.any() {
+                let request = Request::Value(light.wi);
+                self.light = Some((light, is_ambient));
+                return request;
+            }
+        }
+        if !self.lights.casts_shadows || self.lights.has_ambient {
+            stage.paths.l.set(self.vertices.rows, self.lit, self.sum);
+        }
+        self.reflect(stage)
+    }
+
+    /// A point of the next light; whether that is a sky that casts no shadows.
+    #[inline(always)]
+    fn sample(&mut self, stage: &mut Stage) -> (LightLanes<R>, bool) {
+        let Self { vertices, contexts, lit, .. } = self;
+        let AllLights { has_ambient, direct, .. } = self.lights;
+        let id = LightId(self.id);
+        let light = stage.pass.pixels.scene.light(id).row();
+        // There is nothing to choose where light comes from one direction or point.
+        let u = if matches!(light, Light::Distant(_) | Light::Point(_)) {
+            vertices.address.skip(2);
+            Vec2::splat(R::zero())
+        } else {
+            draw_2d::<R>(&stage.pass, &mut vertices.address)
+        };
+        match light {
+            Light::UniformInfinite(sky) if *has_ambient => {
+                let (wi, pdf) = sample_ambient(vertices.wo, vertices.surface.ns, self.flags, u);
+                let l = sky.radiance.sample(&vertices.lambda);
+                (LightLanes::from_afar(l, wi, pdf, *lit), true)
+            }
+            _ => {
+                let sampling = (&stage.pass, direct, &mut *stage.light_samples);
+                let numbers = (R::zero(), u);
+                (lights::sample(sampling, Some(id), contexts, numbers, &vertices.lambda, *lit), false)
+            }
         }
     }
 
-    /// Lets the reflected and the refracted rays of lanes wait, those first that are traced last.
+    /// Adds the light of the last sample, by the values of the BSDFs.
     #[inline(always)]
-    fn wait_for_specular<R: Real, B: Scatter<R>>(
-        &mut self,
-        vertices: &mut Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        specular: R::Mask,
-    ) {
-        let numbers = draw_two::<R>(&self.pass, &mut vertices.address, B::CHOOSES);
-        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, wo, time, beta, .. } = *vertices;
-        for i in [1, 0] {
-            let directions = [Directions::Reflection, Directions::Transmission][i];
-            let (uc, u) = numbers[i];
-            let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, directions);
-            let BsdfSample { f, wi, pdf, flags, valid, .. } = sample;
-            let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
-            let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));
-            let turn_of = turns.indices.to_array();
-            rows.each_of(valid & specular & flags.is_specular(), |lane, row| {
-                let turn = turn_of[lane] as usize;
-                let [o, d] = [o, d].map(|v| Vec3::from_array(v.map(|lanes| lanes[lane])));
-                let ray = RayDifferential {
-                    ray: Ray::new(o, d, time.lane(lane)),
-                    differentials: self.scattered_differentials(turn, &sample, lane),
-                };
-                let beta = SampledSpectrum::new(beta.map(|lanes| lanes[lane]));
-                let depth = self.segments.depth[turn] + 1;
-                self.queues.waiting.push(row as u32, PathState { beta, ..PathState::new(ray, depth) });
-            });
+    pub fn connect(&mut self, stage: &mut Stage, f: SampledSpectrum<R>) -> Request<R> {
+        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, time, .. } = self.vertices;
+        if let Some((light, is_ambient)) = self.light.take() {
+            let LightLanes { valid, l, wi, pdf, .. } = light;
+            let scattered = f * l * wi.dot(ns).abs();
+            let valid = valid & !scattered.is_black();
+            let l = self.vertices.beta * (scattered / pdf);
+            if !self.lights.casts_shadows || is_ambient {
+                self.sum = SampledSpectrum::select(valid, self.sum + l, self.sum);
+            } else {
+                let (ray, t_max) = light.shadow_rays(p, n, time);
+                let shadow = Shadow { l, ray, t_max };
+                let [stopped, passing] = &mut stage.queues.shadows;
+                stopped.append(rows, valid & !light.passes, &shadow);
+                passing.append(rows, valid & light.passes, &shadow);
+            }
         }
+        self.advance(stage)
+    }
+
+    /// Goes on to the rays of specular surfaces.
+    #[inline(always)]
+    fn reflect(&mut self, stage: &mut Stage) -> Request<R> {
+        if !self.lights.casts_shadows {
+            return Request::Nothing;
+        }
+        let Self { vertices, lit, specular, .. } = self;
+        let address = &mut vertices.address;
+        address.dimension = R::Int::select(*lit, address.dimension, self.unlit);
+        let mut next = address.dimension;
+        if specular.any() {
+            self.numbers = draw_two::<R>(&stage.pass, address, self.chooses);
+            next = R::Int::select(*specular, address.dimension, next);
+        }
+        next.scatter(*lit | *specular, &mut stage.paths.dimension, vertices.rows.indices);
+        // Those wait first that are traced last.
+        match specular.any() {
+            true => Request::Sample(self.numbers[1], Directions::Transmission),
+            false => Request::Nothing,
+        }
+    }
+
+    /// Lets the rays of samples wait.
+    #[inline(always)]
+    pub fn wait_for(&mut self, stage: &mut Stage, sample: &BsdfSample<R>) -> Request<R> {
+        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = self.vertices;
+        let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
+        let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
+        let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));
+        let turn_of = turns.indices.to_array();
+        rows.each_of(valid & self.specular & flags.is_specular(), |lane, row| {
+            let turn = turn_of[lane] as usize;
+            let [o, d] = [o, d].map(|v| Vec3::from_array(v.map(|lanes| lanes[lane])));
+            let ray = RayDifferential {
+                ray: Ray::new(o, d, time.lane(lane)),
+                differentials: stage.scattered_differentials(turn, sample, lane),
+            };
+            let beta = SampledSpectrum::new(beta.map(|lanes| lanes[lane]));
+            let depth = stage.segments.depth[turn] + 1;
+            stage.queues.waiting.push(row as u32, PathState { beta, ..PathState::new(ray, depth) });
+        });
+        if std::mem::take(&mut self.transmits) {
+            return Request::Sample(self.numbers[0], Directions::Reflection);
+        }
+        Request::Nothing
     }
 }

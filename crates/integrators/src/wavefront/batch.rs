@@ -6,11 +6,12 @@ use math::CameraEnd;
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
-use scene::material::{Material, MaterialId, MaterialModel, SubsurfaceMaterial};
+use scene::material::{Material, MaterialId, MaterialModel};
 use scene::{GeometryEntry, Interfaces, SurfaceInteraction};
 use spectrum::SampledWavelengths;
 
 use super::begin::Begin;
+use super::bodies::Exits;
 use super::emission::{Emit, Escape, LightHit};
 use super::finish::{Finish, finish_some, finish_with_first_hits};
 use super::groups::{Grouping, Groups};
@@ -22,19 +23,11 @@ use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::{Besides, Segments};
-use super::shade::{AtVertices, Shade};
+use super::shade::{Shade, Stage, Surfaces};
 use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
 use crate::transport::path_state::PathState;
 use crate::transport::pixel_samples::PixelSamples;
-
-/// An algorithm that shades hits in lanes.
-pub(super) trait AtHits: AtVertices {
-    /// Shades hits on a body, of which indices and paths are given.
-    fn shade_body(&self, _: &mut Batch, _: (MaterialId, &SubsurfaceMaterial), _: (&[u32], &[u32])) {
-        unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
-    }
-}
 
 /// The paths of some tiles, one for each pixel that takes a sample. Between the stages here an
 /// algorithm [shades](super::WaveIntegrator::shade) the hits.
@@ -68,6 +61,8 @@ pub(super) struct BatchColumns {
     pub light_samples: Samples,
     /// Where media scatter paths.
     pub medium_vertices: MediumVertices,
+    /// Where paths leave bodies.
+    pub exits: Exits,
 }
 
 /// A vertex of one path.
@@ -204,7 +199,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Shades the hits that are shaded in lanes.
-    pub(super) fn shade_in_lanes<A: AtHits>(&mut self, algorithm: &A) {
+    pub(super) fn shade_in_lanes(&mut self, surfaces: Surfaces) {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {
@@ -225,21 +220,21 @@ impl<'a> Batch<'a> {
                 });
             }
             match &entry.material {
-                Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Diffuse(material) => self.dispatch(surfaces, (id, material), turns, rows),
                 Material::DiffuseTransmission(material) => {
-                    self.dispatch(algorithm, (id, material), turns, rows);
+                    self.dispatch(surfaces, (id, material), turns, rows);
                 }
-                Material::Conductor(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Dielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::ThinDielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::CoatedDiffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Conductor(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::Dielectric(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::ThinDielectric(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::CoatedDiffuse(material) => self.dispatch(surfaces, (id, material), turns, rows),
                 Material::CoatedConductor(material) => {
-                    self.dispatch(algorithm, (id, material), turns, rows);
+                    self.dispatch(surfaces, (id, material), turns, rows);
                 }
-                Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
-                Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Measured(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Subsurface(body) => algorithm.shade_body(self, (id, body), (turns, rows)),
+                Material::OpenPbr(material) => self.dispatch(surfaces, (id, &**material), turns, rows),
+                Material::Hair(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::Measured(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::Subsurface(body) => self.shade_body(surfaces, (id, body), (turns, rows)),
                 Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
@@ -249,28 +244,29 @@ impl<'a> Batch<'a> {
     }
 
     /// Shades hits of a material.
-    pub(super) fn dispatch<M: MaterialModel, A: AtVertices>(
+    pub(super) fn dispatch<M: MaterialModel>(
         &mut self,
-        algorithm: &A,
+        surfaces: Surfaces,
         (id, material): (MaterialId, &M),
         turns: &[u32],
         rows: &[u32],
     ) {
+        let BatchColumns { segments, points, hits, paths, queues, light_samples, .. } = &mut *self.columns;
         let with_footprint = self.pass.materials.shading(id) == Shading::LanesWithFootprint;
-        self.pass.instruction_set.dispatch_large(Shade {
+        let stage = Stage {
             pass: self.pass,
-            algorithm,
-            material,
+            surfaces,
             with_footprint,
-            points: &self.columns.points,
-            hits: &self.columns.hits,
+            points,
+            hits,
             turns,
             rows,
-            segments: &self.columns.segments,
-            paths: &mut self.columns.paths,
-            queues: &mut self.columns.queues,
-            light_samples: &mut self.columns.light_samples,
-        });
+            segments,
+            paths,
+            queues,
+            light_samples,
+        };
+        self.pass.instruction_set.dispatch_large(Shade { material, stage });
     }
 
     /// Calls `shade` with each path whose hit is not shaded in lanes, its turn, and the hit.

@@ -2,75 +2,68 @@
 //!
 //! The boundary is glass, and is shaded in lanes as glass is. Paths that enter by it wait until the
 //! kernel has ended; then a probe finds for each where it leaves (`transport/subsurface/`), one
-//! path after another.
+//! path after another. There they are shaded in lanes again, by the lobe of the exit.
 
-use lanes::{Int, Mask, Real};
-use scattering::{Body, Bsdf, BsdfSample, Scatter};
+use geometry::{PointColumns, SurfacePoint};
+use lanes::Real;
+use math::Ray;
+use scattering::{Body, NormalizedFresnel};
 use scene::Footprint;
-use scene::light::LightSampleContext;
 use scene::material::{DielectricMaterial, MaterialId, MaterialModel, SubsurfaceMaterial};
-use scene::texture::TextureContext;
-use spectrum::{SampledSpectrum, Spectrum};
+use scene::texture::{TextureContext, Textures};
+use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 
 use super::batch::{Batch, BatchColumns};
-use super::path::PathVertices;
 use super::queues::Entering;
-use super::shade::{AtVertices, Shade, Vertices};
+use super::segments::{Besides, Segments};
+use super::shade::{Shade, Stage, Surfaces};
+use crate::Tracer;
 use crate::transport::path_state::PathState;
-use crate::transport::subsurface::Entry;
-use crate::{Path, Tracer};
+use crate::transport::subsurface::{Entry, Exit};
 
-/// Path tracing at the boundaries of bodies.
-struct AtBoundary<'a>(&'a Path);
+/// The points where paths leave bodies, in columns.
+#[derive(Default)]
+pub(super) struct Exits {
+    /// The paths, as if rays along their shading normals had come to these points.
+    segments: Segments,
+    points: PointColumns,
+    /// The indices of the paths.
+    turns: Vec<u32>,
+}
 
-impl AtVertices for AtBoundary<'_> {
-    #[inline(always)]
-    fn regularizes(&self) -> bool {
-        self.0.regularizes()
+impl Exits {
+    /// Makes room for as many paths, and has none.
+    fn start(&mut self, count: usize) {
+        self.segments.start(count, Besides { differentials: false, media: false });
+        self.turns.clear();
     }
 
-    #[inline(always)]
-    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
-        shade: &mut Shade<M, Self>,
-        vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    ) {
-        shade.go_on(vertices, bsdf, contexts);
+    /// Adds a path that has been scattered `depth` times before it entered.
+    fn push(&mut self, row: u32, state: &PathState, exit: &Exit, depth: u32) {
+        let turn = self.segments.rows.len();
+        let SurfacePoint { p, shading, time, .. } = exit.surface.surface;
+        let ray = Ray::new(p.p, -shading.n, time);
+        let PathState { beta, eta_scale, .. } = *state;
+        self.segments.push(row, &PathState { beta, eta_scale, ..PathState::new(ray.into(), depth) });
+        self.points.put(turn, &exit.surface.surface);
+        self.turns.push(turn as u32);
     }
 }
 
-impl PathVertices for AtBoundary<'_> {
-    #[inline(always)]
-    fn path(&self) -> &Path {
-        self.0
-    }
+/// The lobe by which paths leave a body, as a material.
+struct Leaving(NormalizedFresnel);
 
-    /// Light that comes out has been scattered under the surface.
-    #[inline(always)]
-    fn lets_pass<R: Real>(cos_o: R, cos_i: R) -> R::Mask {
-        !(cos_o.gt(R::zero()) & cos_i.lt(R::zero()))
-    }
+impl MaterialModel for Leaving {
+    type Bxdf<'a, R: Real> = NormalizedFresnel<R>;
 
     #[inline(always)]
-    fn take_entering<R: Real, M>(
-        shade: &mut Shade<M, Self>,
-        vertices: &Vertices<R>,
-        sample: &BsdfSample<R>,
-        beta: SampledSpectrum<R>,
-        mask: R::Mask,
-    ) -> R::Mask {
-        let is_outside = vertices.wo.dot(vertices.surface.ns).gt(R::zero());
-        let enters = mask & is_outside & sample.flags.is_transmissive();
-        if enters.any() {
-            let rows = vertices.rows.indices;
-            vertices.address.dimension.scatter(enters, &mut shade.paths.dimension, rows);
-            let Entering { rows: to, turns, beta: betas } = &mut shade.queues.entering;
-            rows.append(enters, to);
-            vertices.turns.indices.append(enters, turns);
-            betas.append(enters, beta);
-        }
-        enters
+    fn bxdf<R: Real>(
+        &self,
+        _: &Textures,
+        _: &TextureContext<R>,
+        _: &mut SampledWavelengths<R>,
+    ) -> NormalizedFresnel<R> {
+        self.0.splat()
     }
 }
 
@@ -78,21 +71,44 @@ impl Batch<'_> {
     /// Shades hits on a body, of which indices and paths are given.
     pub(super) fn shade_body(
         &mut self,
-        algorithm: &Path,
+        surfaces: Surfaces,
         (id, body): (MaterialId, &SubsurfaceMaterial),
         (turns, rows): (&[u32], &[u32]),
     ) {
+        let Surfaces::Path(algorithm) = surfaces else {
+            unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
+        };
         let boundary =
             DielectricMaterial { eta: Spectrum::Constant(body.table.eta()), roughness: body.roughness };
-        self.dispatch(&AtBoundary(algorithm), (id, &boundary), turns, rows);
+        self.dispatch(Surfaces::Boundaries(algorithm), (id, &boundary), turns, rows);
         let mut entering = std::mem::take(&mut self.columns.queues.entering);
+        let mut exits = std::mem::take(&mut self.columns.exits);
+        exits.start(entering.rows.len());
         let mut places = turns.iter();
         for (i, (&row, &turn)) in entering.rows.iter().zip(&entering.turns).enumerate() {
             // Both are in the same order.
             while places.next().is_some_and(|&other| other != turn) {}
             let place = turns.len() - places.len() - 1;
-            self.follow(algorithm, body, (row, turn as usize, place), entering.beta.row(i));
+            self.follow(body, (row, turn as usize, place), entering.beta.row(i), &mut exits);
         }
+        let Exits { segments, points, turns } = &exits;
+        let BatchColumns { hits, paths, queues, light_samples, .. } = &mut *self.columns;
+        let stage = Stage {
+            pass: self.pass,
+            surfaces,
+            with_footprint: false,
+            points,
+            hits,
+            turns,
+            rows: &segments.rows,
+            segments,
+            paths,
+            queues,
+            light_samples,
+        };
+        let leaving = Leaving(NormalizedFresnel::new(&body.table));
+        self.pass.instruction_set.dispatch_large(Shade { material: &leaving, stage });
+        self.columns.exits = exits;
         let Entering { rows, turns, beta } = &mut entering;
         [rows, turns].into_iter().for_each(Vec::clear);
         beta.clear();
@@ -102,13 +118,13 @@ impl Batch<'_> {
     /// Leads a path that has entered a body out of it; row, turn and place of its point are given.
     fn follow(
         &mut self,
-        algorithm: &Path,
         body: &SubsurfaceMaterial,
         (path, turn, place): (u32, usize, usize),
         beta: SampledSpectrum,
+        exits: &mut Exits,
     ) {
         let Self { pass, sampler, stats, columns } = self;
-        let BatchColumns { paths, segments, hits, points, queues, .. } = &mut **columns;
+        let BatchColumns { paths, segments, hits, points, .. } = &mut **columns;
         let (scene, row) = (pass.pixels.scene, path as usize);
         let lambda = paths.lambda(row);
         let point = points.get::<f32>(place);
@@ -118,20 +134,17 @@ impl Batch<'_> {
         let context =
             TextureContext { p: point.p.p, n: point.n, uv: point.uv, footprint: Footprint::point() };
         let body = body.bxdf(scene.textures(), &context, &lambda);
-        let mut state = PathState::new(ray.into(), segments.depth[turn] + 1);
+        let depth = segments.depth[turn];
+        let mut state = PathState::new(ray.into(), depth + 1);
         state.beta = beta;
         // As the boundary has scaled it, up to where it leaves.
         state.eta_scale = segments.eta_scale[turn] * (body.boundary.eta * body.boundary.eta);
         paths.resume(sampler, row, pass.pixels.index);
         let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
         let under = (Body::Subsurface(&body), -entry.ns);
-        let Some(exit) = state.pass_under(&mut tracer, &entry, under, &lambda) else { return };
-        let (l, goes_on) = algorithm.leave_body(&mut tracer, &mut state, &exit, &lambda);
-        paths.add_light(row, l);
-        if goes_on && state.survives(sampler) {
-            paths.rough_before[row] = true;
+        if let Some(exit) = state.pass_under(&mut tracer, &entry, under, &lambda) {
             paths.dimension[row] = sampler.dimension();
-            queues.next.push(path, &state);
+            exits.push(path, &state, &exit, depth);
         }
     }
 }

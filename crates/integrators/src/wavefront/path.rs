@@ -2,23 +2,23 @@
 
 use geometry::{Hit, PatchPoints};
 use lanes::{Int, Mask, Real};
-use math::{Ray, Vec2, offset_ray_origin};
+use math::{Ray, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::Interfaces;
 use scene::light::LightSampleContext;
-use scene::material::{MaterialId, MaterialModel, SubsurfaceMaterial};
 use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
-use super::batch::{AtHits, Batch, BatchColumns, Vertex};
+use super::batch::{Batch, BatchColumns, Vertex};
 use super::columns::Rows;
 use super::lights::{self, LightLanes};
 use super::media::VerticesInMedia;
 use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
+use super::queues::Entering;
 use super::segments::Segment;
-use super::shade::{AtVertices, Shade, Vertices};
+use super::shade::{Request, Stage, Surfaces, Vertices};
 use super::shadows::{PassageLanes, Shadow};
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
@@ -31,7 +31,7 @@ impl WaveIntegrator for Path {
 
     fn shade(&self, batch: &mut Batch) {
         batch.classify(self.settings.max_depth, &self.direct);
-        batch.shade_in_lanes(self);
+        batch.shade_in_lanes(Surfaces::Path(self));
         batch.shade_others(|batch, place, hit| self.shade_path(batch, place, hit));
     }
 }
@@ -50,18 +50,14 @@ impl Path {
         bsdf.bxdf.keep_boundary();
         bsdf.regularize(self.settings.regularize && paths.rough_before[row]);
         let context = light_context(&surface, bsdf.flags());
-        let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
-            let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-            if bsdf.flags().is_non_specular() {
-                let connection = self.direct.connect(scene, sampler, (&surface, &context), &bsdf, &lambda);
-                if let Some(Connection { ray, t_max, interfaces, l, .. }) = connection {
-                    let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
-                    queue.push(path, state.beta * l, &ray, t_max);
-                }
+        if bsdf.flags().is_non_specular() {
+            let connection = self.direct.connect(scene, sampler, (&surface, &context), &bsdf, &lambda);
+            if let Some(Connection { ray, t_max, interfaces, l, .. }) = connection {
+                let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
+                queue.push(path, state.beta * l, &ray, t_max);
             }
-            Scattered::sample(&surface, &bsdf, sampler)
-        });
-        let Some(scattered) = scattered else { return };
+        }
+        let Some(scattered) = Scattered::sample(&surface, &bsdf, sampler) else { return };
         paths.rough_before[row] |= !scattered.sample.flags.is_specular();
         if let Some(body) = entered(&bsdf, &surface, &scattered.sample) {
             let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
@@ -83,103 +79,62 @@ impl Path {
     }
 }
 
-impl AtVertices for Path {
-    #[inline(always)]
-    fn regularizes(&self) -> bool {
-        self.settings.regularize
-    }
-
-    #[inline(always)]
-    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
-        shade: &mut Shade<M, Self>,
-        vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    ) {
-        shade.go_on(vertices, bsdf, contexts);
-    }
-}
-
-impl AtHits for Path {
-    fn shade_body(&self, batch: &mut Batch, body: (MaterialId, &SubsurfaceMaterial), hits: (&[u32], &[u32])) {
-        batch.shade_body(self, body, hits);
-    }
-}
-
 /// Path tracing at vertices.
-pub(super) trait PathVertices: AtVertices {
-    /// The algorithm.
-    fn path(&self) -> &Path;
-
-    /// Where light from the side of `cos_i` passes to that of `cos_o`.
-    #[inline(always)]
-    fn lets_pass<R: Real>(_cos_o: R, _cos_i: R) -> R::Mask {
-        R::Mask::splat(true)
-    }
-
-    /// Takes the lanes of a mask whose paths go on under the surface, of the throughput `beta`;
-    /// gives which they are.
-    #[inline(always)]
-    fn take_entering<R: Real, M>(
-        _shade: &mut Shade<M, Self>,
-        _vertices: &Vertices<R>,
-        _sample: &BsdfSample<R>,
-        _beta: SampledSpectrum<R>,
-        _mask: R::Mask,
-    ) -> R::Mask {
-        R::Mask::splat(false)
-    }
+pub(super) struct PathVertices<R: Real> {
+    vertices: Vertices<R>,
+    contexts: LightSampleContext<R>,
+    media: Option<VerticesInMedia<R>>,
+    numbers: VertexNumbers<R>,
+    /// Of the lanes that sample one, if any does.
+    light: Option<LightLanes<R>>,
 }
 
-impl PathVertices for Path {
+impl<R: Real> PathVertices<R> {
+    /// Samples lights for the lanes that are not specular.
     #[inline(always)]
-    fn path(&self) -> &Path {
-        self
-    }
-}
-
-impl<M: MaterialModel, A: PathVertices> Shade<'_, '_, M, A> {
-    /// Samples light and BSDF at the vertices.
-    #[inline(always)]
-    pub fn go_on<R: Real, B: Scatter<R>>(
-        &mut self,
-        mut vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    ) {
-        let samples_light = bsdf.flags().is_non_specular();
-        let media = self.segments.media.as_ref().map(|columns| {
-            let place = (vertices.turns, &self.hits.geometry[..]);
-            VerticesInMedia::new(self.pass.media, columns, place, vertices.lambda.secondary_terminated())
+    pub fn begin(
+        path: &Path,
+        stage: &mut Stage,
+        (mut vertices, contexts): (Vertices<R>, LightSampleContext<R>),
+        flags: BxdfFlags<R>,
+        chooses: bool,
+    ) -> (Self, Request<R>) {
+        let samples_light = flags.is_non_specular();
+        let media = stage.segments.media.as_ref().map(|columns| {
+            let place = (vertices.turns, &stage.hits.geometry[..]);
+            VerticesInMedia::new(stage.pass.media, columns, place, vertices.lambda.secondary_terminated())
         });
         let (address, has_media) = (&mut vertices.address, media.is_some());
-        let numbers = VertexNumbers::draw(&self.pass, address, samples_light, B::CHOOSES, has_media);
-        self.connect((&vertices, media.as_ref()), bsdf, contexts, &numbers, samples_light);
-        self.scatter((&vertices, media.as_ref()), bsdf, contexts, numbers.bsdf);
+        let numbers = VertexNumbers::draw(&stage.pass, address, samples_light, chooses, has_media);
+        let samples = vertices.active & samples_light;
+        let sampling = (&stage.pass, &path.direct, &mut *stage.light_samples);
+        let light = samples
+            .any()
+            .then(|| lights::sample(sampling, None, &contexts, numbers.light, &vertices.lambda, samples));
+        let state = Self { vertices, contexts, media, numbers, light };
+        let request = state.light.as_ref().map_or_else(|| state.sample(), |light| Request::Value(light.wi));
+        (state, request)
     }
 
-    /// Next-event estimation of the lanes that are not specular.
     #[inline(always)]
-    fn connect<R: Real, B: Scatter<R>>(
-        &mut self,
-        (vertices, media): (&Vertices<R>, Option<&VerticesInMedia<R>>),
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-        numbers: &VertexNumbers<R>,
-        is_non_specular: R::Mask,
-    ) {
-        let samples = vertices.active & is_non_specular;
-        if !samples.any() {
-            return;
-        }
-        let sampling = (&self.pass, &self.algorithm.path().direct, &mut *self.light_samples);
-        let light = lights::sample(sampling, None, contexts, numbers.light, &vertices.lambda, samples);
-        let LightLanes { valid, l, wi, pdf, .. } = light;
+    fn sample(&self) -> Request<R> {
+        Request::Sample(self.numbers.bsdf, Directions::All)
+    }
+
+    /// Next-event estimation, by the values of the BSDFs towards the lights and their densities
+    /// there.
+    #[inline(always)]
+    pub fn connect(&mut self, stage: &mut Stage, f: SampledSpectrum<R>, p_b: R) -> Request<R> {
+        let Self { vertices, media, numbers, light, .. } = self;
+        let Some(light) = light else { return self.sample() };
+        let LightLanes { valid, l, wi, pdf, .. } = *light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
-        let f = bsdf.f(wo, wi, TransportMode::Radiance);
         let scattered = f * l * wi.dot(ns).abs();
-        let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
-        let lit = valid & !scattered.is_black() & A::lets_pass(wo.dot(ns), wi.dot(ns));
+        let mut lit = valid & !scattered.is_black();
+        if let Surfaces::Boundaries(_) = stage.surfaces {
+            // Light that comes out has been scattered under the surface.
+            lit = lit & !(wo.dot(ns).gt(R::zero()) & wi.dot(ns).lt(R::zero()));
+        }
         let (ray, t_max) = light.shadow_rays(p, n, time);
         if let Some(media) = media {
             // The weight depends on what the rays pass.
@@ -190,47 +145,39 @@ impl<M: MaterialModel, A: PathVertices> Shade<'_, '_, M, A> {
                 medium: media.towards(wi, n),
                 dimension: numbers.passage,
             };
-            self.queues.passages.append(vertices.rows, lit, &shadow, &passage);
-            return;
+            stage.queues.passages.append(vertices.rows, lit, &shadow, &passage);
+        } else {
+            let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
+            let l = vertices.beta * (scattered * (weight / pdf));
+            let shadow = Shadow { l, ray, t_max };
+            let [stopped, passing] = &mut stage.queues.shadows;
+            stopped.append(vertices.rows, lit & !light.passes, &shadow);
+            passing.append(vertices.rows, lit & light.passes, &shadow);
         }
-        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
-        let l = vertices.beta * (scattered * (weight / pdf));
-        let shadow = Shadow { l, ray, t_max };
-        let [stopped, passing] = &mut self.queues.shadows;
-        stopped.append(vertices.rows, lit & !light.passes, &shadow);
-        passing.append(vertices.rows, lit & light.passes, &shadow);
+        self.sample()
     }
 
-    /// Continues the paths along a direction of the BSDF, unless Russian roulette ends them.
+    /// Continues the paths along samples of the BSDFs, unless Russian roulette ends them.
     #[inline(always)]
-    fn scatter<R: Real, B: Scatter<R>>(
-        &mut self,
-        (vertices, media): (&Vertices<R>, Option<&VerticesInMedia<R>>),
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-        (uc, u): (R, Vec2<R>),
-    ) {
-        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
-        let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
-        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
+    pub fn scatter(&mut self, stage: &mut Stage, sample: &BsdfSample<R>, density: R) -> Request<R> {
+        let Self { vertices, contexts, media, .. } = self;
+        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, .. } = *vertices;
+        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = *sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
-        let pdf = if sample.pdf_is_proportional {
-            bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All)
-        } else {
-            pdf
-        };
-        let eta_scale = R::gather(&self.segments.eta_scale, turns.indices);
+        let eta_scale = R::gather(&stage.segments.eta_scale, turns.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
-        let valid = valid & vertices.active;
-        let valid = valid & !A::take_entering(self, vertices, &sample, beta, valid);
+        let mut valid = valid & vertices.active;
+        if let Surfaces::Boundaries(_) = stage.surfaces {
+            valid = valid & !vertices.enter(stage, sample, beta, valid);
+        }
 
-        let depth = R::Int::gather(&self.segments.depth, turns.indices);
+        let depth = R::Int::gather(&stage.segments.depth, turns.indices);
         let Roulette { survives, weight, dimension } =
-            play(&self.pass, vertices.address, depth, beta * eta_scale, valid);
-        dimension.scatter(survives, &mut self.paths.dimension, rows.indices);
+            play(&stage.pass, vertices.address, depth, beta * eta_scale, valid);
+        dimension.scatter(survives, &mut stage.paths.dimension, rows.indices);
         let is_specular = flags.is_specular();
-        if self.algorithm.regularizes() {
-            rows.each_of(survives & !is_specular, |_, row| self.paths.rough_before[row] = true);
+        if stage.surfaces.regularizes() {
+            rows.each_of(survives & !is_specular, |_, row| stage.paths.rough_before[row] = true);
         }
         let segment = Segment {
             ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
@@ -238,16 +185,44 @@ impl<M: MaterialModel, A: PathVertices> Shade<'_, '_, M, A> {
             eta_scale,
             depth: depth.wrapping_add(R::Int::splat(1)),
             vertex: *contexts,
-            pdf: R::select(is_specular, R::zero(), pdf),
-            media: media.map(|media| media.leave((wi, n), pdf)),
+            pdf: R::select(is_specular, R::zero(), density),
+            media: media.map(|media| media.leave((wi, n), density)),
         };
-        let first = self.queues.next.rows.len();
-        self.queues.next.append(rows.indices, survives, &segment);
-        if !self.segments.are_differentials.is_empty() && (survives & is_specular).any() {
-            self.carry_differentials(turns, survives, &sample, first);
+        let first = stage.queues.next.rows.len();
+        stage.queues.next.append(rows.indices, survives, &segment);
+        if !stage.segments.are_differentials.is_empty() && (survives & is_specular).any() {
+            stage.carry_differentials(turns, survives, sample, first);
         }
+        Request::Nothing
     }
+}
 
+impl<R: Real> Vertices<R> {
+    /// Takes the paths of a mask's lanes that go on under the surface, of the throughput `beta`;
+    /// gives which they are.
+    #[inline(always)]
+    fn enter(
+        &self,
+        stage: &mut Stage,
+        sample: &BsdfSample<R>,
+        beta: SampledSpectrum<R>,
+        mask: R::Mask,
+    ) -> R::Mask {
+        let is_outside = self.wo.dot(self.surface.ns).gt(R::zero());
+        let enters = mask & is_outside & sample.flags.is_transmissive();
+        if enters.any() {
+            let rows = self.rows.indices;
+            self.address.dimension.scatter(enters, &mut stage.paths.dimension, rows);
+            let Entering { rows: to, turns, beta: betas } = &mut stage.queues.entering;
+            rows.append(enters, to);
+            self.turns.indices.append(enters, turns);
+            betas.append(enters, beta);
+        }
+        enters
+    }
+}
+
+impl Stage<'_, '_> {
     /// Gives the rays that specular scattering has appended, from a place in the queue on, the
     /// differentials of the rays before. Few rays have any, so that they are computed one by one.
     fn carry_differentials<R: Real>(

@@ -1,46 +1,77 @@
-//! Shading in lanes: the vertices of hits and their BSDFs, where algorithms go on.
+//! Shading in lanes: the vertices of hits and their BSDFs.
+//!
+//! A kernel of each material evaluates and samples BSDFs. The steps of algorithms at vertices do
+//! not depend on materials: they are functions of the lanes, compiled once for each instruction
+//! set, which [request](Request) of a kernel one value or sample after another.
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
-use lanes::{Kernel, Mask, Real};
-use math::{Differentials, Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
+use lanes::{Callee, Kernel, Mask, Real};
+use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BsdfSample, BxdfFlags, Scatter};
+use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use scene::Footprint;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
 use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use super::all_lights::{AllLights, LightsInTurn};
 use super::columns::Rows;
 use super::lights::Samples;
 use super::pass::Pass;
+use super::path::PathVertices;
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::Segments;
+use crate::Path;
 use crate::transport::pixel_samples::PixelSamples;
 
-/// What an algorithm does at vertices.
-pub(super) trait AtVertices: Sized {
+/// The algorithm at vertices.
+#[derive(Clone, Copy)]
+pub(super) enum Surfaces<'b> {
+    Path(&'b Path),
+    /// Path tracing at the boundaries of bodies.
+    Boundaries(&'b Path),
+    AllLights(&'b AllLights),
+}
+
+impl Surfaces<'_> {
     /// Whether surfaces are roughened after a rough one.
-    fn regularizes(&self) -> bool {
-        false
+    #[inline(always)]
+    pub fn regularizes(self) -> bool {
+        match self {
+            Self::Path(path) | Self::Boundaries(path) => path.settings.regularize,
+            Self::AllLights(_) => false,
+        }
     }
 
-    /// Goes on from the vertices in the lanes. Most contexts of light sampling are offset to the
-    /// side of the surface that scatters.
-    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
-        shade: &mut Shade<M, Self>,
-        vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    );
+    /// Whether it asks for the densities of directions, too.
+    #[inline(always)]
+    fn weighs(self) -> bool {
+        !matches!(self, Self::AllLights(_))
+    }
+}
+
+/// A question of an algorithm about the BSDFs at vertices, in each lane.
+pub(super) enum Request<R> {
+    /// The value in a direction.
+    Value(Vector3<R>),
+    /// A sample by these numbers.
+    Sample((R, Vec2<R>), Directions),
+    /// None: it is done.
+    Nothing,
 }
 
 /// Shades hits of one material.
-pub(super) struct Shade<'a, 'b, M, A> {
-    pub pass: Pass<'a>,
-    pub algorithm: &'b A,
+pub(super) struct Shade<'a, 'b, M> {
     pub material: &'a M,
+    pub stage: Stage<'a, 'b>,
+}
+
+/// Hits of one material, and all that shading them changes.
+pub(super) struct Stage<'a, 'b> {
+    pub pass: Pass<'a>,
+    pub surfaces: Surfaces<'b>,
     pub with_footprint: bool,
     /// Their surface points.
     pub points: &'b PointColumns,
@@ -55,13 +86,164 @@ pub(super) struct Shade<'a, 'b, M, A> {
     pub light_samples: &'b mut Samples,
 }
 
-impl<M: MaterialModel, A: AtVertices> Kernel for Shade<'_, '_, M, A> {
+impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
     type Output = ();
 
     #[inline(always)]
     fn run<R: Real>(mut self) {
-        for (part, rows) in self.rows.chunks(R::LANES).enumerate() {
-            self.shade::<R>(part * R::LANES, rows);
+        for first in (0..self.stage.rows.len()).step_by(R::LANES) {
+            self.shade::<R>(first);
+        }
+    }
+}
+
+impl<M: MaterialModel> Shade<'_, '_, M> {
+    #[inline(always)]
+    fn shade<R: Real>(&mut self, first: usize) {
+        let Self { material, stage } = self;
+        let (vertices, footprint, is_rough) = R::call(Reach { stage, first });
+        let PatchPoints { p, n, ns, uv, ss, .. } = vertices.surface;
+        let context = TextureContext { p: p.p, n, uv, footprint };
+        let mut lambda = vertices.lambda;
+        let bxdf = material.bxdf(stage.pass.pixels.scene.textures(), &context, &mut lambda);
+        let mut bsdf = Bsdf::new(ns, ss, bxdf);
+        bsdf.seed(&lambda, vertices.address.dimension);
+        if let Some(is_rough) = is_rough {
+            bsdf.regularize(is_rough);
+        }
+        let (wo, mode, weighs) = (vertices.wo, TransportMode::Radiance, stage.surfaces.weighs());
+        let (flags, chooses) = (bsdf.flags(), M::Bxdf::<'_, R>::CHOOSES);
+        let (mut vertices, mut request) = R::call(Begin { stage, vertices, lambda, flags, chooses });
+        loop {
+            request = match request {
+                Request::Value(wi) => {
+                    let f = bsdf.f(wo, wi, mode);
+                    let pdf = if weighs { bsdf.pdf(wo, wi, mode, Directions::All) } else { R::one() };
+                    R::call(Connect { stage, vertices: &mut vertices, f, pdf })
+                }
+                Request::Sample((uc, u), directions) => {
+                    let sample = bsdf.sample_lanes(wo, uc, u, mode, directions);
+                    let pdf = if weighs && sample.pdf_is_proportional {
+                        bsdf.pdf(wo, sample.wi, mode, directions)
+                    } else {
+                        sample.pdf
+                    };
+                    R::call(Continue { stage, vertices: &mut vertices, sample, pdf })
+                }
+                Request::Nothing => return,
+            };
+        }
+    }
+}
+
+/// Vertices with the state of their algorithm.
+enum AtVertices<'b, R: Real> {
+    Path(PathVertices<R>),
+    AllLights(LightsInTurn<'b, R>),
+}
+
+/// The way to vertices up to their materials.
+struct Reach<'a, 'b, 'c> {
+    stage: &'c mut Stage<'a, 'b>,
+    first: usize,
+}
+
+impl<R: Real> Callee<R> for Reach<'_, '_, '_> {
+    /// The vertices, their footprints, and the lanes whose surfaces are roughened.
+    type Output = (Vertices<R>, Footprint<R>, Option<R::Mask>);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self { stage, first } = self;
+        let queue = &stage.rows[first..stage.rows.len().min(first + R::LANES)];
+        let vertices = stage.vertices::<R>(first, queue);
+        let footprint = if stage.with_footprint {
+            stage.segments.footprint(stage.pass.pixels.view, vertices.turns, &vertices.surface)
+        } else {
+            Footprint::point()
+        };
+        let rough = |(lane, &row): (usize, &u32)| u32::from(stage.paths.rough_before[row as usize]) << lane;
+        let is_rough = stage
+            .surfaces
+            .regularizes()
+            .then(|| R::Mask::from_bits(queue.iter().enumerate().map(rough).sum()));
+        (vertices, footprint, is_rough)
+    }
+}
+
+/// The first step of the algorithm.
+struct Begin<'a, 'b, 'c, R: Real> {
+    stage: &'c mut Stage<'a, 'b>,
+    vertices: Vertices<R>,
+    /// The wavelengths as the materials have left them.
+    lambda: SampledWavelengths<R>,
+    /// The flags of the BSDFs.
+    flags: BxdfFlags<R>,
+    /// Whether they choose among lobes.
+    chooses: bool,
+}
+
+impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
+    type Output = (AtVertices<'b, R>, Request<R>);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self { stage, mut vertices, lambda, flags, chooses } = self;
+        stage.keep_wavelengths(&vertices, &lambda);
+        vertices.lambda = lambda;
+        let contexts = contexts(&vertices, flags);
+        match stage.surfaces {
+            Surfaces::Path(path) | Surfaces::Boundaries(path) => {
+                let (state, request) = PathVertices::begin(path, stage, (vertices, contexts), flags, chooses);
+                (AtVertices::Path(state), request)
+            }
+            Surfaces::AllLights(lights) => {
+                let (state, request) =
+                    LightsInTurn::begin(lights, stage, (vertices, contexts), flags, chooses);
+                (AtVertices::AllLights(state), request)
+            }
+        }
+    }
+}
+
+/// The step that follows a value and its density.
+struct Connect<'a, 'b, 'c, R: Real> {
+    stage: &'c mut Stage<'a, 'b>,
+    vertices: &'c mut AtVertices<'b, R>,
+    f: SampledSpectrum<R>,
+    pdf: R,
+}
+
+impl<R: Real> Callee<R> for Connect<'_, '_, '_, R> {
+    type Output = Request<R>;
+
+    #[inline(always)]
+    fn run(self) -> Request<R> {
+        let Self { stage, vertices, f, pdf } = self;
+        match vertices {
+            AtVertices::Path(state) => state.connect(stage, f, pdf),
+            AtVertices::AllLights(state) => state.connect(stage, f),
+        }
+    }
+}
+
+/// The step that follows a sample, of which the density is given.
+struct Continue<'a, 'b, 'c, R: Real> {
+    stage: &'c mut Stage<'a, 'b>,
+    vertices: &'c mut AtVertices<'b, R>,
+    sample: BsdfSample<R>,
+    pdf: R,
+}
+
+impl<R: Real> Callee<R> for Continue<'_, '_, '_, R> {
+    type Output = Request<R>;
+
+    #[inline(always)]
+    fn run(self) -> Request<R> {
+        let Self { stage, vertices, sample, pdf } = self;
+        match vertices {
+            AtVertices::Path(state) => state.scatter(stage, &sample, pdf),
+            AtVertices::AllLights(state) => state.wait_for(stage, &sample),
         }
     }
 }
@@ -82,35 +264,7 @@ pub(super) struct Vertices<R: Real> {
     pub address: Address<R::Int>,
 }
 
-impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
-    #[inline(always)]
-    fn shade<R: Real>(&mut self, first: usize, queue: &[u32]) {
-        let mut vertices = self.vertices::<R>(first, queue);
-        let PatchPoints { p, n, ns, uv, ss, .. } = vertices.surface;
-        let footprint = if self.with_footprint {
-            self.segments.footprint(self.pass.pixels.view, vertices.turns, &vertices.surface)
-        } else {
-            Footprint::point()
-        };
-        let context = TextureContext { p: p.p, n, uv, footprint };
-        let before = vertices.lambda;
-        let textures = self.pass.pixels.scene.textures();
-        let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
-        self.keep_wavelengths(&vertices, &before);
-        let mut bsdf = Bsdf::new(ns, ss, bxdf);
-        bsdf.seed(&vertices.lambda, vertices.address.dimension);
-        if self.algorithm.regularizes() {
-            let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
-            bsdf.regularize(R::Mask::from_bits(rough));
-        }
-        let contexts = contexts(&vertices, bsdf.flags());
-        A::go_on(self, vertices, &bsdf, &contexts);
-    }
-
-    fn rough(&self, row: u32) -> u32 {
-        self.paths.rough_before[row as usize].into()
-    }
-
+impl Stage<'_, '_> {
     #[inline(always)]
     fn vertices<R: Real>(&mut self, first: usize, queue: &[u32]) -> Vertices<R> {
         let rows = Rows::<R>::first(queue);
@@ -131,17 +285,13 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
 
     /// Stores wavelengths whose densities the material has changed.
     #[inline(always)]
-    fn keep_wavelengths<R: Real>(&mut self, vertices: &Vertices<R>, before: &SampledWavelengths<R>) {
-        let changed = vertices.lambda.pdf()[0].ne(before.pdf()[0]) & vertices.active;
+    fn keep_wavelengths<R: Real>(&mut self, vertices: &Vertices<R>, lambda: &SampledWavelengths<R>) {
+        let changed = lambda.pdf()[0].ne(vertices.lambda.pdf()[0]) & vertices.active;
         if changed.any() {
-            vertices.rows.each_of(changed, |lane, row| {
-                self.paths.set_lambda(row, &vertices.lambda.lane(lane));
-            });
+            vertices.rows.each_of(changed, |lane, row| self.paths.set_lambda(row, &lambda.lane(lane)));
         }
     }
-}
 
-impl<M, A> Shade<'_, '_, M, A> {
     /// The differentials of the ray that the specular sample of a lane makes of that of a turn, if
     /// this has any.
     pub fn scattered_differentials<R: Real>(

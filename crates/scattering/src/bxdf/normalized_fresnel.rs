@@ -6,6 +6,7 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BssrdfTable, BxdfFlags, Directions, TransportMode, fr_dielectric};
+use lanes::Real;
 use math::{Vec2, Vector3};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
@@ -14,10 +15,10 @@ use std::f32::consts::FRAC_1_PI;
 /// Light that enters a body, over all that does.
 #[derive(Clone, Copy, Debug)]
 #[doc(alias = "NormalizedFresnelBxDF")]
-pub struct NormalizedFresnel {
-    eta: f32,
+pub struct NormalizedFresnel<R = f32> {
+    eta: R,
     /// 1/(c π).
-    norm: f32,
+    norm: R,
 }
 
 impl NormalizedFresnel {
@@ -25,37 +26,54 @@ impl NormalizedFresnel {
     pub fn new(table: &BssrdfTable) -> Self {
         Self { eta: table.eta(), norm: table.exit_norm() * FRAC_1_PI }
     }
+
+    /// The same in all lanes.
+    #[inline(always)]
+    pub fn splat<R: Real>(self) -> NormalizedFresnel<R> {
+        NormalizedFresnel { eta: R::splat(self.eta), norm: R::splat(self.norm) }
+    }
 }
 
-impl Scatter for NormalizedFresnel {
-    fn flags(&self) -> BxdfFlags {
-        BxdfFlags::DIFFUSE_REFLECTION
+impl<R: Real> Scatter<R> for NormalizedFresnel<R> {
+    const CHOOSES: bool = false;
+
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::splat(BxdfFlags::DIFFUSE_REFLECTION)
     }
 
-    #[inline]
-    fn f(&self, wo: Vector3, wi: Vector3, _: TransportMode) -> SampledSpectrum {
-        let is_above = wo.z > 0.0 && wi.z > 0.0;
-        SampledSpectrum::splat(if is_above { (1.0 - fr_dielectric(wi.z, self.eta)) * self.norm } else { 0.0 })
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode) -> SampledSpectrum<R> {
+        let f = (R::one() - fr_dielectric(wi.z, self.eta)) * self.norm;
+        SampledSpectrum::splat(R::select(are_above(wo, wi), f, R::zero()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        _: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        _: R,
+        u: Vec2<R>,
         mode: TransportMode,
         directions: Directions,
-    ) -> BsdfSample {
+    ) -> BsdfSample<R> {
         let wi = sample_cosine_hemisphere(u);
         let pdf = self.pdf(wo, wi, mode, directions);
-        let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, BxdfFlags::DIFFUSE_REFLECTION);
-        BsdfSample { valid: pdf > 0.0, ..sample }
+        let lobe = BxdfFlags::splat(BxdfFlags::DIFFUSE_REFLECTION);
+        let sample = BsdfSample::new(self.f(wo, wi, mode), wi, pdf, lobe);
+        BsdfSample { valid: pdf.gt(R::zero()), ..sample }
     }
 
-    #[inline]
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        let is_above = wo.z > 0.0 && wi.z > 0.0 && directions.reflection();
-        if is_above { cosine_hemisphere_pdf(wi.z) } else { 0.0 }
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        if !directions.reflection() {
+            return R::zero();
+        }
+        R::select(are_above(wo, wi), cosine_hemisphere_pdf(wi.z), R::zero())
     }
+}
+
+#[inline(always)]
+fn are_above<R: Real>(wo: Vector3<R>, wi: Vector3<R>) -> R::Mask {
+    wo.z.gt(R::zero()) & wi.z.gt(R::zero())
 }

@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::PhotonMappingDesc;
 use math::{Normal3, RayDifferential, Vec2};
-use scattering::{Bsdf, Bxdf, Directions, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, Directions, TransportMode};
 use scene::SurfaceInteraction;
 use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -237,19 +237,15 @@ impl Gather<'_> {
         let &GatherPoint { surface, bsdf, lambda, .. } = point;
         let flags = bsdf.flags();
         let mut l = SampledSpectrum::ZERO;
-        let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
-            let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-            if sought == Sought::Radiance && flags.is_non_specular() {
-                let context = light_context(surface, flags);
-                let found =
-                    self.direct.connect(tracer.scene, tracer.sampler, (surface, &context), &bsdf, lambda);
-                if let Some(light) = found {
-                    let medium = surface.medium_towards(light.ray.d, path.medium);
-                    l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
-                }
+        if sought == Sought::Radiance && flags.is_non_specular() {
+            let context = light_context(surface, flags);
+            let found = self.direct.connect(tracer.scene, tracer.sampler, (surface, &context), bsdf, lambda);
+            if let Some(light) = found {
+                let medium = surface.medium_towards(light.ray.d, path.medium);
+                l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
             }
-            Scattered::sample(surface, &bsdf, tracer.sampler)
-        });
+        }
+        let scattered = Scattered::sample(surface, bsdf, tracer.sampler);
         if flags.is_non_specular() {
             if sought == Sought::Reflected {
                 l += path.beta * self.reflected(&self.maps.global, point);
