@@ -56,7 +56,8 @@ impl Triangle {
         let [p_du, p_dv] = self.sides(&self.p).map(|e| e.as_dvec3());
         let by_texture =
             |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
-        let tangents = by_texture([p_du, p_dv]).filter(|d| d[0].cross(d[1]).length_squared() > 0.0);
+        let have_area = |[a, b]: &[Vector3; 2]| a.balanced().cross(b.balanced()).length_squared() > 0.0;
+        let tangents = by_texture([p_du, p_dv]).filter(have_area);
         let [dpdu, dpdv] = tangents.unwrap_or_else(|| any_tangents(n));
         let mut surface =
             SurfacePoint::new(self.point(b), n, self.texture(b), [dpdu, dpdv], [Vec3::ZERO; 2], ray);

@@ -80,8 +80,8 @@ impl PointColumns {
         Vec3::new(self.number(column, first), self.number(column + 1, first), self.number(column + 2, first))
     }
 
-    /// Room for `len` points, and for as many more as lanes may have.
-    fn reset(&mut self, len: usize) {
+    /// Makes room for `len` points, and for as many more as lanes may have.
+    pub fn grow(&mut self, len: usize) {
         let len = len.next_multiple_of(MAX_LANES).max(self.found.len());
         self.values.iter_mut().for_each(|column| column.resize(len, 0.0));
         self.found.resize(len, 0);
@@ -102,13 +102,8 @@ impl PointColumns {
         R::Int::select(found, R::Int::splat(1), R::Int::splat(0)).store(&mut self.found[first..]);
     }
 
-    /// Sets the point at a place, up to which there is room then.
-    pub fn put(&mut self, place: usize, point: &SurfacePoint) {
-        self.reset(place + 1);
-        self.set_one(place, point);
-    }
-
-    fn set_one(&mut self, place: usize, point: &SurfacePoint) {
+    /// Sets the point at a place.
+    pub fn set_one(&mut self, place: usize, point: &SurfacePoint) {
         let SurfacePoint { p, n, shading, dpdu, dpdv, uv, .. } = point;
         let mut columns = self.values.iter_mut();
         for v in [p.p, p.error, *n, shading.n, *dpdu, *dpdv, shading.dpdu] {
@@ -137,7 +132,7 @@ impl World {
     /// spheres so small or far away that floats do not do, and of shapes other than triangles,
     /// spheres of sets and bilinear patches without attributes are computed one by one.
     pub fn points(&self, rays: RayColumns, hits: &HitColumns, places: &[u32], points: &mut PointColumns) {
-        points.reset(places.len());
+        points.grow(places.len());
         // SAFETY: the processor has the instruction set of a world.
         unsafe {
             self.tables.instruction_set.run(Points { world: self, rays, hits, places, points: &mut *points });
@@ -159,7 +154,7 @@ impl World {
         places: &[u32],
         points: &mut PointColumns,
     ) {
-        points.reset(places.len());
+        points.grow(places.len());
         let len = points.found.len();
         points.shading.iter_mut().for_each(|column| column.resize(len, 0.0));
         for (i, &place) in places.iter().enumerate() {

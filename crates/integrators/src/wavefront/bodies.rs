@@ -35,6 +35,7 @@ impl Exits {
     /// Makes room for as many paths, and has none.
     fn start(&mut self, count: usize) {
         self.segments.start(count, Besides { differentials: false, media: false });
+        self.points.grow(count);
         self.turns.clear();
     }
 
@@ -45,7 +46,7 @@ impl Exits {
         let ray = Ray::new(p.p, -shading.n, time);
         let PathState { beta, eta_scale, .. } = *state;
         self.segments.push(row, &PathState { beta, eta_scale, ..PathState::new(ray.into(), depth) });
-        self.points.put(turn, &exit.surface.surface);
+        self.points.set_one(turn, &exit.surface.surface);
         self.turns.push(turn as u32);
     }
 }

@@ -156,7 +156,7 @@ impl LightModel for AreaLight {
             }
         })?;
         let to_light = s.p.p - context.p.p;
-        if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.passes_alpha_test(part, &s) {
+        if s.pdf == 0.0 || to_light == Vector3::ZERO || !self.passes_alpha_test(part, &s) {
             return None;
         }
         let wi = to_light.normalize();
