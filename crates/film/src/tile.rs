@@ -123,7 +123,10 @@ impl FilmTile<'_> {
         self.add_plain(first, count, &terms, plain);
         if (!plain).trailing_zeros() < count as u32 {
             let l = l.0.each(R::to_array);
-            for lane in (0..count).filter(|lane| plain >> lane & 1 == 0) {
+            for lane in 0..count {
+                if plain >> lane & 1 == 1 {
+                    continue;
+                }
                 let l = SampledSpectrum(l.each(|l| l[lane]));
                 self.add_sample(self.pixel(first + lane), &l, &lambda.lane(lane), terms.weight[lane]);
             }

@@ -13,7 +13,7 @@
 
 #![allow(unsafe_code)]
 
-use lanes::{F32x1, Vector};
+use lanes::{Each, F32x1, Vector};
 use math::{Ray, Vec2, Vec3, Vec4, difference_of_products, gamma};
 
 /// The sign of an edge function below this may be due to underflow.
@@ -70,8 +70,8 @@ impl<'a> Sheared<'a> {
         unsafe {
             ShearedLanes {
                 axes: self.axes,
-                shear: self.shear.map(|x| V::splat(x)),
-                o: self.axes.map(|a| V::splat(o[a])),
+                shear: self.shear.each(|x| V::splat(x)),
+                o: self.axes.each(|a| V::splat(o[a])),
             }
         }
     }

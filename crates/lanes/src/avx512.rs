@@ -21,7 +21,8 @@ instruction_set! {
         // SAFETY: `from` is the proof of the instruction set; arrays have as many indices as are
         // read.
         unsafe {
-            let [low, high] = indices.map(|indices| _mm_loadu_si128(indices.as_ptr().cast()));
+            let low = _mm_loadu_si128(indices[0].as_ptr().cast());
+            let high = _mm_loadu_si128(indices[1].as_ptr().cast());
             // One permutation of both vectors, where the bit of 8 tells which.
             let high = _mm_or_si128(high, _mm_set1_epi32(0x0808_0808));
             let both = _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(low), high);

@@ -27,15 +27,19 @@ macro_rules! pair {
 
             #[inline(always)]
             unsafe fn load(from: &[f32; $n]) -> Self {
-                let half = |first: usize| -> [f32; $half] { std::array::from_fn(|i| from[first + i]) };
+                let (mut low, mut high) = ([0.0; $half], [0.0; $half]);
+                low.copy_from_slice(&from[..$half]);
+                high.copy_from_slice(&from[$half..]);
                 // SAFETY: as the caller promises.
-                unsafe { Self(V::load(&half(0)), V::load(&half($half))) }
+                unsafe { Self(V::load(&low), V::load(&high)) }
             }
 
             #[inline(always)]
             fn store(self) -> [f32; $n] {
-                let (low, high) = (self.0.store(), self.1.store());
-                std::array::from_fn(|i| if i < $half { low[i] } else { high[i - $half] })
+                let mut all = [0.0; $n];
+                all[..$half].copy_from_slice(&self.0.store());
+                all[$half..].copy_from_slice(&self.1.store());
+                all
             }
 
             #[inline(always)]

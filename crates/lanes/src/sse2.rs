@@ -1,6 +1,7 @@
 //! Four floats at once, which every x86-64 processor can do; fused multiply-adds are made in
 //! doubles.
 
+use crate::each::Each;
 use crate::pair::Pair;
 use std::arch::x86_64::*;
 
@@ -123,7 +124,7 @@ unsafe fn mul_wide(a: __m128i, b: __m128i) -> (__m128i, __m128i) {
         let even = _mm_mul_epu32(a, b);
         let odd = _mm_mul_epu32(_mm_srli_epi64::<32>(a), _mm_srli_epi64::<32>(b));
         // Of each the two low halves, then the two high ones.
-        let [even, odd] = [even, odd].map(|products| _mm_shuffle_epi32::<0b11_01_10_00>(products));
+        let [even, odd] = [even, odd].each(|products| _mm_shuffle_epi32::<0b11_01_10_00>(products));
         (_mm_unpacklo_epi32(even, odd), _mm_unpackhi_epi32(even, odd))
     }
 }
@@ -150,7 +151,7 @@ unsafe fn fused(a: __m128, b: __m128, c: __m128) -> __m128 {
     // SAFETY: every x86-64 processor has SSE2.
     unsafe {
         let low = fused_doubles(_mm_cvtps_pd(a), _mm_cvtps_pd(b), _mm_cvtps_pd(c));
-        let [a, b, c] = [a, b, c].map(|v| _mm_cvtps_pd(_mm_movehl_ps(v, v)));
+        let [a, b, c] = [a, b, c].each(|v| _mm_cvtps_pd(_mm_movehl_ps(v, v)));
         _mm_movelh_ps(low, fused_doubles(a, b, c))
     }
 }

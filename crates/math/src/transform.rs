@@ -110,7 +110,7 @@ impl Transform {
     #[inline(always)]
     pub fn point_lanes<R: Real>(&self, p: Point3<R>) -> Point3<R> {
         let m = &self.m;
-        let [x, y, z, t] = [m.x_axis.w, m.y_axis.w, m.z_axis.w, m.w_axis.w].map(R::splat);
+        let [x, y, z, t] = [m.x_axis.w, m.y_axis.w, m.z_axis.w, m.w_axis.w].each(R::splat);
         let w = x * p.x + y * p.y + z * p.z + t;
         let p = self.affine_point(p);
         Vec3::select(w.eq(R::one()), p, p / w)

@@ -5,7 +5,7 @@
 //! numbers, so that as many are tested at once as there are lanes; neighbouring ranges are not far
 //! from there.
 
-use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Point3, Vec3};
 
 /// The side of a cell in metres.
@@ -100,7 +100,7 @@ impl Grid {
     #[inline]
     pub fn entry(&self, place: u32) -> Entry {
         let place = place as usize;
-        let [x, y, z, reach] = [0, 1, 2, 3].map(|axis: usize| self.columns[axis][place]);
+        let [x, y, z, reach] = [0, 1, 2, 3].each(|axis: usize| self.columns[axis][place]);
         Entry { center: Vec3::new(x, y, z), radius: self.radius[place], reach, body: self.bodies[place] }
     }
 
@@ -120,7 +120,7 @@ impl Grid {
         let reach = Vec3::splat(distance + self.largest);
         let (low, high) = (cell(point - reach), cell(point + reach));
         let end = (1 << self.bits[2]) - 1;
-        let (center, distance) = (Vec3::from_array(point.to_array().map(R::splat)), R::splat(distance));
+        let (center, distance) = (Vec3::from_array(point.to_array().each(R::splat)), R::splat(distance));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 let column = place([x, y, 0], self.bits);
@@ -128,10 +128,10 @@ impl Grid {
                 let last = first + ((high[2] - low[2]) as usize).min(end);
                 let again = (last + 1).saturating_sub(end + 1);
                 for [first, last] in [[first, last.min(end) + 1], [0, again]] {
-                    let [begin, end] = [first, last].map(|cell| self.starts[column + cell] as usize);
+                    let [begin, end] = [first, last].each(|cell| self.starts[column + cell] as usize);
                     for i in (begin..end).step_by(R::LANES) {
                         let [px, py, pz, reach] =
-                            [0, 1, 2, 3].map(|axis: usize| R::load(&self.columns[axis][i..]));
+                            [0, 1, 2, 3].each(|axis: usize| R::load(&self.columns[axis][i..]));
                         let limit = distance + reach;
                         let is_near = Vec3::new(px, py, pz).distance_squared(center).le(limit * limit);
                         let remaining = (1u64 << (end - i).min(MAX_LANES)) - 1;

@@ -6,7 +6,7 @@
 //! of layers: its integrals are the weighted means of theirs.
 
 use crate::warp::{invert_linear, sample_linear};
-use lanes::{Int, Real};
+use lanes::{Each, Int, Real};
 use math::{Point2, Vec2, lerp};
 
 /// Layers of densities over a grid.
@@ -236,7 +236,7 @@ impl PiecewiseBilinear2d {
     /// Where a row of a layer begins.
     #[inline(always)]
     fn index<I: Int>(&self, layer: I, row: I) -> I {
-        let [width, height] = [self.width, self.height].map(|size| I::splat(size as u32));
+        let [width, height] = [self.width, self.height].each(|size| I::splat(size as u32));
         layer.wrapping_mul(height).wrapping_add(row).wrapping_mul(width)
     }
 }

@@ -5,7 +5,7 @@
 //! density is uniform, so that sampling and density still agree; [`PiecewiseConstant1d::integral`]
 //! then is 0.
 
-use lanes::{Int, Mask, Real};
+use lanes::{Each, Int, Mask, Real};
 use math::{Bounds2, ONE_MINUS_EPSILON, Vec2};
 
 /// A density over an interval.
@@ -106,7 +106,7 @@ impl Tables {
     #[inline(always)]
     fn sample<R: Real>(&self, row: R::Int, u: R) -> (R, R, R::Int) {
         let u = u.clamp(R::zero(), R::splat(ONE_MINUS_EPSILON));
-        let [cells, last, one] = [self.cells, self.cells - 1, 1].map(|n| R::Int::splat(n as u32));
+        let [cells, last, one] = [self.cells, self.cells - 1, 1].each(|n| R::Int::splat(n as u32));
         let part = (u * R::splat(self.cells as f32)).to_int();
         let part = R::Int::select(part.lt(last), part, last);
         let first = row.wrapping_mul(cells);

@@ -17,7 +17,7 @@
 
 #![allow(unsafe_code)]
 
-use lanes::Vector;
+use lanes::{Each, Vector};
 use math::{Bounds3, Ray, Vec3, gamma};
 
 /// Children of a node, and rays of a packet.
@@ -156,8 +156,7 @@ pub(super) const PLANE: usize = size_of::<[f32; WIDTH]>();
 /// The offsets in bytes of the planes that a ray crosses first and last along each axis.
 #[inline(always)]
 fn planes_along(d: &Vec3) -> [[usize; 3]; 2] {
-    let d = d.to_array();
-    let [x, y, z] = [0, 1, 2].map(|axis| 3 * PLANE * (d[axis].to_bits() >> 31) as usize);
+    let [x, y, z] = d.to_array().each(|d| 3 * PLANE * (d.to_bits() >> 31) as usize);
     [[x, PLANE + y, 2 * PLANE + z], [3 * PLANE - x, 4 * PLANE - y, 5 * PLANE - z]]
 }
 

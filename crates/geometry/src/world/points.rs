@@ -49,8 +49,8 @@ impl PointColumns {
     #[inline(always)]
     pub fn shading<R: Real>(&self, first: usize) -> Shading<R> {
         let mut numbers = [R::zero(); 9];
-        for (number, column) in numbers.iter_mut().zip(&self.shading) {
-            *number = R::load(&column[first..]);
+        for i in 0..numbers.len() {
+            numbers[i] = R::load(&self.shading[i][first..]);
         }
         let [tx, ty, tz, ux, uy, uz, vx, vy, vz] = numbers;
         Shading {

@@ -10,7 +10,7 @@ use super::instance::InstancePath;
 use super::triangle_numbering::TriangleNumbering;
 use crate::bvh::Extent;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
-use lanes::{Simd, Vector, first_equal};
+use lanes::{Each, Simd, Vector, first_equal};
 use math::{Bounds3, Vec3};
 
 /// Four triangles of any geometries, in two cache lines.
@@ -145,9 +145,9 @@ impl TriangleBlock {
     pub fn intersect<S: Simd>(&self, ray: &ShearedLanes<S::F32x8>, t_max: f32) -> Option<LaneHits<S::F32x4>> {
         let vertices = self.sheared(ray);
         let corners = [
-            vertices.map(|v| S::permute::<0>(v, &self.corners)),
-            vertices.map(|v| S::permute::<1>(v, &self.corners)),
-            vertices.map(|v| S::permute::<2>(v, &self.corners)),
+            vertices.each(|v| S::permute::<0>(v, &self.corners)),
+            vertices.each(|v| S::permute::<1>(v, &self.corners)),
+            vertices.each(|v| S::permute::<2>(v, &self.corners)),
         ];
         // SAFETY: `ray` is the proof of the instruction set.
         LaneHits::of(corners, unsafe { S::F32x4::splat(t_max) })
@@ -161,13 +161,13 @@ impl TriangleBlock {
         ray: &ShearedLanes<S::F32x8>,
         t_max: f32,
     ) -> Option<LaneHits<S::F32x8>> {
-        let [a, b] = blocks.map(|block| block.sheared(ray));
+        let [a, b] = blocks.each(|block| block.sheared(ray));
         let (vertices, corners) =
-            ([0, 1, 2].map(|axis| [a[axis], b[axis]]), blocks.map(|block| &block.corners));
+            ([0, 1, 2].each(|axis: usize| [a[axis], b[axis]]), blocks.each(|block| &block.corners));
         let corners = [
-            vertices.map(|v| S::permute_both::<0>(v, corners)),
-            vertices.map(|v| S::permute_both::<1>(v, corners)),
-            vertices.map(|v| S::permute_both::<2>(v, corners)),
+            vertices.each(|v| S::permute_both::<0>(v, corners)),
+            vertices.each(|v| S::permute_both::<1>(v, corners)),
+            vertices.each(|v| S::permute_both::<2>(v, corners)),
         ];
         // SAFETY: `ray` is the proof of the instruction set.
         LaneHits::of(corners, unsafe { S::F32x8::splat(t_max) })

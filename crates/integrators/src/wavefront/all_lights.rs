@@ -5,7 +5,7 @@ use lanes::{Each, Int, Mask, Real};
 use math::{Ray, RayDifferential, Vec2, Vec3, offset_ray_origin};
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::Interfaces;
-use scene::light::{Light, LightId, LightSampleContext};
+use scene::light::{Light, LightId};
 use spectrum::SampledSpectrum;
 
 use super::lights::{self, LightLanes};
@@ -44,8 +44,6 @@ impl AllLights {
 /// The lights at vertices, one after another; then the rays of specular surfaces.
 pub(super) struct LightsInTurn<'b, R: Real> {
     lights: &'b AllLights,
-    vertices: Vertices<R>,
-    contexts: LightSampleContext<R>,
     /// The lanes that scatter light of lights.
     lit: R::Mask,
     /// Those that reflect or refract rays.
@@ -73,17 +71,16 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
     pub fn begin(
         lights: &'b AllLights,
         stage: &mut Stage,
-        (vertices, contexts): (Vertices<R>, LightSampleContext<R>),
-        flags: BxdfFlags<R>,
+        vertices: &mut Vertices<R>,
+        flags: &BxdfFlags<R>,
         chooses: bool,
     ) -> (Self, Request<R>) {
         let active = vertices.active;
         let mut state = Self {
             lights,
-            contexts,
             lit: active & flags.is_non_specular(),
             specular: active & flags.is_specular(),
-            flags,
+            flags: *flags,
             chooses,
             id: 0,
             light: None,
@@ -91,20 +88,19 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             unlit: vertices.address.dimension,
             numbers: [(R::zero(), Vec2::splat(R::zero())); 2],
             transmits: true,
-            vertices,
         };
-        let request = state.advance(stage);
+        let request = state.advance(stage, vertices);
         (state, request)
     }
 
     /// Goes on to the next light that has a sample.
     #[inline(always)]
-    fn advance(&mut self, stage: &mut Stage) -> Request<R> {
+    fn advance(&mut self, stage: &mut Stage, vertices: &mut Vertices<R>) -> Request<R> {
         if !self.lit.any() {
-            return self.reflect(stage);
+            return self.reflect(stage, vertices);
         }
         while self.id < stage.pass.pixels.scene.lights().len() as u32 {
-            let (light, is_ambient) = self.sample(stage);
+            let (light, is_ambient) = self.sample(stage, vertices);
             self.id += 1;
             if light.valid.any() {
                 let request = Request::Value(light.wi);
@@ -113,15 +109,15 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             }
         }
         if !self.lights.casts_shadows || self.lights.has_ambient {
-            stage.paths.l.set(self.vertices.rows, self.lit, self.sum);
+            stage.paths.l.set(vertices.rows, self.lit, self.sum);
         }
-        self.reflect(stage)
+        self.reflect(stage, vertices)
     }
 
     /// A point of the next light; whether that is a sky that casts no shadows.
     #[inline(always)]
-    fn sample(&mut self, stage: &mut Stage) -> (LightLanes<R>, bool) {
-        let Self { vertices, contexts, lit, .. } = self;
+    fn sample(&self, stage: &mut Stage, vertices: &mut Vertices<R>) -> (LightLanes<R>, bool) {
+        let Self { lit, .. } = self;
         let AllLights { has_ambient, direct, .. } = self.lights;
         let id = LightId(self.id);
         let light = stage.pass.pixels.scene.light(id).row();
@@ -141,20 +137,28 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             _ => {
                 let sampling = (&stage.pass, direct, &mut *stage.light_samples);
                 let numbers = (R::zero(), u);
-                (lights::sample(sampling, Some(id), contexts, numbers, &vertices.lambda, *lit), false)
+                (
+                    lights::sample(sampling, Some(id), &vertices.contexts, numbers, &vertices.lambda, *lit),
+                    false,
+                )
             }
         }
     }
 
     /// Adds the light of the last sample, by the values of the BSDFs.
     #[inline(always)]
-    pub fn connect(&mut self, stage: &mut Stage, f: SampledSpectrum<R>) -> Request<R> {
-        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, time, .. } = self.vertices;
+    pub fn connect(
+        &mut self,
+        stage: &mut Stage,
+        vertices: &mut Vertices<R>,
+        f: SampledSpectrum<R>,
+    ) -> Request<R> {
+        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = *vertices;
         if let Some((light, is_ambient)) = self.light.take() {
             let LightLanes { valid, l, wi, pdf, .. } = light;
             let scattered = f * l * wi.dot(ns).abs();
             let valid = valid & !scattered.is_black();
-            let l = self.vertices.beta * (scattered / pdf);
+            let l = beta * (scattered / pdf);
             if !self.lights.casts_shadows || is_ambient {
                 self.sum = SampledSpectrum::select(valid, self.sum + l, self.sum);
             } else {
@@ -165,16 +169,16 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
                 passing.append(rows, valid & light.passes, &shadow);
             }
         }
-        self.advance(stage)
+        self.advance(stage, vertices)
     }
 
     /// Goes on to the rays of specular surfaces.
     #[inline(always)]
-    fn reflect(&mut self, stage: &mut Stage) -> Request<R> {
+    fn reflect(&mut self, stage: &mut Stage, vertices: &mut Vertices<R>) -> Request<R> {
         if !self.lights.casts_shadows {
             return Request::Nothing;
         }
-        let Self { vertices, lit, specular, .. } = self;
+        let Self { lit, specular, .. } = self;
         let address = &mut vertices.address;
         address.dimension = R::Int::select(*lit, address.dimension, self.unlit);
         let mut next = address.dimension;
@@ -192,20 +196,25 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
 
     /// Lets the rays of samples wait.
     #[inline(always)]
-    pub fn wait_for(&mut self, stage: &mut Stage, sample: &BsdfSample<R>) -> Request<R> {
-        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = self.vertices;
+    pub fn wait_for(
+        &mut self,
+        stage: &mut Stage,
+        vertices: &Vertices<R>,
+        sample: &BsdfSample<R>,
+    ) -> Request<R> {
+        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
         let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
         let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));
         let turn_of = turns.indices.to_array();
         rows.each_of(valid & self.specular & flags.is_specular(), |lane, row| {
             let turn = turn_of[lane] as usize;
-            let [o, d] = [o, d].map(|v| Vec3::from_array(v.map(|lanes| lanes[lane])));
+            let [o, d] = [o, d].each(|v| Vec3::from_array(v.each(|lanes| lanes[lane])));
             let ray = RayDifferential {
                 ray: Ray::new(o, d, time.lane(lane)),
                 differentials: stage.scattered_differentials(turn, sample, lane),
             };
-            let beta = SampledSpectrum::new(beta.map(|lanes| lanes[lane]));
+            let beta = SampledSpectrum::new(beta.each(|lanes| lanes[lane]));
             let depth = stage.segments.depth[turn] + 1;
             stage.queues.waiting.push(row as u32, PathState { beta, ..PathState::new(ray, depth) });
         });

@@ -2,7 +2,7 @@
 //! and by leaving the scene.
 
 use geometry::HitColumns;
-use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Vec2, Vector3};
 use scene::Scene;
 use scene::light::{ImageInfiniteLight, Light, LightId};
@@ -52,7 +52,7 @@ impl Emit<'_, '_> {
         let [mut x, mut y] = [[0.0; MAX_LANES]; 2];
         let [mut queue, mut turns, mut lights] = [[0; MAX_LANES]; 3];
         for (lane, &LightHit { row, turn, light }) in found.iter().enumerate() {
-            let [u, v] = self.hits.uv.each_ref().map(|column| column[turn as usize]);
+            let [u, v] = [&self.hits.uv[0], &self.hits.uv[1]].each(|column| column[turn as usize]);
             (x[lane], y[lane]) = (u, v);
             (queue[lane], turns[lane], lights[lane]) = (row, turn, light);
         }

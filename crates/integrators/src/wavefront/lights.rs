@@ -62,10 +62,24 @@ pub(super) fn sample<R: Real>(
     (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
     light: Option<LightId>,
     context: &LightSampleContext<R>,
-    (u, u_light): (R, Vec2<R>),
+    numbers: (R, Vec2<R>),
     lambda: &SampledWavelengths<R>,
     active: R::Mask,
 ) -> LightLanes<R> {
+    draw((pass, direct, &mut *samples), light, context, numbers, lambda, active);
+    samples.lanes()
+}
+
+/// Draws the same samples, and leaves them in arrays.
+#[inline(always)]
+pub(super) fn draw<R: Real>(
+    (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
+    light: Option<LightId>,
+    context: &LightSampleContext<R>,
+    (u, u_light): (R, Vec2<R>),
+    lambda: &SampledWavelengths<R>,
+    active: R::Mask,
+) {
     pass.instruction_set.dispatch_large(Sample {
         pass,
         direct,
@@ -78,20 +92,6 @@ pub(super) fn sample<R: Real>(
         lambda_pdf: lambda.pdf().0.each(R::to_array),
         active: active.bits(),
     });
-    let number = |column: usize| R::load(&samples.columns[column]);
-    let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
-    let [valid, is_delta, is_distant, passes] = samples.masks.each(R::Mask::from_bits);
-    LightLanes {
-        valid,
-        l: SampledSpectrum([0, 1, 2, 3].each(number)),
-        wi: vector(Samples::WI),
-        pdf: number(Samples::PDF),
-        p: Point3Error::new(vector(Samples::P), vector(Samples::P_ERROR)),
-        n: vector(Samples::NORMAL),
-        is_delta,
-        is_distant,
-        passes,
-    }
 }
 
 /// Light samples in arrays, which are made once.
@@ -112,19 +112,49 @@ impl Samples {
     /// Follows the error.
     const NORMAL: usize = N + 10;
 
+    /// The samples.
+    #[inline(always)]
+    pub fn lanes<R: Real>(&self) -> LightLanes<R> {
+        let [valid, is_delta, is_distant, passes] = self.masks.each(R::Mask::from_bits);
+        LightLanes {
+            valid,
+            l: SampledSpectrum([0, 1, 2, 3].each(|i: usize| R::load(&self.columns[i]))),
+            wi: self.vector(Self::WI),
+            pdf: R::load(&self.columns[Self::PDF]),
+            p: Point3Error::new(self.vector(Self::P), self.vector(Self::P_ERROR)),
+            n: self.vector(Self::NORMAL),
+            is_delta,
+            is_distant,
+            passes,
+        }
+    }
+
+    /// The directions to the lights.
+    #[inline(always)]
+    pub fn directions<R: Real>(&self) -> Vector3<R> {
+        self.vector(Self::WI)
+    }
+
+    #[inline(always)]
+    fn vector<R: Real>(&self, first: usize) -> Vector3<R> {
+        let [x, y, z] = [0, 1, 2].each(|axis| R::load(&self.columns[first + axis]));
+        Vec3::new(x, y, z)
+    }
+
     /// Sets numbers of all lanes.
     #[inline(always)]
     fn store<R: Real>(&mut self, first: usize, values: &[R]) {
-        for (column, value) in self.columns[first..].iter_mut().zip(values) {
-            value.store(column);
+        for i in 0..values.len() {
+            values[i].store(&mut self.columns[first + i]);
         }
     }
 
     /// Sets numbers of the lanes of a mask.
     #[inline(always)]
     fn blend<R: Real>(&mut self, first: usize, mask: R::Mask, values: &[R]) {
-        for (column, &value) in self.columns[first..].iter_mut().zip(values) {
-            R::select(mask, value, R::load(column)).store(column);
+        for i in 0..values.len() {
+            let column = &mut self.columns[first + i];
+            R::select(mask, values[i], R::load(column)).store(column);
         }
     }
 

@@ -1,7 +1,7 @@
 //! The vertices of paths in media, in lanes: light samples, samples of the phase function and
 //! Russian roulette.
 
-use lanes::{Int, Kernel, Real};
+use lanes::{Each, Int, Kernel, Real};
 use math::{Point3Error, Ray, Vec3};
 use scattering::HenyeyGreenstein;
 use scene::light::LightSampleContext;
@@ -48,7 +48,7 @@ impl ScatterInMedia<'_, '_> {
         let rows = Rows { indices: R::Int::gather(&segments.rows, turns.indices), active: turns.active };
         let last = vertices.turns.len() - 1;
         let place = R::Int::from_fn(|lane| (first + lane).min(last) as u32);
-        let [x, y, z] = vertices.p.each_ref().map(|column| R::gather(column, place));
+        let [x, y, z] = [0, 1, 2].each(|axis: usize| R::gather(&vertices.p[axis], place));
         let phase = HenyeyGreenstein { g: R::gather(&vertices.g, place) };
         let (p, n) = (Point3Error::exact(Vec3::new(x, y, z)), Vec3::splat(R::zero()));
         let time = R::gather(&segments.time, turns.indices);

@@ -6,7 +6,6 @@ use math::{Ray, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::Interfaces;
-use scene::light::LightSampleContext;
 use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
@@ -79,14 +78,10 @@ impl Path {
     }
 }
 
-/// Path tracing at vertices.
+/// Path tracing at vertices. The samples of lights stay in the stage.
 pub(super) struct PathVertices<R: Real> {
-    vertices: Vertices<R>,
-    contexts: LightSampleContext<R>,
     media: Option<VerticesInMedia<R>>,
     numbers: VertexNumbers<R>,
-    /// Of the lanes that sample one, if any does.
-    light: Option<LightLanes<R>>,
 }
 
 impl<R: Real> PathVertices<R> {
@@ -95,39 +90,45 @@ impl<R: Real> PathVertices<R> {
     pub fn begin(
         path: &Path,
         stage: &mut Stage,
-        (mut vertices, contexts): (Vertices<R>, LightSampleContext<R>),
-        flags: BxdfFlags<R>,
+        vertices: &mut Vertices<R>,
+        flags: &BxdfFlags<R>,
         chooses: bool,
     ) -> (Self, Request<R>) {
         let samples_light = flags.is_non_specular();
-        let media = stage.segments.media.as_ref().map(|columns| {
-            let place = (vertices.turns, &stage.hits.geometry[..]);
-            VerticesInMedia::new(stage.pass.media, columns, place, vertices.lambda.secondary_terminated())
-        });
+        let media = match &stage.segments.media {
+            Some(columns) => {
+                let place = (vertices.turns, &stage.hits.geometry[..]);
+                let terminated = vertices.lambda.secondary_terminated();
+                Some(VerticesInMedia::new(stage.pass.media, columns, place, terminated))
+            }
+            None => None,
+        };
         let (address, has_media) = (&mut vertices.address, media.is_some());
         let numbers = VertexNumbers::draw(&stage.pass, address, samples_light, chooses, has_media);
         let samples = vertices.active & samples_light;
-        let sampling = (&stage.pass, &path.direct, &mut *stage.light_samples);
-        let light = samples
-            .any()
-            .then(|| lights::sample(sampling, None, &contexts, numbers.light, &vertices.lambda, samples));
-        let state = Self { vertices, contexts, media, numbers, light };
-        let request = state.light.as_ref().map_or_else(|| state.sample(), |light| Request::Value(light.wi));
-        (state, request)
-    }
-
-    #[inline(always)]
-    fn sample(&self) -> Request<R> {
-        Request::Sample(self.numbers.bsdf, Directions::All)
+        let request = if samples.any() {
+            let sampling = (&stage.pass, &path.direct, &mut *stage.light_samples);
+            lights::draw(sampling, None, &vertices.contexts, numbers.light, &vertices.lambda, samples);
+            Request::Value(stage.light_samples.directions())
+        } else {
+            Request::Sample(numbers.bsdf, Directions::All)
+        };
+        (Self { media, numbers }, request)
     }
 
     /// Next-event estimation, by the values of the BSDFs towards the lights and their densities
     /// there.
     #[inline(always)]
-    pub fn connect(&mut self, stage: &mut Stage, f: SampledSpectrum<R>, p_b: R) -> Request<R> {
-        let Self { vertices, media, numbers, light, .. } = self;
-        let Some(light) = light else { return self.sample() };
-        let LightLanes { valid, l, wi, pdf, .. } = *light;
+    pub fn connect(
+        &self,
+        stage: &mut Stage,
+        vertices: &Vertices<R>,
+        f: SampledSpectrum<R>,
+        p_b: R,
+    ) -> Request<R> {
+        let Self { media, numbers } = self;
+        let light = stage.light_samples.lanes::<R>();
+        let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let scattered = f * l * wi.dot(ns).abs();
         let mut lit = valid & !scattered.is_black();
@@ -154,13 +155,18 @@ impl<R: Real> PathVertices<R> {
             stopped.append(vertices.rows, lit & !light.passes, &shadow);
             passing.append(vertices.rows, lit & light.passes, &shadow);
         }
-        self.sample()
+        Request::Sample(numbers.bsdf, Directions::All)
     }
 
     /// Continues the paths along samples of the BSDFs, unless Russian roulette ends them.
     #[inline(always)]
-    pub fn scatter(&mut self, stage: &mut Stage, sample: &BsdfSample<R>, density: R) -> Request<R> {
-        let Self { vertices, contexts, media, .. } = self;
+    pub fn scatter(
+        &self,
+        stage: &mut Stage,
+        vertices: &Vertices<R>,
+        sample: &BsdfSample<R>,
+        density: R,
+    ) -> Request<R> {
         let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = *sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
@@ -184,9 +190,12 @@ impl<R: Real> PathVertices<R> {
             beta: beta * weight,
             eta_scale,
             depth: depth.wrapping_add(R::Int::splat(1)),
-            vertex: *contexts,
+            vertex: vertices.contexts,
             pdf: R::select(is_specular, R::zero(), density),
-            media: media.map(|media| media.leave((wi, n), density)),
+            media: match &self.media {
+                Some(media) => Some(media.leave((wi, n), density)),
+                None => None,
+            },
         };
         let first = stage.queues.next.rows.len();
         stage.queues.next.append(rows.indices, survives, &segment);

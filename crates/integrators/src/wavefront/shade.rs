@@ -5,7 +5,7 @@
 //! set, which [request](Request) of a kernel one value or sample after another.
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
-use lanes::{Callee, Kernel, Mask, Real};
+use lanes::{Callee, Each, Kernel, Mask, Real};
 use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
@@ -101,25 +101,27 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize) {
         let Self { material, stage } = self;
-        let (vertices, footprint, is_rough) = R::call(Reach { stage, first });
+        // Large values stay where functions have written them.
+        let mut vertices: Vertices<R> = R::call(Reach { stage, first });
         let PatchPoints { p, n, ns, uv, ss, .. } = vertices.surface;
-        let context = TextureContext { p: p.p, n, uv, footprint };
+        let context = TextureContext { p: p.p, n, uv, footprint: vertices.footprint };
         let mut lambda = vertices.lambda;
         let bxdf = material.bxdf(stage.pass.pixels.scene.textures(), &context, &mut lambda);
         let mut bsdf = Bsdf::new(ns, ss, bxdf);
         bsdf.seed(&lambda, vertices.address.dimension);
-        if let Some(is_rough) = is_rough {
-            bsdf.regularize(is_rough);
+        if stage.surfaces.regularizes() {
+            bsdf.regularize(vertices.is_rough);
         }
         let (wo, mode, weighs) = (vertices.wo, TransportMode::Radiance, stage.surfaces.weighs());
         let (flags, chooses) = (bsdf.flags(), M::Bxdf::<'_, R>::CHOOSES);
-        let (mut vertices, mut request) = R::call(Begin { stage, vertices, lambda, flags, chooses });
+        let begin = Begin { stage, vertices: &mut vertices, lambda: &lambda, flags: &flags, chooses };
+        let mut state = R::call(begin);
         loop {
-            request = match request {
+            match state.request {
                 Request::Value(wi) => {
                     let f = bsdf.f(wo, wi, mode);
                     let pdf = if weighs { bsdf.pdf(wo, wi, mode, Directions::All) } else { R::one() };
-                    R::call(Connect { stage, vertices: &mut vertices, f, pdf })
+                    R::call(Connect { stage, vertices: &mut vertices, state: &mut state, f: &f, pdf });
                 }
                 Request::Sample((uc, u), directions) => {
                     let sample = bsdf.sample_lanes(wo, uc, u, mode, directions);
@@ -128,16 +130,21 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
                     } else {
                         sample.pdf
                     };
-                    R::call(Continue { stage, vertices: &mut vertices, sample, pdf })
+                    R::call(Continue { stage, vertices: &vertices, state: &mut state, sample: &sample, pdf });
                 }
                 Request::Nothing => return,
-            };
+            }
         }
     }
 }
 
-/// Vertices with the state of their algorithm.
-enum AtVertices<'b, R: Real> {
+/// The state of an algorithm at vertices.
+struct AtVertices<'b, R: Real> {
+    request: Request<R>,
+    algorithm: AlgorithmState<'b, R>,
+}
+
+enum AlgorithmState<'b, R: Real> {
     Path(PathVertices<R>),
     AllLights(LightsInTurn<'b, R>),
 }
@@ -149,58 +156,45 @@ struct Reach<'a, 'b, 'c> {
 }
 
 impl<R: Real> Callee<R> for Reach<'_, '_, '_> {
-    /// The vertices, their footprints, and the lanes whose surfaces are roughened.
-    type Output = (Vertices<R>, Footprint<R>, Option<R::Mask>);
+    type Output = Vertices<R>;
 
     #[inline(always)]
-    fn run(self) -> Self::Output {
+    fn run(self) -> Vertices<R> {
         let Self { stage, first } = self;
         let queue = &stage.rows[first..stage.rows.len().min(first + R::LANES)];
-        let vertices = stage.vertices::<R>(first, queue);
-        let footprint = if stage.with_footprint {
-            stage.segments.footprint(stage.pass.pixels.view, vertices.turns, &vertices.surface)
-        } else {
-            Footprint::point()
-        };
-        let rough = |(lane, &row): (usize, &u32)| u32::from(stage.paths.rough_before[row as usize]) << lane;
-        let is_rough = stage
-            .surfaces
-            .regularizes()
-            .then(|| R::Mask::from_bits(queue.iter().enumerate().map(rough).sum()));
-        (vertices, footprint, is_rough)
+        stage.vertices::<R>(first, queue)
     }
 }
 
 /// The first step of the algorithm.
 struct Begin<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: Vertices<R>,
+    vertices: &'c mut Vertices<R>,
     /// The wavelengths as the materials have left them.
-    lambda: SampledWavelengths<R>,
+    lambda: &'c SampledWavelengths<R>,
     /// The flags of the BSDFs.
-    flags: BxdfFlags<R>,
+    flags: &'c BxdfFlags<R>,
     /// Whether they choose among lobes.
     chooses: bool,
 }
 
 impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
-    type Output = (AtVertices<'b, R>, Request<R>);
+    type Output = AtVertices<'b, R>;
 
     #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Self { stage, mut vertices, lambda, flags, chooses } = self;
-        stage.keep_wavelengths(&vertices, &lambda);
-        vertices.lambda = lambda;
-        let contexts = contexts(&vertices, flags);
+    fn run(self) -> AtVertices<'b, R> {
+        let Self { stage, vertices, lambda, flags, chooses } = self;
+        stage.keep_wavelengths(vertices, lambda);
+        vertices.lambda = *lambda;
+        vertices.offset_contexts(flags);
         match stage.surfaces {
             Surfaces::Path(path) | Surfaces::Boundaries(path) => {
-                let (state, request) = PathVertices::begin(path, stage, (vertices, contexts), flags, chooses);
-                (AtVertices::Path(state), request)
+                let (state, request) = PathVertices::begin(path, stage, vertices, flags, chooses);
+                AtVertices { request, algorithm: AlgorithmState::Path(state) }
             }
             Surfaces::AllLights(lights) => {
-                let (state, request) =
-                    LightsInTurn::begin(lights, stage, (vertices, contexts), flags, chooses);
-                (AtVertices::AllLights(state), request)
+                let (state, request) = LightsInTurn::begin(lights, stage, vertices, flags, chooses);
+                AtVertices { request, algorithm: AlgorithmState::AllLights(state) }
             }
         }
     }
@@ -209,42 +203,44 @@ impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
 /// The step that follows a value and its density.
 struct Connect<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: &'c mut AtVertices<'b, R>,
-    f: SampledSpectrum<R>,
+    vertices: &'c mut Vertices<R>,
+    state: &'c mut AtVertices<'b, R>,
+    f: &'c SampledSpectrum<R>,
     pdf: R,
 }
 
 impl<R: Real> Callee<R> for Connect<'_, '_, '_, R> {
-    type Output = Request<R>;
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> Request<R> {
-        let Self { stage, vertices, f, pdf } = self;
-        match vertices {
-            AtVertices::Path(state) => state.connect(stage, f, pdf),
-            AtVertices::AllLights(state) => state.connect(stage, f),
-        }
+    fn run(self) {
+        let Self { stage, vertices, state, f, pdf } = self;
+        state.request = match &mut state.algorithm {
+            AlgorithmState::Path(path) => path.connect(stage, vertices, *f, pdf),
+            AlgorithmState::AllLights(lights) => lights.connect(stage, vertices, *f),
+        };
     }
 }
 
 /// The step that follows a sample, of which the density is given.
 struct Continue<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: &'c mut AtVertices<'b, R>,
-    sample: BsdfSample<R>,
+    vertices: &'c Vertices<R>,
+    state: &'c mut AtVertices<'b, R>,
+    sample: &'c BsdfSample<R>,
     pdf: R,
 }
 
 impl<R: Real> Callee<R> for Continue<'_, '_, '_, R> {
-    type Output = Request<R>;
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> Request<R> {
-        let Self { stage, vertices, sample, pdf } = self;
-        match vertices {
-            AtVertices::Path(state) => state.scatter(stage, &sample, pdf),
-            AtVertices::AllLights(state) => state.wait_for(stage, &sample),
-        }
+    fn run(self) {
+        let Self { stage, vertices, state, sample, pdf } = self;
+        state.request = match &mut state.algorithm {
+            AlgorithmState::Path(path) => path.scatter(stage, vertices, sample, pdf),
+            AlgorithmState::AllLights(lights) => lights.wait_for(stage, vertices, sample),
+        };
     }
 }
 
@@ -262,6 +258,11 @@ pub(super) struct Vertices<R: Real> {
     /// Path throughput before the vertex.
     pub beta: SampledSpectrum<R>,
     pub address: Address<R::Int>,
+    footprint: Footprint<R>,
+    /// The lanes whose surfaces are roughened.
+    is_rough: R::Mask,
+    /// The contexts of light sampling.
+    pub contexts: LightSampleContext<R>,
 }
 
 impl Stage<'_, '_> {
@@ -270,16 +271,33 @@ impl Stage<'_, '_> {
         let rows = Rows::<R>::first(queue);
         let turns = Rows::<R>::first(&self.turns[first..first + queue.len()]);
         let (paths, segments) = (&*self.paths, self.segments);
+        let surface = self.points.get(first);
+        let footprint = if self.with_footprint {
+            segments.footprint(self.pass.pixels.view, turns, &surface)
+        } else {
+            Footprint::point()
+        };
+        let mut rough = 0;
+        if self.surfaces.regularizes() {
+            for (lane, &row) in queue.iter().enumerate() {
+                rough |= u32::from(paths.rough_before[row as usize]) << lane;
+            }
+        }
+        let PatchPoints { p, n, ns, .. } = surface;
+        let time = R::gather(&segments.time, turns.indices);
         Vertices {
             rows,
             turns,
             active: rows.active,
-            surface: self.points.get(first),
+            surface,
             wo: -segments.direction.vector(turns).normalize(),
-            time: R::gather(&segments.time, turns.indices),
+            time,
             lambda: paths.lambda_lanes(rows),
             beta: segments.beta.get(turns),
             address: paths.address(rows, self.pass.pixels.index),
+            footprint,
+            is_rough: R::Mask::from_bits(rough),
+            contexts: LightSampleContext { p, n, ns, time },
         }
     }
 
@@ -309,7 +327,7 @@ impl Stage<'_, '_> {
         } else {
             BxdfFlags::SPECULAR_TRANSMISSION
         };
-        let wi = sample.wi.to_array().map(|coordinate| coordinate.lane(lane));
+        let wi = sample.wi.to_array().each(|coordinate| coordinate.lane(lane));
         let scattered = BsdfSample {
             eta: sample.eta.lane(lane),
             ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
@@ -319,18 +337,19 @@ impl Stage<'_, '_> {
     }
 }
 
-/// The contexts of light sampling: as in `transport/direct.rs`, a point that scatters to one side
-/// only is offset to the side of `wo`.
-#[inline(always)]
-fn contexts<R: Real>(vertices: &Vertices<R>, flags: BxdfFlags<R>) -> LightSampleContext<R> {
-    let PatchPoints { p, n, ns, .. } = vertices.surface;
-    let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
-    let one_sided = reflects ^ transmits;
-    let side: Normal3<R> = Vec3::select(reflects, vertices.wo, -vertices.wo);
-    let moved = Point3Error::exact(offset_ray_origin(p, n, side));
-    let p = Point3Error::new(
-        Vec3::select(one_sided, moved.p, p.p),
-        Vec3::select(one_sided, moved.error, p.error),
-    );
-    LightSampleContext { p, n, ns, time: vertices.time }
+impl<R: Real> Vertices<R> {
+    /// As in `transport/direct.rs`, points that scatter to one side only are offset to the side of
+    /// `wo` for light sampling.
+    #[inline(always)]
+    fn offset_contexts(&mut self, flags: &BxdfFlags<R>) {
+        let PatchPoints { p, n, .. } = self.surface;
+        let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
+        let one_sided = reflects ^ transmits;
+        let side: Normal3<R> = Vec3::select(reflects, self.wo, -self.wo);
+        let moved = Point3Error::exact(offset_ray_origin(p, n, side));
+        self.contexts.p = Point3Error::new(
+            Vec3::select(one_sided, moved.p, p.p),
+            Vec3::select(one_sided, moved.error, p.error),
+        );
+    }
 }

@@ -113,10 +113,7 @@ impl Sampler {
             Self::Sobol(sampler) => sampler.at_1d(address),
             Self::ZSobol(sampler) => sampler.at_1d(address),
             Self::Pmj02Bn(sampler) => sampler.at_1d(address),
-            _ => {
-                let one = |sampler: &mut Self| Vec2::new(sampler.get_1d(), 0.0);
-                R::load(&self.each_lane(&address.to_arrays(), R::LANES, one)[0])
-            }
+            _ => R::load(&self.each_lane(&address.to_arrays(), R::LANES, Self::next_1d)[0]),
         }
     }
 
@@ -143,6 +140,11 @@ impl Sampler {
             }
             _ => self.at_2d(address),
         }
+    }
+
+    /// The next coordinate, in the first place.
+    fn next_1d(&mut self) -> Vec2 {
+        Vec2::new(self.get_1d(), 0.0)
     }
 
     /// The coordinates at the addresses of the lanes, one after another.

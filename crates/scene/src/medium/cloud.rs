@@ -68,14 +68,13 @@ impl Kernel for Density<'_> {
                 frequency *= LACUNARITY;
             }
         }
-        let mut frequency = 1.0;
-        let octaves = noises::<R, 5>(std::array::from_fn(|_| {
-            let p = place * frequency;
+        let (mut octaves, mut frequency) = ([place; 5], 1.0);
+        for octave in &mut octaves {
+            *octave = place * frequency;
             frequency *= LACUNARITY;
-            p
-        }));
+        }
         let (mut sum, mut weight) = (0.0, 0.5);
-        for octave in octaves {
+        for octave in noises::<R, 5>(octaves) {
             sum += weight * octave;
             weight *= 0.5;
         }
@@ -106,7 +105,7 @@ fn noises<R: Real, const K: usize>(points: [Point3; K]) -> [f32; K] {
         let [x, y, z] = columns.each(|column| R::load(&column[first..]));
         noise(Vec3::new(x, y, z)).store(&mut values[first..]);
     }
-    std::array::from_fn(|i| values[i])
+    *values.first_chunk().expect("invariant: K is smaller")
 }
 
 impl MediumModel for CloudMedium {

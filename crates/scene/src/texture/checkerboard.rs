@@ -16,7 +16,7 @@
 //! Source: [Pharr 2023 §10.3.3], with the box filter replaced as pbrt-v4 does.
 
 use super::{TexCoord2d, TexCoord3d};
-use lanes::{Mask, Real};
+use lanes::{Each, Mask, Real};
 use math::sqr;
 
 /// The share of the second texture on squares of the plane, in [0, 1].
@@ -46,7 +46,7 @@ fn radius<R: Real>(dx: R, dy: R) -> R {
 /// The wave averaged with a triangle of radius `r` about `x`.
 #[inline(always)]
 fn filtered_wave<R: Real>(x: R, r: R) -> R {
-    let [half, one, two] = [0.5, 1.0, 2.0].map(R::splat);
+    let [half, one, two] = [0.5, 1.0, 2.0].each(R::splat);
     let is_sharp = r.le(half);
     let mut wave = R::zero();
     if is_sharp.any() {

@@ -22,8 +22,9 @@ impl<R: Real> TextureContext<R> {
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> TextureContext {
         let mut numbers = [0.0; NUMBERS];
-        for (one, number) in numbers.iter_mut().zip(self.numbers()) {
-            *one = number.lane(lane);
+        let all = self.numbers();
+        for i in 0..NUMBERS {
+            numbers[i] = all[i].lane(lane);
         }
         TextureContext::from_numbers(numbers)
     }
@@ -60,8 +61,9 @@ impl ContextArrays {
     #[inline(always)]
     pub fn new<R: Real>(context: &TextureContext<R>) -> Self {
         let mut numbers = [[0.0; MAX_LANES]; NUMBERS];
-        for (array, number) in numbers.iter_mut().zip(context.numbers()) {
-            number.store(array);
+        let all = context.numbers();
+        for i in 0..NUMBERS {
+            all[i].store(&mut numbers[i]);
         }
         Self(numbers)
     }
@@ -70,8 +72,8 @@ impl ContextArrays {
     #[inline(always)]
     pub fn load<R: Real>(&self) -> TextureContext<R> {
         let mut numbers = [R::zero(); NUMBERS];
-        for (number, array) in numbers.iter_mut().zip(&self.0) {
-            *number = R::load(array);
+        for i in 0..NUMBERS {
+            numbers[i] = R::load(&self.0[i]);
         }
         TextureContext::from_numbers(numbers)
     }

@@ -98,7 +98,7 @@ impl Mapping2d {
             };
         }
         if let Self::Affine { columns } = self {
-            let [u, v, delta] = columns.map(Vec2::broadcast);
+            let [u, v, delta] = columns.each(Vec2::broadcast);
             let along = |du: R, dv: R| u * du + v * dv;
             return TexCoord2d {
                 st: along(ctx.uv.x, ctx.uv.y) + delta,

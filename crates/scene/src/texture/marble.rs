@@ -52,7 +52,7 @@ static COLORS: [[f32; 9]; 3] = [
 /// The colour at a place of the ramp from 0 to 1.
 #[inline(always)]
 fn color<R: Real>(t: R) -> [R; 3] {
-    let [one, three] = [1.0, 3.0].map(R::splat);
+    let [one, three] = [1.0, 3.0].each(R::splat);
     let along = t * R::splat(6.0);
     let first = along.floor().clamp(R::zero(), R::splat(5.0));
     let (t, first) = (along - first, first.to_int());

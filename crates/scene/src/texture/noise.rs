@@ -62,7 +62,7 @@ fn lattice_index<R: Real>(coordinate: R) -> R::Int {
 /// 6t⁵ − 15t⁴ + 10t³.
 #[inline(always)]
 fn fade<R: Real>(t: R) -> R {
-    let [six, ten, fifteen] = [6.0, 10.0, 15.0].map(R::splat);
+    let [six, ten, fifteen] = [6.0, 10.0, 15.0].each(R::splat);
     t * t * t * (t * (t * six - fifteen) + ten)
 }
 

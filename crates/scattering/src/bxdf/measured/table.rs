@@ -1,6 +1,6 @@
 //! The tables of measured BRDFs.
 
-use lanes::{Int, Mask, Real};
+use lanes::{Each, Int, Mask, Real};
 use math::{Point2, Vec2, lerp};
 use sampling::{LayerWeights, PiecewiseBilinear2d};
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledSpectrum, SampledWavelengths};
@@ -236,7 +236,7 @@ impl MeasuredGrid {
     /// The cell of a point of the unit square.
     #[inline(always)]
     fn cell<R: Real>(&self, p: Point2<R>) -> Cell<R> {
-        let [columns, rows] = self.size.map(|size| R::splat((size - 1) as f32));
+        let [columns, rows] = self.size.each(|size| R::splat((size - 1) as f32));
         let (x, y) = (p.x * columns, p.y * rows);
         let column = x.floor().clamp(R::zero(), columns - R::one());
         let row = y.floor().clamp(R::zero(), rows - R::one());
@@ -247,7 +247,7 @@ impl MeasuredGrid {
     /// The interpolated value of a layer in a cell.
     #[inline(always)]
     fn at<R: Real>(&self, layer: R::Int, cell: &Cell<R>) -> R {
-        let [width, height] = self.size.map(|size| size as u32);
+        let [width, height] = self.size.each(|size| size as u32);
         let first = layer.wrapping_mul(R::Int::splat(width * height)).wrapping_add(cell.first);
         let [a, b] = R::gather_rows(&self.values, first);
         let [c, d] = R::gather_rows(&self.values, first.wrapping_add(R::Int::splat(width)));
