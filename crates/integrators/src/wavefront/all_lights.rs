@@ -1,6 +1,5 @@
 //! Direct light in lanes by one sample of every light, of ray casting and Whitted's ray tracing.
 
-use geometry::PatchPoints;
 use lanes::{Each, Int, Mask, Real};
 use math::{Ray, RayDifferential, Vec2, Vec3, offset_ray_origin};
 use scattering::{BsdfSample, BxdfFlags, Directions};
@@ -130,7 +129,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         };
         match light {
             Light::UniformInfinite(sky) if *has_ambient => {
-                let (wi, pdf) = sample_ambient(vertices.wo, vertices.surface.ns, self.flags, u);
+                let (wi, pdf) = sample_ambient(vertices.wo, vertices.ns, self.flags, u);
                 let l = sky.radiance.sample(&vertices.lambda);
                 (LightLanes::from_afar(l, wi, pdf, *lit), true)
             }
@@ -138,7 +137,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
                 let sampling = (&stage.pass, direct, &mut *stage.light_samples);
                 let numbers = (R::zero(), u);
                 (
-                    lights::sample(sampling, Some(id), &vertices.contexts, numbers, &vertices.lambda, *lit),
+                    lights::sample(sampling, Some(id), &vertices.contexts(), numbers, &vertices.lambda, *lit),
                     false,
                 )
             }
@@ -153,7 +152,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         vertices: &mut Vertices<R>,
         f: SampledSpectrum<R>,
     ) -> Request<R> {
-        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = *vertices;
+        let Vertices { rows, p, n, ns, time, beta, .. } = *vertices;
         if let Some((light, is_ambient)) = self.light.take() {
             let LightLanes { valid, l, wi, pdf, .. } = light;
             let scattered = f * l * wi.dot(ns).abs();
@@ -202,7 +201,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         vertices: &Vertices<R>,
         sample: &BsdfSample<R>,
     ) -> Request<R> {
-        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, beta, .. } = *vertices;
+        let Vertices { rows, turns, p, n, ns, time, beta, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
         let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
         let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));

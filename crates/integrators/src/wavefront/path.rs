@@ -1,8 +1,8 @@
 //! The hits of path tracing: emission, light samples, BSDF samples and Russian roulette.
 
-use geometry::{Hit, PatchPoints};
+use geometry::Hit;
 use lanes::{Int, Mask, Real};
-use math::{Ray, offset_ray_origin};
+use math::{Ray, Vec2, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::Interfaces;
@@ -81,7 +81,10 @@ impl Path {
 /// Path tracing at vertices. The samples of lights stay in the stage.
 pub(super) struct PathVertices<R: Real> {
     media: Option<VerticesInMedia<R>>,
-    numbers: VertexNumbers<R>,
+    /// The dimension of the numbers of shadow rays in media.
+    passage: R::Int,
+    /// The numbers of samples of BSDFs.
+    numbers: (R, Vec2<R>),
 }
 
 impl<R: Real> PathVertices<R> {
@@ -108,12 +111,12 @@ impl<R: Real> PathVertices<R> {
         let samples = vertices.active & samples_light;
         let request = if samples.any() {
             let sampling = (&stage.pass, &path.direct, &mut *stage.light_samples);
-            lights::draw(sampling, None, &vertices.contexts, numbers.light, &vertices.lambda, samples);
+            lights::draw(sampling, None, &vertices.contexts(), numbers.light, &vertices.lambda, samples);
             Request::Value(stage.light_samples.directions())
         } else {
             Request::Sample(numbers.bsdf, Directions::All)
         };
-        (Self { media, numbers }, request)
+        (Self { media, passage: numbers.passage, numbers: numbers.bsdf }, request)
     }
 
     /// Next-event estimation, by the values of the BSDFs towards the lights and their densities
@@ -126,10 +129,10 @@ impl<R: Real> PathVertices<R> {
         f: SampledSpectrum<R>,
         p_b: R,
     ) -> Request<R> {
-        let Self { media, numbers } = self;
+        let Self { media, passage, numbers } = self;
         let light = stage.light_samples.lanes::<R>();
         let LightLanes { valid, l, wi, pdf, .. } = light;
-        let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
+        let Vertices { p, n, ns, wo, time, .. } = *vertices;
         let scattered = f * l * wi.dot(ns).abs();
         let mut lit = valid & !scattered.is_black();
         if let Surfaces::Boundaries(_) = stage.surfaces {
@@ -144,7 +147,7 @@ impl<R: Real> PathVertices<R> {
                 r_u: media.r_u,
                 ratio: R::select(light.is_delta, R::zero(), p_b / pdf),
                 medium: media.towards(wi, n),
-                dimension: numbers.passage,
+                dimension: *passage,
             };
             stage.queues.passages.append(vertices.rows, lit, &shadow, &passage);
         } else {
@@ -155,7 +158,7 @@ impl<R: Real> PathVertices<R> {
             stopped.append(vertices.rows, lit & !light.passes, &shadow);
             passing.append(vertices.rows, lit & light.passes, &shadow);
         }
-        Request::Sample(numbers.bsdf, Directions::All)
+        Request::Sample(*numbers, Directions::All)
     }
 
     /// Continues the paths along samples of the BSDFs, unless Russian roulette ends them.
@@ -167,7 +170,7 @@ impl<R: Real> PathVertices<R> {
         sample: &BsdfSample<R>,
         density: R,
     ) -> Request<R> {
-        let Vertices { rows, turns, surface: PatchPoints { p, n, ns, .. }, time, .. } = *vertices;
+        let Vertices { rows, turns, p, n, ns, time, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = *sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
         let eta_scale = R::gather(&stage.segments.eta_scale, turns.indices);
@@ -190,7 +193,7 @@ impl<R: Real> PathVertices<R> {
             beta: beta * weight,
             eta_scale,
             depth: depth.wrapping_add(R::Int::splat(1)),
-            vertex: vertices.contexts,
+            vertex: vertices.contexts(),
             pdf: R::select(is_specular, R::zero(), density),
             media: match &self.media {
                 Some(media) => Some(media.leave((wi, n), density)),
@@ -217,7 +220,7 @@ impl<R: Real> Vertices<R> {
         beta: SampledSpectrum<R>,
         mask: R::Mask,
     ) -> R::Mask {
-        let is_outside = self.wo.dot(self.surface.ns).gt(R::zero());
+        let is_outside = self.wo.dot(self.ns).gt(R::zero());
         let enters = mask & is_outside & sample.flags.is_transmissive();
         if enters.any() {
             let rows = self.rows.indices;

@@ -5,7 +5,7 @@
 //! set, which [request](Request) of a kernel one value or sample after another.
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
-use lanes::{Callee, Each, Kernel, Mask, Real};
+use lanes::{Callee, Each, Int, Kernel, Mask, Real};
 use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
@@ -101,27 +101,37 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize) {
         let Self { material, stage } = self;
-        // Large values stay where functions have written them.
-        let mut vertices: Vertices<R> = R::call(Reach { stage, first });
-        let PatchPoints { p, n, ns, uv, ss, .. } = vertices.surface;
-        let context = TextureContext { p: p.p, n, uv, footprint: vertices.footprint };
-        let mut lambda = vertices.lambda;
+        let Place { rows, turns } = stage.place::<R>(first);
+        let surface: PatchPoints<R> = stage.points.get(first);
+        let (wo, before) = (stage.outgoing(turns), stage.paths.lambda_lanes(rows));
+        let footprint = if stage.with_footprint {
+            R::call(FootprintAt { stage, turns, surface: &surface })
+        } else {
+            Footprint::point()
+        };
+        let PatchPoints { p, n, ns, uv, ss, .. } = surface;
+        let context = TextureContext { p: p.p, n, uv, footprint };
+        let mut lambda = before;
         let bxdf = material.bxdf(stage.pass.pixels.scene.textures(), &context, &mut lambda);
-        let mut bsdf = Bsdf::new(ns, ss, bxdf);
-        bsdf.seed(&lambda, vertices.address.dimension);
-        if stage.surfaces.regularizes() {
-            bsdf.regularize(vertices.is_rough);
+        let changed = lambda.pdf()[0].ne(before.pdf()[0]) & rows.active;
+        if changed.any() {
+            rows.each_of(changed, |lane, row| stage.paths.set_lambda(row, &lambda.lane(lane)));
         }
-        let (wo, mode, weighs) = (vertices.wo, TransportMode::Radiance, stage.surfaces.weighs());
+        let mut bsdf = Bsdf::new(ns, ss, bxdf);
+        bsdf.seed(&lambda, R::Int::gather(&stage.paths.dimension, rows.indices));
+        if stage.surfaces.regularizes() {
+            bsdf.regularize(stage.rough_before::<R>(first));
+        }
+        let (mode, weighs) = (TransportMode::Radiance, stage.surfaces.weighs());
         let (flags, chooses) = (bsdf.flags(), M::Bxdf::<'_, R>::CHOOSES);
-        let begin = Begin { stage, vertices: &mut vertices, lambda: &lambda, flags: &flags, chooses };
-        let mut state = R::call(begin);
+        // Large values stay where functions have written them.
+        let mut state = R::call(Begin { stage, first, flags: &flags, chooses });
         loop {
             match state.request {
                 Request::Value(wi) => {
                     let f = bsdf.f(wo, wi, mode);
                     let pdf = if weighs { bsdf.pdf(wo, wi, mode, Directions::All) } else { R::one() };
-                    R::call(Connect { stage, vertices: &mut vertices, state: &mut state, f: &f, pdf });
+                    R::call(Connect { stage, state: &mut state, f: &f, pdf });
                 }
                 Request::Sample((uc, u), directions) => {
                     let sample = bsdf.sample_lanes(wo, uc, u, mode, directions);
@@ -130,7 +140,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
                     } else {
                         sample.pdf
                     };
-                    R::call(Continue { stage, vertices: &vertices, state: &mut state, sample: &sample, pdf });
+                    R::call(Continue { stage, state: &mut state, sample: &sample, pdf });
                 }
                 Request::Nothing => return,
             }
@@ -138,8 +148,32 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     }
 }
 
-/// The state of an algorithm at vertices.
+/// Paths, and the turns of their hits.
+struct Place<R: Real> {
+    rows: Rows<R>,
+    turns: Rows<R>,
+}
+
+/// The footprints of pixels at surface points.
+struct FootprintAt<'a, 'b, 'c, R: Real> {
+    stage: &'c Stage<'a, 'b>,
+    turns: Rows<R>,
+    surface: &'c PatchPoints<R>,
+}
+
+impl<R: Real> Callee<R> for FootprintAt<'_, '_, '_, R> {
+    type Output = Footprint<R>;
+
+    #[inline(always)]
+    fn run(self) -> Footprint<R> {
+        let Self { stage, turns, surface } = self;
+        stage.segments.footprint(stage.pass.pixels.view, turns, surface)
+    }
+}
+
+/// Vertices with the state of their algorithm.
 struct AtVertices<'b, R: Real> {
+    vertices: Vertices<R>,
     request: Request<R>,
     algorithm: AlgorithmState<'b, R>,
 }
@@ -149,29 +183,10 @@ enum AlgorithmState<'b, R: Real> {
     AllLights(LightsInTurn<'b, R>),
 }
 
-/// The way to vertices up to their materials.
-struct Reach<'a, 'b, 'c> {
-    stage: &'c mut Stage<'a, 'b>,
-    first: usize,
-}
-
-impl<R: Real> Callee<R> for Reach<'_, '_, '_> {
-    type Output = Vertices<R>;
-
-    #[inline(always)]
-    fn run(self) -> Vertices<R> {
-        let Self { stage, first } = self;
-        let queue = &stage.rows[first..stage.rows.len().min(first + R::LANES)];
-        stage.vertices::<R>(first, queue)
-    }
-}
-
 /// The first step of the algorithm.
 struct Begin<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: &'c mut Vertices<R>,
-    /// The wavelengths as the materials have left them.
-    lambda: &'c SampledWavelengths<R>,
+    first: usize,
     /// The flags of the BSDFs.
     flags: &'c BxdfFlags<R>,
     /// Whether they choose among lobes.
@@ -183,27 +198,25 @@ impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
 
     #[inline(always)]
     fn run(self) -> AtVertices<'b, R> {
-        let Self { stage, vertices, lambda, flags, chooses } = self;
-        stage.keep_wavelengths(vertices, lambda);
-        vertices.lambda = *lambda;
-        vertices.offset_contexts(flags);
-        match stage.surfaces {
+        let Self { stage, first, flags, chooses } = self;
+        let mut vertices = stage.vertices::<R>(first, flags);
+        let (request, algorithm) = match stage.surfaces {
             Surfaces::Path(path) | Surfaces::Boundaries(path) => {
-                let (state, request) = PathVertices::begin(path, stage, vertices, flags, chooses);
-                AtVertices { request, algorithm: AlgorithmState::Path(state) }
+                let (state, request) = PathVertices::begin(path, stage, &mut vertices, flags, chooses);
+                (request, AlgorithmState::Path(state))
             }
             Surfaces::AllLights(lights) => {
-                let (state, request) = LightsInTurn::begin(lights, stage, vertices, flags, chooses);
-                AtVertices { request, algorithm: AlgorithmState::AllLights(state) }
+                let (state, request) = LightsInTurn::begin(lights, stage, &mut vertices, flags, chooses);
+                (request, AlgorithmState::AllLights(state))
             }
-        }
+        };
+        AtVertices { vertices, request, algorithm }
     }
 }
 
 /// The step that follows a value and its density.
 struct Connect<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: &'c mut Vertices<R>,
     state: &'c mut AtVertices<'b, R>,
     f: &'c SampledSpectrum<R>,
     pdf: R,
@@ -214,8 +227,8 @@ impl<R: Real> Callee<R> for Connect<'_, '_, '_, R> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { stage, vertices, state, f, pdf } = self;
-        state.request = match &mut state.algorithm {
+        let Self { stage, state: AtVertices { vertices, request, algorithm }, f, pdf } = self;
+        *request = match algorithm {
             AlgorithmState::Path(path) => path.connect(stage, vertices, *f, pdf),
             AlgorithmState::AllLights(lights) => lights.connect(stage, vertices, *f),
         };
@@ -225,7 +238,6 @@ impl<R: Real> Callee<R> for Connect<'_, '_, '_, R> {
 /// The step that follows a sample, of which the density is given.
 struct Continue<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
-    vertices: &'c Vertices<R>,
     state: &'c mut AtVertices<'b, R>,
     sample: &'c BsdfSample<R>,
     pdf: R,
@@ -236,8 +248,8 @@ impl<R: Real> Callee<R> for Continue<'_, '_, '_, R> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { stage, vertices, state, sample, pdf } = self;
-        state.request = match &mut state.algorithm {
+        let Self { stage, state: AtVertices { vertices, request, algorithm }, sample, pdf } = self;
+        *request = match algorithm {
             AlgorithmState::Path(path) => path.scatter(stage, vertices, sample, pdf),
             AlgorithmState::AllLights(lights) => lights.wait_for(stage, vertices, sample),
         };
@@ -251,62 +263,77 @@ pub(super) struct Vertices<R: Real> {
     pub turns: Rows<R>,
     /// The lanes that have a vertex.
     pub active: R::Mask,
-    pub surface: PatchPoints<R>,
+    pub p: Point3Error<R>,
+    /// Geometric and shading normal.
+    pub n: Normal3<R>,
+    pub ns: Normal3<R>,
     pub wo: Vector3<R>,
     pub time: R,
     pub lambda: SampledWavelengths<R>,
     /// Path throughput before the vertex.
     pub beta: SampledSpectrum<R>,
     pub address: Address<R::Int>,
-    footprint: Footprint<R>,
-    /// The lanes whose surfaces are roughened.
-    is_rough: R::Mask,
+    /// Where lights are sampled from.
+    origin: Point3Error<R>,
+}
+
+impl<R: Real> Vertices<R> {
     /// The contexts of light sampling.
-    pub contexts: LightSampleContext<R>,
+    #[inline(always)]
+    pub fn contexts(&self) -> LightSampleContext<R> {
+        LightSampleContext { p: self.origin, n: self.n, ns: self.ns, time: self.time }
+    }
 }
 
 impl Stage<'_, '_> {
     #[inline(always)]
-    fn vertices<R: Real>(&mut self, first: usize, queue: &[u32]) -> Vertices<R> {
-        let rows = Rows::<R>::first(queue);
-        let turns = Rows::<R>::first(&self.turns[first..first + queue.len()]);
-        let (paths, segments) = (&*self.paths, self.segments);
-        let surface = self.points.get(first);
-        let footprint = if self.with_footprint {
-            segments.footprint(self.pass.pixels.view, turns, &surface)
-        } else {
-            Footprint::point()
-        };
-        let mut rough = 0;
-        if self.surfaces.regularizes() {
-            for (lane, &row) in queue.iter().enumerate() {
-                rough |= u32::from(paths.rough_before[row as usize]) << lane;
-            }
+    fn place<R: Real>(&self, first: usize) -> Place<R> {
+        Place { rows: Rows::first(&self.rows[first..]), turns: Rows::first(&self.turns[first..]) }
+    }
+
+    /// The directions back along the rays.
+    #[inline(always)]
+    fn outgoing<R: Real>(&self, turns: Rows<R>) -> Vector3<R> {
+        -self.segments.direction.vector(turns).normalize()
+    }
+
+    /// The lanes whose paths have been scattered by a rough surface.
+    #[inline(always)]
+    fn rough_before<R: Real>(&self, first: usize) -> R::Mask {
+        let (mut bits, end) = (0, self.rows.len().min(first + R::LANES));
+        for (lane, &row) in self.rows[first..end].iter().enumerate() {
+            bits |= u32::from(self.paths.rough_before[row as usize]) << lane;
         }
-        let PatchPoints { p, n, ns, .. } = surface;
-        let time = R::gather(&segments.time, turns.indices);
+        R::Mask::from_bits(bits)
+    }
+
+    /// The vertices of BSDFs with these flags. As in `transport/direct.rs`, lights are sampled from
+    /// points that are offset to the side of `wo` where they scatter to one side only.
+    #[inline(always)]
+    fn vertices<R: Real>(&self, first: usize, flags: &BxdfFlags<R>) -> Vertices<R> {
+        let Place { rows, turns } = self.place::<R>(first);
+        let PatchPoints { p, n, ns, .. } = self.points.get(first);
+        let wo = self.outgoing(turns);
+        let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
+        let one_sided = reflects ^ transmits;
+        let side: Normal3<R> = Vec3::select(reflects, wo, -wo);
+        let moved = Point3Error::exact(offset_ray_origin(p, n, side));
         Vertices {
             rows,
             turns,
             active: rows.active,
-            surface,
-            wo: -segments.direction.vector(turns).normalize(),
-            time,
-            lambda: paths.lambda_lanes(rows),
-            beta: segments.beta.get(turns),
-            address: paths.address(rows, self.pass.pixels.index),
-            footprint,
-            is_rough: R::Mask::from_bits(rough),
-            contexts: LightSampleContext { p, n, ns, time },
-        }
-    }
-
-    /// Stores wavelengths whose densities the material has changed.
-    #[inline(always)]
-    fn keep_wavelengths<R: Real>(&mut self, vertices: &Vertices<R>, lambda: &SampledWavelengths<R>) {
-        let changed = lambda.pdf()[0].ne(vertices.lambda.pdf()[0]) & vertices.active;
-        if changed.any() {
-            vertices.rows.each_of(changed, |lane, row| self.paths.set_lambda(row, &lambda.lane(lane)));
+            p,
+            n,
+            ns,
+            wo,
+            time: R::gather(&self.segments.time, turns.indices),
+            lambda: self.paths.lambda_lanes(rows),
+            beta: self.segments.beta.get(turns),
+            address: self.paths.address(rows, self.pass.pixels.index),
+            origin: Point3Error::new(
+                Vec3::select(one_sided, moved.p, p.p),
+                Vec3::select(one_sided, moved.error, p.error),
+            ),
         }
     }
 
@@ -334,22 +361,5 @@ impl Stage<'_, '_> {
         };
         let hit = self.hits.get(turn).expect("invariant: vertices have hits");
         scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), &scattered)
-    }
-}
-
-impl<R: Real> Vertices<R> {
-    /// As in `transport/direct.rs`, points that scatter to one side only are offset to the side of
-    /// `wo` for light sampling.
-    #[inline(always)]
-    fn offset_contexts(&mut self, flags: &BxdfFlags<R>) {
-        let PatchPoints { p, n, .. } = self.surface;
-        let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
-        let one_sided = reflects ^ transmits;
-        let side: Normal3<R> = Vec3::select(reflects, self.wo, -self.wo);
-        let moved = Point3Error::exact(offset_ray_origin(p, n, side));
-        self.contexts.p = Point3Error::new(
-            Vec3::select(one_sided, moved.p, p.p),
-            Vec3::select(one_sided, moved.error, p.error),
-        );
     }
 }
