@@ -125,13 +125,14 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let (mode, weighs) = (TransportMode::Radiance, stage.surfaces.weighs());
         let (flags, chooses) = (bsdf.flags(), M::Bxdf::<'_, R>::CHOOSES);
         // Large values stay where functions have written them.
-        let mut state = R::call(Begin { stage, first, flags: &flags, chooses });
+        let begin = Begin { stage, first, wo: &wo, lambda: &lambda, flags: &flags, chooses };
+        let mut state = step::<R, M, _>(begin);
         loop {
             match state.request {
                 Request::Value(wi) => {
                     let f = bsdf.f(wo, wi, mode);
                     let pdf = if weighs { bsdf.pdf(wo, wi, mode, Directions::All) } else { R::one() };
-                    R::call(Connect { stage, state: &mut state, f: &f, pdf });
+                    step::<R, M, _>(Connect { stage, state: &mut state, f: &f, pdf });
                 }
                 Request::Sample((uc, u), directions) => {
                     let sample = bsdf.sample_lanes(wo, uc, u, mode, directions);
@@ -140,12 +141,19 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
                     } else {
                         sample.pdf
                     };
-                    R::call(Continue { stage, state: &mut state, sample: &sample, pdf });
+                    step::<R, M, _>(Continue { stage, state: &mut state, sample: &sample, pdf });
                 }
                 Request::Nothing => return,
             }
         }
     }
+}
+
+/// A step of an algorithm: a function of the lanes, but for materials so common and cheap that the
+/// call would be seen.
+#[inline(always)]
+fn step<R: Real, M: MaterialModel, C: Callee<R>>(callee: C) -> C::Output {
+    if M::IS_CHEAP { callee.run() } else { R::call(callee) }
 }
 
 /// Paths, and the turns of their hits.
@@ -187,6 +195,8 @@ enum AlgorithmState<'b, R: Real> {
 struct Begin<'a, 'b, 'c, R: Real> {
     stage: &'c mut Stage<'a, 'b>,
     first: usize,
+    wo: &'c Vector3<R>,
+    lambda: &'c SampledWavelengths<R>,
     /// The flags of the BSDFs.
     flags: &'c BxdfFlags<R>,
     /// Whether they choose among lobes.
@@ -198,8 +208,8 @@ impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
 
     #[inline(always)]
     fn run(self) -> AtVertices<'b, R> {
-        let Self { stage, first, flags, chooses } = self;
-        let mut vertices = stage.vertices::<R>(first, flags);
+        let Self { stage, first, wo, lambda, flags, chooses } = self;
+        let mut vertices = stage.vertices::<R>(first, (*wo, *lambda), flags);
         let (request, algorithm) = match stage.surfaces {
             Surfaces::Path(path) | Surfaces::Boundaries(path) => {
                 let (state, request) = PathVertices::begin(path, stage, &mut vertices, flags, chooses);
@@ -310,10 +320,14 @@ impl Stage<'_, '_> {
     /// The vertices of BSDFs with these flags. As in `transport/direct.rs`, lights are sampled from
     /// points that are offset to the side of `wo` where they scatter to one side only.
     #[inline(always)]
-    fn vertices<R: Real>(&self, first: usize, flags: &BxdfFlags<R>) -> Vertices<R> {
+    fn vertices<R: Real>(
+        &self,
+        first: usize,
+        (wo, lambda): (Vector3<R>, SampledWavelengths<R>),
+        flags: &BxdfFlags<R>,
+    ) -> Vertices<R> {
         let Place { rows, turns } = self.place::<R>(first);
         let PatchPoints { p, n, ns, .. } = self.points.get(first);
-        let wo = self.outgoing(turns);
         let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
         let one_sided = reflects ^ transmits;
         let side: Normal3<R> = Vec3::select(reflects, wo, -wo);
@@ -327,7 +341,7 @@ impl Stage<'_, '_> {
             ns,
             wo,
             time: R::gather(&self.segments.time, turns.indices),
-            lambda: self.paths.lambda_lanes(rows),
+            lambda,
             beta: self.segments.beta.get(turns),
             address: self.paths.address(rows, self.pass.pixels.index),
             origin: Point3Error::new(

@@ -16,6 +16,8 @@ pub struct DiffuseMaterial {
 }
 
 impl MaterialModel for DiffuseMaterial {
+    const IS_CHEAP: bool = true;
+
     type Bxdf<'a, R: Real> = Diffuse<R>;
 
     #[inline(always)]

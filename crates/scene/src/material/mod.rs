@@ -51,6 +51,9 @@ use spectrum::{SampledWavelengths, Spectrum};
 
 /// The interface of a kind of material.
 pub trait MaterialModel {
+    /// Whether it takes so little time that a call for each hit would be seen.
+    const IS_CHEAP: bool = false;
+
     /// Its BxDF.
     type Bxdf<'a, R: Real>: Scatter<R>
     where
