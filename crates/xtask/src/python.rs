@@ -65,9 +65,9 @@ fn assemble(root: &Path, folder: &Path) -> std::io::Result<()> {
         }
     }
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let library = target(root).join("checked/deps").join(format!("{prefix}_alhazen{suffix}"));
+    let library = target(root).join("debug/deps").join(format!("{prefix}_alhazen{suffix}"));
     let extension = if cfg!(windows) { "pyd" } else { "abi3.so" };
     fs::copy(library, package.join(format!("_alhazen.{extension}")))?;
-    fs::copy(target(root).join("checked").join(PROGRAM), programs.join(PROGRAM))?;
+    fs::copy(target(root).join("debug").join(PROGRAM), programs.join(PROGRAM))?;
     Ok(())
 }

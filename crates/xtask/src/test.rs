@@ -29,8 +29,6 @@ const STEPS: [Step; 5] = [
             "--workspace",
             "--features",
             CHECKED,
-            "--profile",
-            "checked",
             "--all-targets",
             "--keep-going",
             "--",
@@ -40,34 +38,15 @@ const STEPS: [Step; 5] = [
     },
     Step {
         name: "the program without features",
-        arguments: &["check", "--quiet", "--package", "alhazen-cli", "--profile", "checked"],
+        arguments: &["check", "--quiet", "--package", "alhazen-cli"],
     },
     Step {
         name: "documentation",
-        arguments: &[
-            "doc",
-            "--quiet",
-            "--workspace",
-            "--features",
-            CHECKED,
-            "--profile",
-            "checked",
-            "--no-deps",
-            "--lib",
-        ],
+        arguments: &["doc", "--quiet", "--workspace", "--features", CHECKED, "--no-deps", "--lib"],
     },
     Step {
         name: "tests",
-        arguments: &[
-            "test",
-            "--quiet",
-            "--workspace",
-            "--features",
-            TESTED,
-            "--profile",
-            "checked",
-            "--no-fail-fast",
-        ],
+        arguments: &["test", "--quiet", "--workspace", "--features", TESTED, "--no-fail-fast"],
     },
 ];
 

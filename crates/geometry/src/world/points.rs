@@ -49,8 +49,8 @@ impl PointColumns {
     #[inline(always)]
     pub fn shading<R: Real>(&self, first: usize) -> Shading<R> {
         let mut numbers = [R::zero(); 9];
-        for i in 0..numbers.len() {
-            numbers[i] = R::load(&self.shading[i][first..]);
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = R::load(&self.shading[i][first..]);
         }
         let [tx, ty, tz, ux, uy, uz, vx, vy, vz] = numbers;
         Shading {

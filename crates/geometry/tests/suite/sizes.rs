@@ -90,7 +90,8 @@ fn scaled_worlds_have_the_same_points() {
 #[test]
 fn densities_of_lights_do_not_depend_on_the_unit() {
     let rng = &mut Rng::new(9, 0);
-    for size in [1.0, 1e-3] {
+    // Squares of lengths are floats.
+    for (size, least) in [(1.0, -55), (1e-3, -45)] {
         for _ in 0..50 {
             let corners = [(); 3].map(|_| point_in(rng, size));
             let side = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y].map(|p| p * size);
@@ -114,7 +115,7 @@ fn densities_of_lights_do_not_depend_on_the_unit() {
                 })
             };
             let plain = sample(0);
-            for exponent in [-55, -45, -30, 30, 45, 55] {
+            for exponent in [least, -30, 30, 55] {
                 for (found, expected) in sample(exponent).as_flattened().iter().zip(plain.as_flattened()) {
                     assert!((found / expected - 1.0).abs() < 1e-4, "2^{exponent}: {found}, not {expected}");
                 }

@@ -23,7 +23,7 @@ use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::{Besides, Segments};
-use super::shade::{Shade, Stage, Surfaces};
+use super::shade::{Algorithm, Shade, Stage};
 use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
 use crate::transport::path_state::PathState;
@@ -199,7 +199,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Shades the hits that are shaded in lanes.
-    pub(super) fn shade_in_lanes(&mut self, surfaces: Surfaces) {
+    pub(super) fn shade_in_lanes(&mut self, algorithm: Algorithm) {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, turns, rows) in lanes.iter() {
@@ -220,21 +220,21 @@ impl<'a> Batch<'a> {
                 });
             }
             match &entry.material {
-                Material::Diffuse(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::DiffuseTransmission(material) => {
-                    self.dispatch(surfaces, (id, material), turns, rows);
+                    self.dispatch(algorithm, (id, material), turns, rows);
                 }
-                Material::Conductor(material) => self.dispatch(surfaces, (id, material), turns, rows),
-                Material::Dielectric(material) => self.dispatch(surfaces, (id, material), turns, rows),
-                Material::ThinDielectric(material) => self.dispatch(surfaces, (id, material), turns, rows),
-                Material::CoatedDiffuse(material) => self.dispatch(surfaces, (id, material), turns, rows),
+                Material::Conductor(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Dielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::ThinDielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::CoatedDiffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::CoatedConductor(material) => {
-                    self.dispatch(surfaces, (id, material), turns, rows);
+                    self.dispatch(algorithm, (id, material), turns, rows);
                 }
-                Material::OpenPbr(material) => self.dispatch(surfaces, (id, &**material), turns, rows),
-                Material::Hair(material) => self.dispatch(surfaces, (id, material), turns, rows),
-                Material::Measured(material) => self.dispatch(surfaces, (id, material), turns, rows),
-                Material::Subsurface(body) => self.shade_body(surfaces, (id, body), (turns, rows)),
+                Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
+                Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Measured(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Subsurface(body) => self.shade_body(algorithm, (id, body), (turns, rows)),
                 Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
@@ -246,7 +246,7 @@ impl<'a> Batch<'a> {
     /// Shades hits of a material.
     pub(super) fn dispatch<M: MaterialModel>(
         &mut self,
-        surfaces: Surfaces,
+        algorithm: Algorithm,
         (id, material): (MaterialId, &M),
         turns: &[u32],
         rows: &[u32],
@@ -255,7 +255,7 @@ impl<'a> Batch<'a> {
         let with_footprint = self.pass.materials.shading(id) == Shading::LanesWithFootprint;
         let stage = Stage {
             pass: self.pass,
-            surfaces,
+            algorithm,
             with_footprint,
             points,
             hits,

@@ -16,10 +16,10 @@ use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 use super::batch::{Batch, BatchColumns};
 use super::queues::Entering;
 use super::segments::{Besides, Segments};
-use super::shade::{Shade, Stage, Surfaces};
+use super::shade::{Algorithm, Shade, Stage};
 use crate::Tracer;
 use crate::transport::path_state::PathState;
-use crate::transport::subsurface::{Entry, Exit};
+use crate::transport::subsurface::Entry;
 
 /// The points where paths leave bodies, in columns.
 #[derive(Default)]
@@ -40,13 +40,13 @@ impl Exits {
     }
 
     /// Adds a path that has been scattered `depth` times before it entered.
-    fn push(&mut self, row: u32, state: &PathState, exit: &Exit, depth: u32) {
+    fn push(&mut self, row: u32, state: &PathState, exit: &SurfacePoint, depth: u32) {
         let turn = self.segments.rows.len();
-        let SurfacePoint { p, shading, time, .. } = exit.surface.surface;
-        let ray = Ray::new(p.p, -shading.n, time);
+        let SurfacePoint { p, shading, time, .. } = exit;
+        let ray = Ray::new(p.p, -shading.n, *time);
         let PathState { beta, eta_scale, .. } = *state;
         self.segments.push(row, &PathState { beta, eta_scale, ..PathState::new(ray.into(), depth) });
-        self.points.set_one(turn, &exit.surface.surface);
+        self.points.set_one(turn, exit);
         self.turns.push(turn as u32);
     }
 }
@@ -72,16 +72,16 @@ impl Batch<'_> {
     /// Shades hits on a body, of which indices and paths are given.
     pub(super) fn shade_body(
         &mut self,
-        surfaces: Surfaces,
+        algorithm: Algorithm,
         (id, body): (MaterialId, &SubsurfaceMaterial),
         (turns, rows): (&[u32], &[u32]),
     ) {
-        let Surfaces::Path(algorithm) = surfaces else {
+        let Algorithm::Path(path) = algorithm else {
             unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
         };
         let boundary =
             DielectricMaterial { eta: Spectrum::Constant(body.table.eta()), roughness: body.roughness };
-        self.dispatch(Surfaces::Boundaries(algorithm), (id, &boundary), turns, rows);
+        self.dispatch(Algorithm::Boundaries(path), (id, &boundary), turns, rows);
         let mut entering = std::mem::take(&mut self.columns.queues.entering);
         let mut exits = std::mem::take(&mut self.columns.exits);
         exits.start(entering.rows.len());
@@ -96,7 +96,7 @@ impl Batch<'_> {
         let BatchColumns { hits, paths, queues, light_samples, .. } = &mut *self.columns;
         let stage = Stage {
             pass: self.pass,
-            surfaces,
+            algorithm,
             with_footprint: false,
             points,
             hits,
@@ -143,9 +143,9 @@ impl Batch<'_> {
         paths.resume(sampler, row, pass.pixels.index);
         let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
         let under = (Body::Subsurface(&body), -entry.ns);
-        if let Some(exit) = state.pass_under(&mut tracer, &entry, under, &lambda) {
+        if let Some(exit) = state.leave_body(&mut tracer, &entry, under, &lambda) {
             paths.dimension[row] = sampler.dimension();
-            exits.push(path, &state, &exit, depth);
+            exits.push(path, &state, &exit.surface, depth);
         }
     }
 }

@@ -82,16 +82,16 @@ impl<const C: usize> Columns<C> {
     /// Changes successive rows.
     #[inline(always)]
     pub fn store<R: Real>(&mut self, first: usize, values: [R; C]) {
-        for c in 0..C {
-            values[c].store(&mut self.0[c][first..]);
+        for (c, value) in values.iter().enumerate() {
+            value.store(&mut self.0[c][first..]);
         }
     }
 
     /// Changes successive rows to the lanes of a mask; rows after them may be overwritten.
     #[inline(always)]
     pub fn compress<R: Real>(&mut self, first: usize, mask: R::Mask, values: [R; C]) {
-        for c in 0..C {
-            values[c].compress(mask, &mut self.0[c][first..]);
+        for (c, value) in values.iter().enumerate() {
+            value.compress(mask, &mut self.0[c][first..]);
         }
     }
 
@@ -99,8 +99,8 @@ impl<const C: usize> Columns<C> {
     #[inline(always)]
     pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {
         let mut values = [R::zero(); C];
-        for c in 0..C {
-            values[c] = R::gather(&self.0[c], rows.indices);
+        for (c, value) in values.iter_mut().enumerate() {
+            *value = R::gather(&self.0[c], rows.indices);
         }
         values
     }

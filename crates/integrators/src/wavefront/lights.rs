@@ -144,17 +144,17 @@ impl Samples {
     /// Sets numbers of all lanes.
     #[inline(always)]
     fn store<R: Real>(&mut self, first: usize, values: &[R]) {
-        for i in 0..values.len() {
-            values[i].store(&mut self.columns[first + i]);
+        for (i, value) in values.iter().enumerate() {
+            value.store(&mut self.columns[first + i]);
         }
     }
 
     /// Sets numbers of the lanes of a mask.
     #[inline(always)]
     fn blend<R: Real>(&mut self, first: usize, mask: R::Mask, values: &[R]) {
-        for i in 0..values.len() {
+        for (i, &value) in values.iter().enumerate() {
             let column = &mut self.columns[first + i];
-            R::select(mask, values[i], R::load(column)).store(column);
+            R::select(mask, value, R::load(column)).store(column);
         }
     }
 

@@ -14,7 +14,7 @@
 //! | `finish` | adds the paths' radiance to the film |
 //!
 //! Estimates and random numbers are those of the algorithm's [`RayIntegrator`], whichever paths
-//! share a batch. An algorithm has one file; `shade.rs` is of path tracing, too.
+//! share a batch. An algorithm has one file.
 
 mod all_lights;
 mod ambient_occlusion;

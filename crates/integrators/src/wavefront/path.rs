@@ -17,7 +17,7 @@ use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::queues::Entering;
 use super::segments::Segment;
-use super::shade::{Request, Stage, Surfaces, Vertices};
+use super::shade::{Algorithm, Request, Stage, Vertices};
 use super::shadows::{PassageLanes, Shadow};
 use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
@@ -30,7 +30,7 @@ impl WaveIntegrator for Path {
 
     fn shade(&self, batch: &mut Batch) {
         batch.classify(self.settings.max_depth, &self.direct);
-        batch.shade_in_lanes(Surfaces::Path(self));
+        batch.shade_in_lanes(Algorithm::Path(self));
         batch.shade_others(|batch, place, hit| self.shade_path(batch, place, hit));
     }
 }
@@ -135,7 +135,7 @@ impl<R: Real> PathVertices<R> {
         let Vertices { p, n, ns, wo, time, .. } = *vertices;
         let scattered = f * l * wi.dot(ns).abs();
         let mut lit = valid & !scattered.is_black();
-        if let Surfaces::Boundaries(_) = stage.surfaces {
+        if let Algorithm::Boundaries(_) = stage.algorithm {
             // Light that comes out has been scattered under the surface.
             lit = lit & !(wo.dot(ns).gt(R::zero()) & wi.dot(ns).lt(R::zero()));
         }
@@ -176,7 +176,7 @@ impl<R: Real> PathVertices<R> {
         let eta_scale = R::gather(&stage.segments.eta_scale, turns.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let mut valid = valid & vertices.active;
-        if let Surfaces::Boundaries(_) = stage.surfaces {
+        if let Algorithm::Boundaries(_) = stage.algorithm {
             valid = valid & !vertices.enter(stage, sample, beta, valid);
         }
 
@@ -185,8 +185,12 @@ impl<R: Real> PathVertices<R> {
             play(&stage.pass, vertices.address, depth, beta * eta_scale, valid);
         dimension.scatter(survives, &mut stage.paths.dimension, rows.indices);
         let is_specular = flags.is_specular();
-        if stage.surfaces.regularizes() {
+        if stage.algorithm.regularizes() {
             rows.each_of(survives & !is_specular, |_, row| stage.paths.rough_before[row] = true);
+        }
+        let mut in_media = None;
+        if let Some(media) = &self.media {
+            in_media = Some(media.leave((wi, n), density));
         }
         let segment = Segment {
             ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
@@ -195,10 +199,7 @@ impl<R: Real> PathVertices<R> {
             depth: depth.wrapping_add(R::Int::splat(1)),
             vertex: vertices.contexts(),
             pdf: R::select(is_specular, R::zero(), density),
-            media: match &self.media {
-                Some(media) => Some(media.leave((wi, n), density)),
-                None => None,
-            },
+            media: in_media,
         };
         let first = stage.queues.next.rows.len();
         stage.queues.next.append(rows.indices, survives, &segment);

@@ -3,7 +3,7 @@
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
 use super::batch::{Batch, BatchColumns, Vertex};
-use super::shade::Surfaces;
+use super::shade::Algorithm;
 use crate::RayCasting;
 use crate::transport::direct::connect_all;
 
@@ -11,7 +11,7 @@ impl WaveIntegrator for RayCasting {
     fn shade(&self, batch: &mut Batch) {
         let lights = AllLights::without_shadows();
         batch.classify(u32::MAX, lights.direct());
-        batch.shade_in_lanes(Surfaces::AllLights(&lights));
+        batch.shade_in_lanes(Algorithm::AllLights(&lights));
         batch.shade_others(|batch, place, hit| {
             let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
             let Vertex { state, lambda, surface, bsdf } = vertex;

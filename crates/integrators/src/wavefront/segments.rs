@@ -194,8 +194,8 @@ impl Segments {
         self.direction.compress(turn, mask, ray.d.to_array());
         self.beta.compress(turn, mask, *beta);
         let vectors = [vertex.p.p, vertex.p.error, vertex.n, vertex.ns];
-        for i in 0..4 {
-            self.vertex[i].compress(turn, mask, vectors[i].to_array());
+        for (i, v) in vectors.iter().enumerate() {
+            self.vertex[i].compress(turn, mask, v.to_array());
         }
         ray.time.compress(mask, &mut self.time[turn..]);
         eta_scale.compress(mask, &mut self.eta_scale[turn..]);

@@ -28,14 +28,14 @@ use crate::transport::pixel_samples::PixelSamples;
 
 /// The algorithm at vertices.
 #[derive(Clone, Copy)]
-pub(super) enum Surfaces<'b> {
+pub(super) enum Algorithm<'b> {
     Path(&'b Path),
     /// Path tracing at the boundaries of bodies.
     Boundaries(&'b Path),
     AllLights(&'b AllLights),
 }
 
-impl Surfaces<'_> {
+impl Algorithm<'_> {
     /// Whether surfaces are roughened after a rough one.
     #[inline(always)]
     pub fn regularizes(self) -> bool {
@@ -71,7 +71,7 @@ pub(super) struct Shade<'a, 'b, M> {
 /// Hits of one material, and all that shading them changes.
 pub(super) struct Stage<'a, 'b> {
     pub pass: Pass<'a>,
-    pub surfaces: Surfaces<'b>,
+    pub algorithm: Algorithm<'b>,
     pub with_footprint: bool,
     /// Their surface points.
     pub points: &'b PointColumns,
@@ -119,10 +119,10 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         }
         let mut bsdf = Bsdf::new(ns, ss, bxdf);
         bsdf.seed(&lambda, R::Int::gather(&stage.paths.dimension, rows.indices));
-        if stage.surfaces.regularizes() {
+        if stage.algorithm.regularizes() {
             bsdf.regularize(stage.rough_before::<R>(first));
         }
-        let (mode, weighs) = (TransportMode::Radiance, stage.surfaces.weighs());
+        let (mode, weighs) = (TransportMode::Radiance, stage.algorithm.weighs());
         let (flags, chooses) = (bsdf.flags(), M::Bxdf::<'_, R>::CHOOSES);
         // Large values stay where functions have written them.
         let begin = Begin { stage, first, wo: &wo, lambda: &lambda, flags: &flags, chooses };
@@ -183,7 +183,7 @@ impl<R: Real> Callee<R> for FootprintAt<'_, '_, '_, R> {
 struct AtVertices<'b, R: Real> {
     vertices: Vertices<R>,
     request: Request<R>,
-    algorithm: AlgorithmState<'b, R>,
+    state: AlgorithmState<'b, R>,
 }
 
 enum AlgorithmState<'b, R: Real> {
@@ -210,17 +210,17 @@ impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
     fn run(self) -> AtVertices<'b, R> {
         let Self { stage, first, wo, lambda, flags, chooses } = self;
         let mut vertices = stage.vertices::<R>(first, (*wo, *lambda), flags);
-        let (request, algorithm) = match stage.surfaces {
-            Surfaces::Path(path) | Surfaces::Boundaries(path) => {
+        let (request, state) = match stage.algorithm {
+            Algorithm::Path(path) | Algorithm::Boundaries(path) => {
                 let (state, request) = PathVertices::begin(path, stage, &mut vertices, flags, chooses);
                 (request, AlgorithmState::Path(state))
             }
-            Surfaces::AllLights(lights) => {
+            Algorithm::AllLights(lights) => {
                 let (state, request) = LightsInTurn::begin(lights, stage, &mut vertices, flags, chooses);
                 (request, AlgorithmState::AllLights(state))
             }
         };
-        AtVertices { vertices, request, algorithm }
+        AtVertices { vertices, request, state }
     }
 }
 
@@ -237,8 +237,8 @@ impl<R: Real> Callee<R> for Connect<'_, '_, '_, R> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { stage, state: AtVertices { vertices, request, algorithm }, f, pdf } = self;
-        *request = match algorithm {
+        let Self { stage, state: AtVertices { vertices, request, state }, f, pdf } = self;
+        *request = match state {
             AlgorithmState::Path(path) => path.connect(stage, vertices, *f, pdf),
             AlgorithmState::AllLights(lights) => lights.connect(stage, vertices, *f),
         };
@@ -258,8 +258,8 @@ impl<R: Real> Callee<R> for Continue<'_, '_, '_, R> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { stage, state: AtVertices { vertices, request, algorithm }, sample, pdf } = self;
-        *request = match algorithm {
+        let Self { stage, state: AtVertices { vertices, request, state }, sample, pdf } = self;
+        *request = match state {
             AlgorithmState::Path(path) => path.scatter(stage, vertices, sample, pdf),
             AlgorithmState::AllLights(lights) => lights.wait_for(stage, vertices, sample),
         };

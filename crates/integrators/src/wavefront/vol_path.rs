@@ -17,7 +17,7 @@ use super::media::medium;
 use super::medium_vertices::ScatterInMedia;
 use super::paths::Paths;
 use super::segments::Segments;
-use super::shade::Surfaces;
+use super::shade::Algorithm;
 use super::shadows::Passages;
 use crate::camera_paths::{Flown, PathInMedia};
 use crate::transport::media::{Arrival, Passage, Throughput};
@@ -31,7 +31,7 @@ impl WaveIntegrator for VolPath {
         let surfaces = &self.in_vacuum;
         batch.fly(self);
         batch.classify(surfaces.settings.max_depth, &surfaces.direct);
-        batch.shade_in_lanes(Surfaces::Path(surfaces));
+        batch.shade_in_lanes(Algorithm::Path(surfaces));
         batch.shade_others(|batch, place, hit| batch.shade_in_media(self, place, hit));
     }
 }

@@ -10,7 +10,7 @@ use scene::Interfaces;
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
 use super::batch::{Batch, BatchColumns, Vertex};
-use super::shade::Surfaces;
+use super::shade::Algorithm;
 use crate::Whitted;
 use crate::camera_paths::Node;
 use crate::transport::direct::{Connection, connect_all};
@@ -20,7 +20,7 @@ impl WaveIntegrator for Whitted {
     fn shade(&self, batch: &mut Batch) {
         let lights = AllLights::with_shadows(self.is_ambient());
         batch.classify(self.max_depth(), lights.direct());
-        batch.shade_in_lanes(Surfaces::AllLights(&lights));
+        batch.shade_in_lanes(Algorithm::AllLights(&lights));
         batch.shade_others(|batch, place, hit| self.shade_path(batch, &lights, place, hit));
         batch.go_on_with_waiting();
     }

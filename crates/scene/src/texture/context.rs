@@ -22,9 +22,8 @@ impl<R: Real> TextureContext<R> {
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> TextureContext {
         let mut numbers = [0.0; NUMBERS];
-        let all = self.numbers();
-        for i in 0..NUMBERS {
-            numbers[i] = all[i].lane(lane);
+        for (i, number) in self.numbers().iter().enumerate() {
+            numbers[i] = number.lane(lane);
         }
         TextureContext::from_numbers(numbers)
     }
@@ -61,9 +60,8 @@ impl ContextArrays {
     #[inline(always)]
     pub fn new<R: Real>(context: &TextureContext<R>) -> Self {
         let mut numbers = [[0.0; MAX_LANES]; NUMBERS];
-        let all = context.numbers();
-        for i in 0..NUMBERS {
-            all[i].store(&mut numbers[i]);
+        for (i, number) in context.numbers().iter().enumerate() {
+            number.store(&mut numbers[i]);
         }
         Self(numbers)
     }
@@ -72,8 +70,8 @@ impl ContextArrays {
     #[inline(always)]
     pub fn load<R: Real>(&self) -> TextureContext<R> {
         let mut numbers = [R::zero(); NUMBERS];
-        for i in 0..NUMBERS {
-            numbers[i] = R::load(&self.0[i]);
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = R::load(&self.0[i]);
         }
         TextureContext::from_numbers(numbers)
     }

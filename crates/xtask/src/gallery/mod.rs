@@ -56,7 +56,7 @@ pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
 /// Checks pages as they are, and runs the commands of all with small scenes and pictures, and with
 /// the program of tests: two at once, because most of what they do is on one core.
 pub fn check(root: &Path) -> Result<(), String> {
-    let program = super::command::target(root).join("checked/alhazen");
+    let program = super::command::target(root).join("debug/alhazen");
     let pages = pages(root)?;
     pages::check(root, &pages)?;
     make_scenes(root, pages.iter(), Size::Small)?;

@@ -243,7 +243,7 @@ fn assert_means_agree(scenes: &[Scene], members: &[Member]) {
 }
 
 #[test]
-#[ignore = "slow: half an hour of one core; cargo test -p alhazen --profile checked --test suite means_agree -- --ignored --nocapture"]
+#[ignore = "slow: half an hour of one core; cargo test -p alhazen --test suite means_agree -- --ignored --nocapture"]
 fn means_agree_within_three_per_mille() {
     assert_means_agree(&SCENES, &MEMBERS);
 }
@@ -274,7 +274,7 @@ macro_rules! in_media {
         mod means_in_media_agree {
             $(mod $scene {
                 $(#[test]
-                #[ignore = "slow: up to half an hour; cargo test -p alhazen --profile checked --test suite means_in_media_agree -- --ignored --nocapture"]
+                #[ignore = "slow: up to half an hour; cargo test -p alhazen --test suite means_in_media_agree -- --ignored --nocapture"]
                 fn $member() {
                     let [scene, reference] = [stringify!($scene), stringify!($reference)];
                     super::super::assert_mean_agrees(scene, reference, stringify!($member));

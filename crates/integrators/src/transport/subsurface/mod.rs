@@ -58,6 +58,23 @@ pub(crate) struct Exit<'a> {
     pub density: SampledSpectrum,
 }
 
+/// The point of an [`Exit`] by itself.
+struct Left {
+    surface: SurfaceInteraction,
+    value: SampledSpectrum,
+    density: SampledSpectrum,
+}
+
+impl Left {
+    /// With the lobe by which a path leaves a body.
+    fn by<'a>(self, body: Body<'_, 'a>) -> Exit<'a> {
+        let Self { surface, value, density } = self;
+        let shading = &surface.surface.shading;
+        let bsdf = Bsdf::new(shading.n, shading.dpdu, body.exit());
+        Exit { surface, bsdf, value, density }
+    }
+}
+
 /// The body that a path enters by a sample of its boundary, if it does.
 pub(crate) fn entered<'b, 'a>(
     bsdf: &'b Bsdf<Bxdf<'a>>,
@@ -78,6 +95,11 @@ impl Tracer<'_> {
         wi: Vector3,
         heroes: &Heroes,
     ) -> Option<Exit<'a>> {
+        Some(self.leave(entry, body, wi, heroes)?.by(body))
+    }
+
+    /// The same, without the lobe by which it leaves.
+    fn leave(&mut self, entry: &Entry, body: Body, wi: Vector3, heroes: &Heroes) -> Option<Left> {
         let (mut surface, value, density) = match body.profile() {
             Some(bssrdf) => {
                 let profiles = bssrdf.profiles();
@@ -95,8 +117,7 @@ impl Tracer<'_> {
             return None;
         }
         surface.surface.wo = surface.surface.shading.n;
-        let bsdf = Bsdf::new(surface.surface.shading.n, surface.surface.shading.dpdu, body.exit());
-        Some(Exit { surface, bsdf, value, density })
+        Some(Left { surface, value, density })
     }
 }
 
@@ -113,22 +134,32 @@ impl PathState {
         let medium = self.medium;
         self.scatter(entry, context, scattered);
         self.medium = medium;
-        self.pass_under(tracer, &entry.into(), (body, scattered.sample.wi), lambda)
+        Some(self.pass_under(tracer, &entry.into(), (body, scattered.sample.wi), lambda)?.by(body))
     }
 
-    /// Leads the path out of a body that it has entered in a direction.
-    pub(crate) fn pass_under<'a>(
+    /// Leads the path out of a body that it has entered in a direction, to a point.
+    pub(crate) fn leave_body(
         &mut self,
         tracer: &mut Tracer,
         entry: &Entry,
-        (body, wi): (Body<'_, 'a>, Vector3),
+        under: (Body, Vector3),
         lambda: &SampledWavelengths,
-    ) -> Option<Exit<'a>> {
+    ) -> Option<SurfaceInteraction> {
+        self.pass_under(tracer, entry, under, lambda).map(|left| left.surface)
+    }
+
+    fn pass_under(
+        &mut self,
+        tracer: &mut Tracer,
+        entry: &Entry,
+        (body, wi): (Body, Vector3),
+        lambda: &SampledWavelengths,
+    ) -> Option<Left> {
         let u = tracer.sampler.get_1d();
         let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
-        let exit = tracer.exit(entry, body, wi, &heroes)?;
-        self.beta *= exit.value / heroes.mean(exit.density);
+        let left = tracer.leave(entry, body, wi, &heroes)?;
+        self.beta *= left.value / heroes.mean(left.density);
         self.eta_scale /= body.eta() * body.eta();
-        Some(exit)
+        Some(left)
     }
 }

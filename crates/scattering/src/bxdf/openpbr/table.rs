@@ -381,8 +381,8 @@ impl OpenPbrTable {
         let mut places = [R::zero(); 12];
         if !self.axes.is_empty() {
             let mut p = *p;
-            for i in 0..self.axes.len().min(places.len()) {
-                places[i] = self.axes[i].place(*number(&mut p, self.axes[i].number));
+            for (i, axis) in self.axes.iter().enumerate() {
+                places[i] = axis.place(*number(&mut p, axis.number));
             }
         }
         Location(places)
