@@ -11,8 +11,8 @@ pub trait LaneFunction {
 }
 
 /// Asserts that each lane of the instruction sets that processors choose gives the bits of single
-/// floats, for `rounds` times `count` numbers per lane. A quarter of the numbers are multiples of ¼, so that special cases occur. All
-/// NaNs count as the same.
+/// floats, for `rounds` times `count` numbers per lane. A quarter of the numbers are multiples of
+/// ¼, so that special cases occur. All NaNs count as the same.
 ///
 /// Sets that no processor of this build chooses are those of other builds; the operations of all
 /// sets are compared in the tests of `lanes`.

@@ -4,9 +4,7 @@
 //! kernel has ended; then a probe finds for each where it leaves (`transport/subsurface/`), one
 //! path after another. There they are shaded in lanes again, by the lobe of the exit.
 
-use geometry::{PointColumns, SurfacePoint};
 use lanes::Real;
-use math::Ray;
 use scattering::{Body, NormalizedFresnel};
 use scene::Footprint;
 use scene::material::{DielectricMaterial, MaterialId, MaterialModel, SubsurfaceMaterial};
@@ -14,42 +12,13 @@ use scene::texture::{TextureContext, Textures};
 use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 
 use super::batch::{Batch, BatchColumns};
+use super::exits::Exits;
 use super::queues::Entering;
-use super::segments::{Besides, Segments};
-use super::shade::{Algorithm, Shade, Stage};
+use super::shade::Shade;
+use super::stage::{Algorithm, Stage};
 use crate::Tracer;
 use crate::transport::path_state::PathState;
 use crate::transport::subsurface::Entry;
-
-/// The points where paths leave bodies, in columns.
-#[derive(Default)]
-pub(super) struct Exits {
-    /// The paths, as if rays along their shading normals had come to these points.
-    segments: Segments,
-    points: PointColumns,
-    /// The indices of the paths.
-    turns: Vec<u32>,
-}
-
-impl Exits {
-    /// Makes room for as many paths, and has none.
-    fn start(&mut self, count: usize) {
-        self.segments.start(count, Besides { differentials: false, media: false });
-        self.points.grow(count);
-        self.turns.clear();
-    }
-
-    /// Adds a path that has been scattered `depth` times before it entered.
-    fn push(&mut self, row: u32, state: &PathState, exit: &SurfacePoint, depth: u32) {
-        let turn = self.segments.rows.len();
-        let SurfacePoint { p, shading, time, .. } = exit;
-        let ray = Ray::new(p.p, -shading.n, *time);
-        let PathState { beta, eta_scale, .. } = *state;
-        self.segments.push(row, &PathState { beta, eta_scale, ..PathState::new(ray.into(), depth) });
-        self.points.set_one(turn, exit);
-        self.turns.push(turn as u32);
-    }
-}
 
 /// The lobe by which paths leave a body, as a material.
 struct Leaving(NormalizedFresnel);

@@ -11,7 +11,7 @@ use super::lights::{self, Samples};
 use super::media::{MediumVertices, SegmentInMedia};
 use super::numbers::VertexNumbers;
 use super::pass::Pass;
-use super::path::{Roulette, play};
+use super::path_vertices::{Roulette, play};
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::{Segment, Segments};

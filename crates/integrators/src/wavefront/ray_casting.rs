@@ -3,7 +3,7 @@
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
 use super::batch::{Batch, BatchColumns, Vertex};
-use super::shade::Algorithm;
+use super::stage::Algorithm;
 use crate::RayCasting;
 use crate::transport::direct::connect_all;
 

@@ -4,86 +4,24 @@
 //! not depend on materials: they are functions of the lanes, compiled once for each instruction
 //! set, which [request](Request) of a kernel one value or sample after another.
 
-use geometry::{HitColumns, PatchPoints, PointColumns};
-use lanes::{Callee, Each, Int, Kernel, Mask, Real};
-use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
-use sampling::sampler::Address;
+use geometry::PatchPoints;
+use lanes::{Callee, Int, Kernel, Mask, Real};
+use math::Vector3;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use scene::Footprint;
-use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
 use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::all_lights::{AllLights, LightsInTurn};
 use super::columns::Rows;
-use super::lights::Samples;
-use super::pass::Pass;
-use super::path::PathVertices;
-use super::paths::Paths;
-use super::queues::Queues;
-use super::segments::Segments;
-use crate::Path;
-use crate::transport::pixel_samples::PixelSamples;
-
-/// The algorithm at vertices.
-#[derive(Clone, Copy)]
-pub(super) enum Algorithm<'b> {
-    Path(&'b Path),
-    /// Path tracing at the boundaries of bodies.
-    Boundaries(&'b Path),
-    AllLights(&'b AllLights),
-}
-
-impl Algorithm<'_> {
-    /// Whether surfaces are roughened after a rough one.
-    #[inline(always)]
-    pub fn regularizes(self) -> bool {
-        match self {
-            Self::Path(path) | Self::Boundaries(path) => path.settings.regularize,
-            Self::AllLights(_) => false,
-        }
-    }
-
-    /// Whether it asks for the densities of directions, too.
-    #[inline(always)]
-    fn weighs(self) -> bool {
-        !matches!(self, Self::AllLights(_))
-    }
-}
-
-/// A question of an algorithm about the BSDFs at vertices, in each lane.
-pub(super) enum Request<R> {
-    /// The value in a direction.
-    Value(Vector3<R>),
-    /// A sample by these numbers.
-    Sample((R, Vec2<R>), Directions),
-    /// None: it is done.
-    Nothing,
-}
+use super::lights_in_turn::LightsInTurn;
+use super::path_vertices::PathVertices;
+use super::stage::{Algorithm, Place, Request, Stage, Vertices};
 
 /// Shades hits of one material.
 pub(super) struct Shade<'a, 'b, M> {
     pub material: &'a M,
     pub stage: Stage<'a, 'b>,
-}
-
-/// Hits of one material, and all that shading them changes.
-pub(super) struct Stage<'a, 'b> {
-    pub pass: Pass<'a>,
-    pub algorithm: Algorithm<'b>,
-    pub with_footprint: bool,
-    /// Their surface points.
-    pub points: &'b PointColumns,
-    /// The hits of all paths.
-    pub hits: &'b HitColumns,
-    /// Indices of hits, and their paths.
-    pub turns: &'b [u32],
-    pub rows: &'b [u32],
-    pub segments: &'b Segments,
-    pub paths: &'b mut Paths,
-    pub queues: &'b mut Queues,
-    pub light_samples: &'b mut Samples,
 }
 
 impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
@@ -154,12 +92,6 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
 #[inline(always)]
 fn step<R: Real, M: MaterialModel, C: Callee<R>>(callee: C) -> C::Output {
     if M::IS_CHEAP { callee.run() } else { R::call(callee) }
-}
-
-/// Paths, and the turns of their hits.
-struct Place<R: Real> {
-    rows: Rows<R>,
-    turns: Rows<R>,
 }
 
 /// The footprints of pixels at surface points.
@@ -263,117 +195,5 @@ impl<R: Real> Callee<R> for Continue<'_, '_, '_, R> {
             AlgorithmState::Path(path) => path.scatter(stage, vertices, sample, pdf),
             AlgorithmState::AllLights(lights) => lights.wait_for(stage, vertices, sample),
         };
-    }
-}
-
-/// The vertices of the paths in the lanes.
-pub(super) struct Vertices<R: Real> {
-    pub rows: Rows<R>,
-    /// Their turns.
-    pub turns: Rows<R>,
-    /// The lanes that have a vertex.
-    pub active: R::Mask,
-    pub p: Point3Error<R>,
-    /// Geometric and shading normal.
-    pub n: Normal3<R>,
-    pub ns: Normal3<R>,
-    pub wo: Vector3<R>,
-    pub time: R,
-    pub lambda: SampledWavelengths<R>,
-    /// Path throughput before the vertex.
-    pub beta: SampledSpectrum<R>,
-    pub address: Address<R::Int>,
-    /// Where lights are sampled from.
-    origin: Point3Error<R>,
-}
-
-impl<R: Real> Vertices<R> {
-    /// The contexts of light sampling.
-    #[inline(always)]
-    pub fn contexts(&self) -> LightSampleContext<R> {
-        LightSampleContext { p: self.origin, n: self.n, ns: self.ns, time: self.time }
-    }
-}
-
-impl Stage<'_, '_> {
-    #[inline(always)]
-    fn place<R: Real>(&self, first: usize) -> Place<R> {
-        Place { rows: Rows::first(&self.rows[first..]), turns: Rows::first(&self.turns[first..]) }
-    }
-
-    /// The directions back along the rays.
-    #[inline(always)]
-    fn outgoing<R: Real>(&self, turns: Rows<R>) -> Vector3<R> {
-        -self.segments.direction.vector(turns).normalize()
-    }
-
-    /// The lanes whose paths have been scattered by a rough surface.
-    #[inline(always)]
-    fn rough_before<R: Real>(&self, first: usize) -> R::Mask {
-        let (mut bits, end) = (0, self.rows.len().min(first + R::LANES));
-        for (lane, &row) in self.rows[first..end].iter().enumerate() {
-            bits |= u32::from(self.paths.rough_before[row as usize]) << lane;
-        }
-        R::Mask::from_bits(bits)
-    }
-
-    /// The vertices of BSDFs with these flags. As in `transport/direct.rs`, lights are sampled from
-    /// points that are offset to the side of `wo` where they scatter to one side only.
-    #[inline(always)]
-    fn vertices<R: Real>(
-        &self,
-        first: usize,
-        (wo, lambda): (Vector3<R>, SampledWavelengths<R>),
-        flags: &BxdfFlags<R>,
-    ) -> Vertices<R> {
-        let Place { rows, turns } = self.place::<R>(first);
-        let PatchPoints { p, n, ns, .. } = self.points.get(first);
-        let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
-        let one_sided = reflects ^ transmits;
-        let side: Normal3<R> = Vec3::select(reflects, wo, -wo);
-        let moved = Point3Error::exact(offset_ray_origin(p, n, side));
-        Vertices {
-            rows,
-            turns,
-            active: rows.active,
-            p,
-            n,
-            ns,
-            wo,
-            time: R::gather(&self.segments.time, turns.indices),
-            lambda,
-            beta: self.segments.beta.get(turns),
-            address: self.paths.address(rows, self.pass.pixels.index),
-            origin: Point3Error::new(
-                Vec3::select(one_sided, moved.p, p.p),
-                Vec3::select(one_sided, moved.error, p.error),
-            ),
-        }
-    }
-
-    /// The differentials of the ray that the specular sample of a lane makes of that of a turn, if
-    /// this has any.
-    pub fn scattered_differentials<R: Real>(
-        &self,
-        turn: usize,
-        sample: &BsdfSample<R>,
-        lane: usize,
-    ) -> Option<Differentials> {
-        if !self.segments.has_differentials(turn as u32) {
-            return None;
-        }
-        let PixelSamples { scene, view, .. } = *self.pass.pixels;
-        let lobe = if sample.flags.is_reflective().bits() >> lane & 1 == 1 {
-            BxdfFlags::SPECULAR_REFLECTION
-        } else {
-            BxdfFlags::SPECULAR_TRANSMISSION
-        };
-        let wi = sample.wi.to_array().each(|coordinate| coordinate.lane(lane));
-        let scattered = BsdfSample {
-            eta: sample.eta.lane(lane),
-            ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
-        };
-        let hit = self.hits.get(turn).expect("invariant: vertices have hits");
-        scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), &scattered)
     }
 }

@@ -10,7 +10,7 @@ use scene::Interfaces;
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
 use super::batch::{Batch, BatchColumns, Vertex};
-use super::shade::Algorithm;
+use super::stage::Algorithm;
 use crate::Whitted;
 use crate::camera_paths::Node;
 use crate::transport::direct::{Connection, connect_all};
