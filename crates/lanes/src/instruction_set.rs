@@ -30,7 +30,7 @@ impl InstructionSet {
     pub const ALL: [Self; 6] =
         [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Portable, Self::Scalar];
 
-    /// Those that processors of this build choose by themselves; every one has the last.
+    /// The sets that processors of this build choose by themselves; every one has the last.
     pub const CHOSEN: &[Self] = if cfg!(target_arch = "aarch64") {
         &[Self::Neon]
     } else if cfg!(not(target_arch = "x86_64")) {

@@ -10,6 +10,7 @@ pub(super) struct AllLights {
     pub casts_shadows: bool,
     /// Whether skies of one colour cast none.
     pub has_ambient: bool,
+    /// Light that rays find, which counts fully.
     pub direct: DirectLighting,
 }
 
@@ -22,10 +23,5 @@ impl AllLights {
     /// With shadows; `has_ambient` says that skies of one colour cast none.
     pub fn with_shadows(has_ambient: bool) -> Self {
         Self { casts_shadows: true, has_ambient, ..Self::without_shadows() }
-    }
-
-    /// Light that rays find, which counts fully.
-    pub fn direct(&self) -> &DirectLighting {
-        &self.direct
     }
 }

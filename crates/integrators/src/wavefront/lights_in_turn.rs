@@ -20,7 +20,7 @@ pub(super) struct LightsInTurn<'b, R: Real> {
     lights: &'b AllLights,
     /// The lanes that scatter light of lights.
     lit: R::Mask,
-    /// Those that reflect or refract rays.
+    /// The lanes that reflect or refract rays.
     specular: R::Mask,
     flags: BxdfFlags<R>,
     /// Whether BSDFs choose among lobes.
@@ -161,7 +161,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             next = R::Int::select(*specular, address.dimension, next);
         }
         next.scatter(*lit | *specular, &mut stage.paths.dimension, vertices.rows.indices);
-        // Those wait first that are traced last.
+        // Refracted rays wait first, as the last one that waits is traced next.
         match specular.any() {
             true => Request::Sample(self.numbers[1], Directions::Transmission),
             false => Request::Nothing,

@@ -10,10 +10,10 @@ use crate::transport::direct::connect_all;
 impl WaveIntegrator for RayCasting {
     fn shade(&self, batch: &mut Batch) {
         let lights = AllLights::without_shadows();
-        batch.classify(u32::MAX, lights.direct());
+        batch.classify(u32::MAX, &lights.direct);
         batch.shade_in_lanes(Algorithm::AllLights(&lights));
         batch.shade_others(|batch, place, hit| {
-            let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
+            let Some(vertex) = batch.vertex(place, hit, &lights.direct) else { return };
             let Vertex { state, lambda, surface, bsdf } = vertex;
             let Batch { pass, sampler, columns: BatchColumns { paths, .. }, .. } = batch;
             connect_all(pass.pixels.scene, sampler, (&surface, false), &bsdf, &lambda, |light| {

@@ -1,4 +1,4 @@
-//! What the steps of algorithms at vertices in lanes share with the kernels of materials.
+//! The state that the steps of algorithms at vertices in lanes share with kernels of materials.
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
 use lanes::{Each, Mask, Real};

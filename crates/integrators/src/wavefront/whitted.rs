@@ -19,7 +19,7 @@ use crate::transport::path_state::PathState;
 impl WaveIntegrator for Whitted {
     fn shade(&self, batch: &mut Batch) {
         let lights = AllLights::with_shadows(self.is_ambient());
-        batch.classify(self.max_depth(), lights.direct());
+        batch.classify(self.max_depth(), &lights.direct);
         batch.shade_in_lanes(Algorithm::AllLights(&lights));
         batch.shade_others(|batch, place, hit| self.shade_path(batch, &lights, place, hit));
         batch.go_on_with_waiting();
@@ -29,7 +29,7 @@ impl WaveIntegrator for Whitted {
 impl Whitted {
     /// Shades one path.
     fn shade_path(&self, batch: &mut Batch, lights: &AllLights, place: (u32, u32), hit: &Hit) {
-        let Some(vertex) = batch.vertex(place, hit, lights.direct()) else { return };
+        let Some(vertex) = batch.vertex(place, hit, &lights.direct) else { return };
         let Vertex { state, lambda, surface, bsdf } = vertex;
         let Batch { pass, sampler, columns: BatchColumns { paths, queues, .. }, .. } = batch;
         let (path, _) = place;
