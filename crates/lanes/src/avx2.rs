@@ -2,6 +2,7 @@
 
 use crate::pair::Pair;
 use std::arch::x86_64::*;
+use std::mem::transmute;
 
 instruction_set! {
     Avx2, is_x86_feature_detected ["avx2" "fma" "bmi1" "bmi2" "popcnt" "lzcnt"];
@@ -27,7 +28,7 @@ pub fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
     // SAFETY: `from` is the proof of the instruction set; the array has as many indices as are
     // read.
     unsafe {
-        let indices = _mm_loadu_si128(indices.as_ptr().cast());
+        let indices = transmute::<[u32; 4], __m128i>(*indices);
         let indices = _mm_srl_epi32(indices, _mm_cvtsi32_si128(8 * BYTE as i32));
         let permuted = _mm256_permutevar8x32_ps(from.0, _mm256_castsi128_si256(indices));
         F32x4(_mm256_castps256_ps128(permuted))
@@ -38,8 +39,6 @@ vector! {
     /// Four floats.
     F32x4(__m128): Vector<4>;
     splat(x) = _mm_set1_ps(x);
-    load(from) = _mm_loadu_ps(from);
-    store(to, a) = _mm_storeu_ps(to, a);
     lane(a, lane) = _mm_cvtss_f32(_mm_permutevar_ps(a, _mm_cvtsi32_si128(lane as i32)));
     add(a, b) = _mm_add_ps(a, b);
     sub(a, b) = _mm_sub_ps(a, b);
@@ -64,8 +63,6 @@ vector! {
     /// Eight floats.
     F32x8(__m256): Vector<8>;
     splat(x) = _mm256_set1_ps(x);
-    load(from) = _mm256_loadu_ps(from);
-    store(to, a) = _mm256_storeu_ps(to, a);
     lane(a, lane) = _mm256_cvtss_f32(_mm256_permutevar8x32_ps(a, _mm256_set1_epi32(lane as i32)));
     add(a, b) = _mm256_add_ps(a, b);
     sub(a, b) = _mm256_sub_ps(a, b);
@@ -110,8 +107,6 @@ int! {
     /// Eight integers.
     U32x8(__m256i), F32x8, Mask8: 8;
     splat(x) = _mm256_set1_epi32(x);
-    load(from) = _mm256_loadu_si256(from.cast());
-    store(to, a) = _mm256_storeu_si256(to.cast(), a);
     select(mask, a, b) = _mm256_blendv_epi8(b, a, mask);
     mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm256_sll_epi32(a, _mm_cvtsi32_si128(bits));
@@ -169,7 +164,7 @@ unsafe fn gather_rows<const K: usize>(table: *const f32, indices: &[u32; 16]) ->
 pub unsafe fn row<const K: usize>(from: *const f32) -> __m128 {
     unsafe {
         match K {
-            4 => _mm_loadu_ps(from),
+            4 => transmute::<[f32; 4], __m128>(*from.cast()),
             3 => _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0)),
             2 => _mm_castpd_ps(_mm_load_sd(from.cast())),
             _ => _mm_load_ss(from),

@@ -3,6 +3,7 @@
 
 use crate::avx2::{self, F32x4, F32x8, row};
 use std::arch::x86_64::*;
+use std::mem::transmute;
 
 instruction_set! {
     Avx512, is_x86_feature_detected [
@@ -21,8 +22,8 @@ instruction_set! {
         // SAFETY: `from` is the proof of the instruction set; arrays have as many indices as are
         // read.
         unsafe {
-            let low = _mm_loadu_si128(indices[0].as_ptr().cast());
-            let high = _mm_loadu_si128(indices[1].as_ptr().cast());
+            let low = transmute::<[u32; 4], __m128i>(*indices[0]);
+            let high = transmute::<[u32; 4], __m128i>(*indices[1]);
             // One permutation of both vectors, where the bit of 8 tells which.
             let high = _mm_or_si128(high, _mm_set1_epi32(0x0808_0808));
             let both = _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(low), high);
@@ -36,8 +37,6 @@ vector! {
     /// Sixteen floats.
     F32x16(__m512): Vector<16>;
     splat(x) = _mm512_set1_ps(x);
-    load(from) = _mm512_loadu_ps(from);
-    store(to, a) = _mm512_storeu_ps(to, a);
     lane(a, lane) = _mm512_cvtss_f32(_mm512_permutexvar_ps(_mm512_set1_epi32(lane as i32), a));
     add(a, b) = _mm512_add_ps(a, b);
     sub(a, b) = _mm512_sub_ps(a, b);
@@ -84,8 +83,6 @@ int! {
     /// Sixteen integers.
     U32x16(__m512i), F32x16, Mask16: 16;
     splat(x) = _mm512_set1_epi32(x);
-    load(from) = _mm512_loadu_si512(from.cast());
-    store(to, a) = _mm512_storeu_si512(to.cast(), a);
     select(mask, a, b) = _mm512_mask_blend_epi32(mask, b, a);
     mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm512_sll_epi32(a, _mm_cvtsi32_si128(bits));

@@ -24,8 +24,6 @@ vector! {
     /// Four floats.
     F32x4(float32x4_t): Vector<4>;
     splat(x) = vdupq_n_f32(x);
-    load(from) = vld1q_f32(from);
-    store(to, a) = vst1q_f32(to, a);
     lane(a, lane) = std::mem::transmute::<float32x4_t, [f32; 4]>(a)[lane];
     add(a, b) = vaddq_f32(a, b);
     sub(a, b) = vsubq_f32(a, b);
@@ -65,8 +63,6 @@ int! {
     /// Four integers.
     U32x4(uint32x4_t), F32x4, Mask4: 4;
     splat(x) = vdupq_n_u32(x);
-    load(from) = vld1q_u32(from);
-    store(to, a) = vst1q_u32(to, a);
     select(mask, a, b) = vbslq_u32(mask, a, b);
     mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = vshlq_u32(a, vdupq_n_s32(bits));

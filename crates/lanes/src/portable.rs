@@ -13,8 +13,6 @@ vector! {
     /// Four floats.
     F32x4([f32; 4]): Vector<4>;
     splat(x) = [x; 4];
-    load(from) = from.cast::<[f32; 4]>().read();
-    store(to, a) = to.cast::<[f32; 4]>().write(a);
     lane(a, lane) = a[lane];
     add(a, b) = each(|i| a[i] + b[i]);
     sub(a, b) = each(|i| a[i] - b[i]);
@@ -55,8 +53,6 @@ int! {
     /// Four integers.
     U32x4([u32; 4]), F32x4, Mask4: 4;
     splat(x) = [x; 4];
-    load(from) = from.cast::<[u32; 4]>().read();
-    store(to, a) = to.cast::<[u32; 4]>().write(a);
     select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
     mul_wide(a, b) = (each(|i| a[i].mul_wide(b[i]).0), each(|i| a[i].mul_wide(b[i]).1));
     shl(a, bits) = each(|i| a[i] << bits);

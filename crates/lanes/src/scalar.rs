@@ -16,8 +16,6 @@ vector! {
     /// A single float, which every processor computes with.
     F32x1(f32): Vector<1>;
     splat(x) = x;
-    load(from) = from.read();
-    store(to, a) = to.write(a);
     lane(a, lane) = [a][lane];
     add(a, b) = a + b;
     sub(a, b) = a - b;

@@ -15,8 +15,6 @@ vector! {
     /// Four floats.
     F32x4(__m128): Vector<4>;
     splat(x) = _mm_set1_ps(x);
-    load(from) = _mm_loadu_ps(from);
-    store(to, a) = _mm_storeu_ps(to, a);
     lane(a, lane) = std::mem::transmute::<__m128, [f32; 4]>(a)[lane];
     add(a, b) = _mm_add_ps(a, b);
     sub(a, b) = _mm_sub_ps(a, b);
@@ -57,8 +55,6 @@ int! {
     /// Four integers.
     U32x4(__m128i), F32x4, Mask4: 4;
     splat(x) = _mm_set1_epi32(x);
-    load(from) = _mm_loadu_si128(from.cast());
-    store(to, a) = _mm_storeu_si128(to.cast(), a);
     select(mask, a, b) = _mm_or_si128(_mm_and_si128(mask, a), _mm_andnot_si128(mask, b));
     mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm_sll_epi32(a, _mm_cvtsi32_si128(bits));

@@ -1,13 +1,11 @@
 //! Macros that implement an instruction set from a table of intrinsics.
 
-/// Defines a vector as a newtype over a register. Each operation is an expression of registers;
-/// `load` and `store` have pointers.
+/// Defines a vector as a newtype over a register, which has the layout of an array of its lanes.
+/// Each operation is an expression of registers.
 macro_rules! vector {
     (
         $(#[$doc:meta])* $name:ident($register:ty): Vector<$n:literal>;
         splat($x:ident) = $splat:expr;
-        load($from:ident) = $load:expr;
-        store($to:ident, $value:ident) = $store:expr;
         lane($of:ident, $index:ident) = $lane:expr;
         $($operation:ident($a:ident $(, $b:ident)*) = $result:expr;)*
         -> u32:
@@ -18,8 +16,9 @@ macro_rules! vector {
         pub struct $name(pub(crate) $register);
 
         // SAFETY, for every block: the caller of the constructor promised the instruction set, and
-        // a vector is the proof of it. Arrays have as many floats as are read or written.
-        #[allow(unused_unsafe)]
+        // a vector is the proof of it. Registers are loaded as arrays, not by intrinsics: those
+        // check their pointers where assertions are on, and are calls then.
+        #[allow(unused_unsafe, clippy::useless_transmute)]
         impl $crate::simd::Vector<$n> for $name {
             #[inline(always)]
             unsafe fn splat($x: f32) -> Self {
@@ -28,16 +27,12 @@ macro_rules! vector {
 
             #[inline(always)]
             unsafe fn load(from: &[f32; $n]) -> Self {
-                let $from = from.as_ptr();
-                unsafe { Self($load) }
+                unsafe { Self(std::mem::transmute::<[f32; $n], $register>(*from)) }
             }
 
             #[inline(always)]
             fn store(self) -> [f32; $n] {
-                let mut to = [0.0; $n];
-                let ($to, $value) = (to.as_mut_ptr(), self.0);
-                unsafe { $store };
-                to
+                unsafe { std::mem::transmute::<$register, [f32; $n]>(self.0) }
             }
 
             #[inline(always)]
@@ -330,8 +325,6 @@ macro_rules! int {
     (
         $(#[$doc:meta])* $int:ident($register:ty), $real:ident, $mask:ident: $n:literal;
         splat($x:ident) = $splat:expr;
-        load($from:ident) = $load:expr;
-        store($to:ident, $value:ident) = $store:expr;
         select($which:ident, $sx:ident, $sy:ident) = $select:expr;
         mul_wide($wx:ident, $wy:ident) = $mul_wide:expr;
         shl($left:ident, $shl_bits:ident) = $shl:expr;
@@ -356,7 +349,7 @@ macro_rules! int {
         #[derive(Clone, Copy)]
         pub struct $int($register);
 
-        #[allow(unused_unsafe)]
+        #[allow(unused_unsafe, clippy::useless_transmute)]
         impl $crate::Int for $int {
             type Real = $real;
             type Mask = $mask;
@@ -370,14 +363,14 @@ macro_rules! int {
 
             #[inline(always)]
             fn load(from: &[u32]) -> Self {
-                let $from = $crate::slices::lanes::<_, $n>(from).as_ptr();
-                unsafe { Self($load) }
+                let from = *$crate::slices::lanes::<_, $n>(from);
+                unsafe { Self(std::mem::transmute::<[u32; $n], $register>(from)) }
             }
 
             #[inline(always)]
             fn store(self, to: &mut [u32]) {
-                let ($to, $value) = ($crate::slices::lanes_mut::<_, $n>(to).as_mut_ptr(), self.0);
-                unsafe { $store }
+                let lanes = unsafe { std::mem::transmute::<$register, [u32; $n]>(self.0) };
+                *$crate::slices::lanes_mut(to) = lanes;
             }
 
             #[inline(always)]

@@ -8,6 +8,7 @@ mod console;
 mod doctor;
 mod errors;
 mod image;
+mod inlining;
 mod interrupt;
 #[cfg(target_os = "linux")]
 mod memory;

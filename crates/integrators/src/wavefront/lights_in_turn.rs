@@ -11,7 +11,7 @@ use super::all_lights::AllLights;
 use super::lights::{self, LightLanes};
 use super::numbers::{draw_2d, draw_two};
 use super::shadows::Shadow;
-use super::stage::{Request, Stage, Vertices};
+use super::stage::{Request, SpecularSamples, Stage, Vertices};
 use crate::transport::direct::sample_ambient;
 use crate::transport::path_state::PathState;
 
@@ -178,15 +178,17 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
     ) -> Request<R> {
         let Vertices { rows, turns, p, n, ns, time, beta, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
+        let samples = SpecularSamples::of(sample);
         let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
-        let [o, d] = [offset_ray_origin(p, n, wi), wi].each(|v| v.to_array().each(R::to_array));
-        let turn_of = turns.indices.to_array();
+        let o = offset_ray_origin(p, n, wi).to_array().each(R::to_array);
+        let (turn_of, time) = (turns.indices.to_array(), time.to_array());
         rows.each_of(valid & self.specular & flags.is_specular(), |lane, row| {
             let turn = turn_of[lane] as usize;
-            let [o, d] = [o, d].each(|v| Vec3::from_array(v.each(|lanes| lanes[lane])));
+            let sample = samples.at(lane);
+            let o = Vec3::from_array(o.each(|lanes| lanes[lane]));
             let ray = RayDifferential {
-                ray: Ray::new(o, d, time.lane(lane)),
-                differentials: stage.scattered_differentials(turn, sample, lane),
+                ray: Ray::new(o, sample.wi, time[lane]),
+                differentials: stage.scattered_differentials(turn, &sample),
             };
             let beta = SampledSpectrum::new(beta.each(|lanes| lanes[lane]));
             let depth = stage.segments.depth[turn] + 1;

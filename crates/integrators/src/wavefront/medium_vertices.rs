@@ -1,7 +1,7 @@
 //! The vertices of paths in media, in lanes: light samples, samples of the phase function and
 //! Russian roulette.
 
-use lanes::{Each, Int, Kernel, Real};
+use lanes::{Int, Kernel, Real};
 use math::{Point3Error, Ray, Vec3};
 use scattering::HenyeyGreenstein;
 use scene::light::LightSampleContext;
@@ -48,9 +48,10 @@ impl ScatterInMedia<'_, '_> {
         let rows = Rows { indices: R::Int::gather(&segments.rows, turns.indices), active: turns.active };
         let last = vertices.turns.len() - 1;
         let place = R::Int::from_fn(|lane| (first + lane).min(last) as u32);
-        let [x, y, z] = [0, 1, 2].each(|axis: usize| R::gather(&vertices.p[axis], place));
+        let [x, y, z] = &vertices.p;
+        let p = Vec3::new(R::gather(x, place), R::gather(y, place), R::gather(z, place));
         let phase = HenyeyGreenstein { g: R::gather(&vertices.g, place) };
-        let (p, n) = (Point3Error::exact(Vec3::new(x, y, z)), Vec3::splat(R::zero()));
+        let (p, n) = (Point3Error::exact(p), Vec3::splat(R::zero()));
         let time = R::gather(&segments.time, turns.indices);
         let wo = -segments.direction.vector(turns);
         let context = LightSampleContext { p, n, ns: n, time };

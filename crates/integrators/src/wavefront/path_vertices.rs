@@ -15,7 +15,7 @@ use super::pass::Pass;
 use super::queues::Entering;
 use super::segments::Segment;
 use super::shadows::{PassageLanes, Shadow};
-use super::stage::{Algorithm, Request, Stage, Vertices};
+use super::stage::{Algorithm, Request, SpecularSamples, Stage, Vertices};
 use crate::Path;
 use crate::transport::direct::power_heuristic;
 use crate::transport::roulette::{self, CERTAIN};
@@ -180,6 +180,7 @@ impl<R: Real> Vertices<R> {
 impl Stage<'_, '_> {
     /// Gives the rays that specular scattering has appended, from a place in the queue on, the
     /// differentials of the rays before. Few rays have any, so that they are computed one by one.
+    #[inline(always)]
     fn carry_differentials<R: Real>(
         &mut self,
         turns: Rows<R>,
@@ -187,9 +188,10 @@ impl Stage<'_, '_> {
         sample: &BsdfSample<R>,
         first: usize,
     ) {
+        let (bits, samples) = (appended.bits(), SpecularSamples::of(sample));
         turns.each_of(appended & sample.flags.is_specular(), |lane, turn| {
-            let place = first + (appended.bits() & ((1 << lane) - 1)).count_ones() as usize;
-            if let Some(differentials) = self.scattered_differentials(turn, sample, lane) {
+            let place = first + (bits & ((1 << lane) - 1)).count_ones() as usize;
+            if let Some(differentials) = self.scattered_differentials(turn, &samples.at(lane)) {
                 self.queues.next.set_differentials(place, Some(&differentials));
             }
         });

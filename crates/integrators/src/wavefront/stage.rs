@@ -1,7 +1,7 @@
 //! The state that the steps of algorithms at vertices in lanes share with kernels of materials.
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
-use lanes::{Each, Mask, Real};
+use lanes::{Each, MAX_LANES, Mask, Real};
 use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
@@ -163,29 +163,43 @@ impl Stage<'_, '_> {
         }
     }
 
-    /// The differentials of the ray that the specular sample of a lane makes of that of a turn, if
-    /// this has any.
-    pub fn scattered_differentials<R: Real>(
-        &self,
-        turn: usize,
-        sample: &BsdfSample<R>,
-        lane: usize,
-    ) -> Option<Differentials> {
+    /// The differentials of the ray that a specular sample makes of that of a turn, if this has
+    /// any.
+    pub fn scattered_differentials(&self, turn: usize, sample: &BsdfSample) -> Option<Differentials> {
         if !self.segments.has_differentials(turn as u32) {
             return None;
         }
         let PixelSamples { scene, view, .. } = *self.pass.pixels;
-        let lobe = if sample.flags.is_reflective().bits() >> lane & 1 == 1 {
+        let hit = self.hits.get(turn).expect("invariant: vertices have hits");
+        scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), sample)
+    }
+}
+
+/// Specular samples in lanes, out of their registers, to be read one by one.
+pub(super) struct SpecularSamples {
+    wi: [[f32; MAX_LANES]; 3],
+    eta: [f32; MAX_LANES],
+    reflective: u32,
+}
+
+impl SpecularSamples {
+    #[inline(always)]
+    pub fn of<R: Real>(sample: &BsdfSample<R>) -> Self {
+        Self {
+            wi: sample.wi.to_array().each(R::to_array),
+            eta: sample.eta.to_array(),
+            reflective: sample.flags.is_reflective().bits(),
+        }
+    }
+
+    /// The direction, relative index of refraction and lobe of a lane's sample.
+    pub fn at(&self, lane: usize) -> BsdfSample {
+        let lobe = if self.reflective >> lane & 1 == 1 {
             BxdfFlags::SPECULAR_REFLECTION
         } else {
             BxdfFlags::SPECULAR_TRANSMISSION
         };
-        let wi = sample.wi.to_array().each(|coordinate| coordinate.lane(lane));
-        let scattered = BsdfSample {
-            eta: sample.eta.lane(lane),
-            ..BsdfSample::new(SampledSpectrum::zero(), Vec3::from_array(wi), 0.0, lobe)
-        };
-        let hit = self.hits.get(turn).expect("invariant: vertices have hits");
-        scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), &scattered)
+        let wi = Vec3::from_array(self.wi.each(|lanes| lanes[lane]));
+        BsdfSample { eta: self.eta[lane], ..BsdfSample::new(SampledSpectrum::zero(), wi, 0.0, lobe) }
     }
 }

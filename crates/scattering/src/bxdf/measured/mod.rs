@@ -22,7 +22,7 @@ pub use table::{MeasuredData, MeasuredGrid, MeasuredTable};
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, reflect};
-use lanes::{Real, atan2, sin_cos};
+use lanes::{Callee, Real, atan2, sin_cos};
 use math::{Point2, Vec2, Vector3, same_hemisphere, spherical_direction, spherical_theta, sqr};
 use sampling::LayerWeights;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -105,12 +105,7 @@ impl<R: Real> Scatter<R> for Measured<'_, R> {
             TransportMode::Radiance => (wo, wi),
             TransportMode::Importance => (wi, wo),
         };
-        let outgoing = self.outgoing(wo);
-        let facet = self.microfacet(&outgoing, wo, wi);
-        let (u, _) = self.table.invert_normal(facet.at, &outgoing.between);
-        let area = R::splat(4.0) * self.table.sigma(outgoing.at) * wi.z.abs();
-        let f = self.table.values(u, &outgoing.between, &self.lambda) * (self.table.ndf(facet.at) / area);
-        SampledSpectrum::select(facet.exists, f, SampledSpectrum::zero())
+        R::call(MeasuredValue { surface: self, wo, wi })
     }
 
     #[inline(always)]
@@ -144,14 +139,54 @@ impl<R: Real> Scatter<R> for Measured<'_, R> {
         if !directions.reflection() {
             return R::zero();
         }
-        let outgoing = self.outgoing(wo);
-        let facet = self.microfacet(&outgoing, wo, wi);
-        let (u, density) = self.table.invert_normal(facet.at, &outgoing.between);
+        R::call(MeasuredDensity { surface: self, wo, wi })
+    }
+}
+
+/// A value of the BRDF, which its samples have, too.
+struct MeasuredValue<'b, 'a, R: Real> {
+    surface: &'b Measured<'a, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+}
+
+impl<R: Real> Callee<R> for MeasuredValue<'_, '_, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let Self { surface, wo, wi } = self;
+        let Measured { table, lambda } = surface;
+        let outgoing = surface.outgoing(wo);
+        let facet = surface.microfacet(&outgoing, wo, wi);
+        let (u, _) = table.invert_normal(facet.at, &outgoing.between);
+        let area = R::splat(4.0) * table.sigma(outgoing.at) * wi.z.abs();
+        let f = table.values(u, &outgoing.between, lambda) * (table.ndf(facet.at) / area);
+        SampledSpectrum::select(facet.exists, f, SampledSpectrum::zero())
+    }
+}
+
+/// The density of a sample.
+struct MeasuredDensity<'b, 'a, R: Real> {
+    surface: &'b Measured<'a, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+}
+
+impl<R: Real> Callee<R> for MeasuredDensity<'_, '_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self { surface, wo, wi } = self;
+        let outgoing = surface.outgoing(wo);
+        let facet = surface.microfacet(&outgoing, wo, wi);
+        let (u, density) = surface.table.invert_normal(facet.at, &outgoing.between);
         // From area of the square to solid angle of the normal, which has a limit at the pole, then
         // to that of its reflection.
         let solid_angle = R::splat(2.0 * PI * PI) * facet.at.x * facet.sin_theta;
         let solid_angle = R::splat(4.0) * facet.cosine * solid_angle.max(R::splat(1e-6));
-        let pdf = density * self.table.luminance_pdf(u, &outgoing.between) / solid_angle;
+        let pdf = density * surface.table.luminance_pdf(u, &outgoing.between) / solid_angle;
         R::select(facet.exists, pdf, R::zero())
     }
 }
