@@ -127,7 +127,9 @@ impl InstructionSet {
     }
 
     /// Runs a task with it; with `Scalar` instead of `Portable`, because the vectors that tasks
-    /// name are arrays in both, and each set is one more copy of the ray engine.
+    /// name are arrays in both, and each set is one more copy of the ray engine. Builds that need
+    /// AVX2 have the sets below it only with assertions, for tests; without, AVX2 stands in, with
+    /// the same results.
     ///
     /// # Safety
     /// The processor must have it.
@@ -138,6 +140,8 @@ impl InstructionSet {
             match self {
                 #[cfg(target_arch = "x86_64")]
                 Self::Avx512 => avx512::run(task),
+                #[cfg(target_arch = "x86_64")]
+                _ if cfg!(target_feature = "avx2") && !cfg!(debug_assertions) => avx2::run(task),
                 #[cfg(target_arch = "x86_64")]
                 Self::Avx2 => avx2::run(task),
                 #[cfg(target_arch = "x86_64")]
