@@ -1,5 +1,6 @@
 //! From a film's sums to a picture.
 
+use lanes::Each;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
@@ -27,7 +28,7 @@ impl Film {
 
     /// The colour that light gives a pixel, in the film's colour space.
     pub fn rgb(&self, l: &SampledSpectrum, lambda: &SampledWavelengths) -> [f32; 3] {
-        Development::of_colors(self, None).color(self.exposure.response(l, lambda, 1.0).map(f64::from))
+        Development::of_colors(self, None).color(self.exposure.response(l, lambda, 1.0).each(f64::from))
     }
 
     /// The picture with all layers and buckets, row by row while it is written, so that a large one
@@ -170,8 +171,8 @@ impl<'film> Development<'film> {
         let has_samples = !self.film.counts.is_empty();
         let color = |c| if has_samples { self.sum(|film| &film.color, [tile, first, pixel], c) } else { 0.0 };
         let weight = color(3);
-        let mean = mean([0, 1, 2].map(color), weight);
-        let response = [0, 1, 2].map(|c| mean[c] + self.splats(tile, pixel, c));
+        let mean = mean([0, 1, 2].each(color), weight);
+        let response = [0, 1, 2].each(|c| mean[c] + self.splats(tile, pixel, c));
         self.color(response).into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
@@ -196,7 +197,7 @@ impl<'film> Development<'film> {
 
     /// The colour of a response of the sensor.
     fn color(&self, response: [f64; 3]) -> [f32; 3] {
-        let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
+        let rgb = Rgb::from(self.output_from_sensor.apply(response).each(|c| c as f32));
         if self.film.half_floats() { as_half(rgb) } else { rgb }.to_array()
     }
 
@@ -207,7 +208,7 @@ impl<'film> Development<'film> {
         match layer {
             Layer::Samples => put(self.count(first + pixel) as f32),
             Layer::Variance => {
-                let moments = [0, 1, 2].map(|i| sum(offset + i));
+                let moments = [0, 1, 2].each(|i| sum(offset + i));
                 put(self.variance([tile, first, pixel], moments, weight));
             }
             _ if layer.is_id() => {
@@ -223,9 +224,9 @@ impl<'film> Development<'film> {
             }
             Layer::ColorVariance => {
                 let count = sum(offset);
-                let moments = [0, 1, 2].map(|c| (sum(offset + 1 + c), sum(offset + 4 + c)));
+                let moments = [0, 1, 2].each(|c| (sum(offset + 1 + c), sum(offset + 4 + c)));
                 let mean = |sum: f64| if count == 0.0 { 0.0 } else { sum / count };
-                let variance = moments.map(|(sum, squares)| match count > 1.0 {
+                let variance = moments.each(|(sum, squares)| match count > 1.0 {
                     true => (squares - sum * mean(sum)).max(0.0) / (count - 1.0),
                     false => 0.0,
                 });
@@ -250,7 +251,7 @@ impl<'film> Development<'film> {
                 match layer {
                     // The format's normals have unit length.
                     _ if layer.is_normal() && self.film.gbuffer.is_some() => {
-                        let mean = Vec3::from_array([0, 1, 2].map(mean)).normalize_or_zero();
+                        let mean = Vec3::from_array([0, 1, 2].each(mean)).normalize_or_zero();
                         mean.to_array().into_iter().for_each(put);
                     }
                     Layer::Slope | Layer::CameraSlope => (0..2).for_each(|i| put(mean(i).abs())),
@@ -275,13 +276,13 @@ impl<'film> Development<'film> {
 
 /// The mean response of weighted ones that have these sums.
 fn mean(sums: [f64; 3], weight: f64) -> [f64; 3] {
-    if weight == 0.0 { [0.0; 3] } else { sums.map(|c| c / weight) }
+    if weight == 0.0 { [0.0; 3] } else { sums.each(|c| c / weight) }
 }
 
 /// A colour as half floats can hold it.
 fn as_half(rgb: Rgb) -> Rgb {
     let (least, most) = (f16::MIN.to_f32(), f16::MAX.to_f32());
-    Rgb::from(rgb.clamp(least, most).to_array().map(|value| f16::from_f32(value).to_f32()))
+    Rgb::from(rgb.clamp(least, most).to_array().each(|value| f16::from_f32(value).to_f32()))
 }
 
 /// A number as a half float can hold it.

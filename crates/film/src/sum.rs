@@ -9,6 +9,7 @@
 //! rare (bright light sources of many samples) and kept in a map for each tile. The low bits are
 //! those in [−2⁹⁵, 2⁹⁵), so that each sum has one form only.
 
+use lanes::Each;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -249,7 +250,7 @@ impl TileSums<'_> {
     #[inline]
     fn add_low(&mut self, index: usize, units: i128) {
         let sum = extended(self.low[index]) + units;
-        self.low[index] = [0, 32, 64].map(|shift| (sum >> shift) as u32);
+        self.low[index] = [0, 32, 64].each(|shift| (sum >> shift) as u32);
         let high = (sum >> 64) as i64;
         if high != i64::from(high as i32) {
             self.add_high(index, ((sum - low_bits(sum)) >> 96) as i64);

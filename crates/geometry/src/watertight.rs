@@ -56,7 +56,7 @@ impl<'a> Sheared<'a> {
         const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
         let axes = AXES[main_axis(ray.d)];
         let d = ray.d.to_array();
-        let [x, y, z] = axes.map(|a| d[a]);
+        let [x, y, z] = axes.each(|a| d[a]);
         let [sx, sy, sz, _] = (Vec4::new(-x, -y, 1.0, 1.0) / Vec4::splat(z)).to_array();
         Self { ray, axes, shear: [sx, sy, sz] }
     }
@@ -102,7 +102,8 @@ impl<'a> Sheared<'a> {
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
         // SAFETY: every processor computes with single floats.
         let (lane, float) = unsafe { (self.lanes::<1, F32x1>(), |x: f32| F32x1::splat(x)) };
-        let found = LaneHits::of(corners.map(|corner| lane.shear(|axis| float(corner[axis]))), float(t_max))?;
+        let found =
+            LaneHits::of(corners.each(|corner| lane.shear(|axis| float(corner[axis]))), float(t_max))?;
         if found.uncertain != 0 {
             return self.resolve(corners).filter(|hit| hit.0 < t_max);
         }
@@ -276,7 +277,7 @@ fn exact_edge(a: [f32; 3], b: [f32; 3]) -> f32 {
 /// A bound of the error of t ([Pharr 2023 §6.8.7]).
 fn distance_error(corners: [[f32; 3]; 3], e: [f32; 3], inverse: f32) -> f32 {
     let largest = |v: [f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
-    let [x, y, z] = [0, 1, 2].map(|axis| largest(corners.map(|c| c[axis])));
+    let [x, y, z] = [0, 1, 2].each(|axis| largest(corners.each(|c| c[axis])));
     let dx = gamma(5) * (x + z);
     let dy = gamma(5) * (y + z);
     let dz = gamma(3) * z;

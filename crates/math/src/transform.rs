@@ -173,7 +173,7 @@ pub fn affine_ray<R: Real>([x, y, z, t]: &[Vec3<R>; 4], ray: &Ray<R>) -> Ray<R> 
 /// The columns of a matrix, without their last coordinates.
 #[inline]
 fn columns(m: &Mat4) -> [Vec3; 4] {
-    [m.x_axis, m.y_axis, m.z_axis, m.w_axis].map(|c| c.truncate().into())
+    [m.x_axis, m.y_axis, m.z_axis, m.w_axis].each(|c| c.truncate().into())
 }
 
 #[cfg(test)]

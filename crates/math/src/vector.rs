@@ -5,7 +5,7 @@
 
 use crate::balance;
 use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
-use lanes::Real;
+use lanes::{Each, Real};
 use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -292,7 +292,7 @@ macro_rules! vector {
         impl From<$vector> for $double {
             #[inline(always)]
             fn from(v: $vector) -> Self {
-                Self::from_array(v.to_array().map(f64::from))
+                Self::from_array(v.to_array().each(f64::from))
             }
         }
     };

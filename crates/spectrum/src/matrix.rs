@@ -1,5 +1,6 @@
 //! 3 × 3 matrices in double precision, for conversions between colour spaces.
 
+use lanes::Each;
 use std::ops::Mul;
 
 /// A matrix that maps colours to colours, stored by rows.
@@ -23,13 +24,13 @@ impl Matrix3 {
     /// The image of `v`.
     #[inline]
     pub fn apply(&self, v: [f64; 3]) -> [f64; 3] {
-        self.0.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+        self.0.each(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
     /// The image of the colour `v`.
     #[inline]
     pub fn apply_f32(&self, v: [f32; 3]) -> [f32; 3] {
-        self.apply(v.map(f64::from)).map(|x| x as f32)
+        self.apply(v.each(f64::from)).each(|x| x as f32)
     }
 
     /// The inverse, or `None` where the determinant is zero.

@@ -4,7 +4,7 @@ use super::geometry::GeometryId;
 use super::hit::Hit;
 use super::instance::InstancePath;
 use crate::bvh::{Packet, WIDTH};
-use lanes::{Int, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, MAX_LANES, Mask, Real};
 use math::{CameraEnd, Ray, Vec2, Vec3, Vector3};
 
 /// Rays of a batch: a column for each of their numbers. Columns may be longer than needed.
@@ -30,8 +30,8 @@ impl<'a> RayColumns<'a> {
         let from = |column: &'a [f32]| &column[first..];
         Self {
             len: len.min(self.len - first),
-            o: self.o.map(from),
-            d: self.d.map(from),
+            o: self.o.each(from),
+            d: self.d.each(from),
             time: from(self.time),
             t_max: self.t_max.map(from),
             camera: self.camera,
@@ -98,7 +98,7 @@ impl<'a> RayColumns<'a> {
     pub(super) fn packet_from(&self, first: usize) -> Packet {
         let of = |column: &[f32]| *column[first..].first_chunk().unwrap_or(&[0.0; WIDTH]);
         let t_max = self.t_max.map_or([f32::INFINITY; WIDTH], of);
-        Packet { o: self.o.map(of), d: self.d.map(of), t_max }
+        Packet { o: self.o.each(of), d: self.d.each(of), t_max }
     }
 
     /// Prefetches a ray.

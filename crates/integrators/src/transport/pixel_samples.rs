@@ -139,7 +139,7 @@ impl PixelSamples<'_> {
     /// The sample of a pixel at the point `place` of the filter, in [0, 1)², and `lens` of the
     /// lens.
     pub fn sample(&self, shutter: &ShutterSample, pixel: [i32; 2], place: Vec2, lens: Vec2) -> PixelSample {
-        let sample = self.camera_sample(pixel.map(|x| x as u32), place, shutter.u, lens);
+        let sample = self.camera_sample(pixel.each(|x| x as u32), place, shutter.u, lens);
         let camera_ray = camera_ray(self.scene, self.view, &sample);
         PixelSample {
             pixel,

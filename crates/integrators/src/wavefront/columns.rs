@@ -71,7 +71,11 @@ impl<const C: usize> Columns<C> {
 
     /// A row.
     pub fn row(&self, row: usize) -> [f32; C] {
-        std::array::from_fn(|c| self.0[c][row])
+        let mut values = [0.0; C];
+        for (value, column) in values.iter_mut().zip(&self.0) {
+            *value = column[row];
+        }
+        values
     }
 
     /// Changes a row.

@@ -239,7 +239,8 @@ impl Kernel for Sample<'_, '_> {
 
 impl Sample<'_, '_> {
     fn context(&self, lane: usize) -> LightSampleContext {
-        let [p, error, n, ns] = self.context.each_ref().map(|v| Vec3::from_array(v.map(|c| c[lane])));
+        let vector = |i: usize| Vec3::from_array([0, 1, 2].each(|c: usize| self.context[i][c][lane]));
+        let [p, error, n, ns] = [0, 1, 2, 3].each(vector);
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
     }
 
@@ -289,9 +290,9 @@ impl Sample<'_, '_> {
     /// Samples the light of one lane.
     fn sample_one(&mut self, id: LightId, lane: usize) {
         let (scene, bit) = (self.pass.pixels.scene, 1 << lane);
-        let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
-        let lambda = self.lambda.each_ref().map(|v| v[lane]);
-        let lambda = SampledWavelengths::new(lambda, self.lambda_pdf.each_ref().map(|v| v[lane]));
+        let [_, x, y] = [0, 1, 2].each(|i: usize| self.u[i][lane]);
+        let lambda = [0, 1, 2, 3].each(|i: usize| self.lambda[i][lane]);
+        let lambda = SampledWavelengths::new(lambda, [0, 1, 2, 3].each(|i: usize| self.lambda_pdf[i][lane]));
         let (context, is_chosen) = (self.context(lane), self.light.is_none());
         let sample = scene.sample_light(id, &context, Vec2::new(x, y), &lambda, is_chosen);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };

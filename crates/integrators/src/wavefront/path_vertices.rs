@@ -1,7 +1,7 @@
 //! The steps of path tracing at vertices in lanes: light samples, BSDF samples and Russian
 //! roulette.
 
-use lanes::{Int, Mask, Real};
+use lanes::{Int, MAX_LANES, Mask, Real};
 use math::{Ray, Vec2, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
@@ -179,7 +179,7 @@ impl<R: Real> Vertices<R> {
 
 impl Stage<'_, '_> {
     /// Gives the rays that specular scattering has appended, from a place in the queue on, the
-    /// differentials of the rays before. Few rays have any, so that they are computed one by one.
+    /// differentials of the rays before.
     #[inline(always)]
     fn carry_differentials<R: Real>(
         &mut self,
@@ -188,13 +188,29 @@ impl Stage<'_, '_> {
         sample: &BsdfSample<R>,
         first: usize,
     ) {
-        let (bits, samples) = (appended.bits(), SpecularSamples::of(sample));
-        turns.each_of(appended & sample.flags.is_specular(), |lane, turn| {
-            let place = first + (bits & ((1 << lane) - 1)).count_ones() as usize;
-            if let Some(differentials) = self.scattered_differentials(turn, &samples.at(lane)) {
+        let specular = (appended & sample.flags.is_specular()).bits();
+        let turns = turns.indices.to_array();
+        self.carry_each(&turns, [appended.bits(), specular], &SpecularSamples::of(sample), first);
+    }
+
+    /// Few rays have differentials, so that they are computed one by one.
+    #[inline(never)]
+    fn carry_each(
+        &mut self,
+        turns: &[u32; MAX_LANES],
+        [appended, mut specular]: [u32; 2],
+        samples: &SpecularSamples,
+        first: usize,
+    ) {
+        while specular != 0 {
+            let lane = specular.trailing_zeros() as usize;
+            specular &= specular - 1;
+            let place = first + (appended & ((1 << lane) - 1)).count_ones() as usize;
+            let sample = samples.at(lane);
+            if let Some(differentials) = self.scattered_differentials(turns[lane] as usize, &sample) {
                 self.queues.next.set_differentials(place, Some(&differentials));
             }
-        });
+        }
     }
 }
 

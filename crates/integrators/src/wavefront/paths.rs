@@ -1,6 +1,6 @@
 //! The paths of a batch, in columns.
 
-use lanes::{Int, MAX_LANES, Real};
+use lanes::{Each, Int, MAX_LANES, Real};
 use math::Bounds2i;
 use sampling::Sampler;
 use sampling::sampler::Address;
@@ -86,7 +86,7 @@ impl Paths {
 
     /// The pixel of a path.
     pub fn pixel(&self, row: usize) -> [i32; 2] {
-        self.pixels[row].map(|x| x as i32)
+        self.pixels[row].each(|x| x as i32)
     }
 
     /// The pixels of successive paths.

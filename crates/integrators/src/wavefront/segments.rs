@@ -6,7 +6,7 @@
 
 use film::FirstEvent;
 use geometry::{PatchPoints, RayColumns};
-use lanes::{Int, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, MAX_LANES, Mask, Real};
 use math::{CameraEnd, Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
@@ -114,7 +114,7 @@ impl Segments {
     /// The ray of a path.
     #[inline]
     pub fn ray(&self, turn: usize) -> Ray {
-        let [o, d] = [&self.origin, &self.direction].map(|columns| Vec3::from_array(columns.row(turn)));
+        let [o, d] = [&self.origin, &self.direction].each(|columns| Vec3::from_array(columns.row(turn)));
         Ray { camera: self.camera, ..Ray::new(o, d, self.time[turn]) }
     }
 
@@ -122,7 +122,7 @@ impl Segments {
     pub fn state(&self, turn: usize) -> PathState {
         let has_differentials = self.has_differentials(turn as u32);
         let differentials = has_differentials.then(|| differentials_of(self.differentials.row(turn)));
-        let [p, error, n, ns] = [0, 1, 2, 3].map(|i: usize| Vec3::from_array(self.vertex[i].row(turn)));
+        let [p, error, n, ns] = [0, 1, 2, 3].each(|i: usize| Vec3::from_array(self.vertex[i].row(turn)));
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[turn] };
         let pdf = self.pdf[turn];
         PathState {

@@ -16,7 +16,7 @@ pub struct Address<I = u32> {
 impl Address {
     /// The first coordinate of a sample.
     pub(super) fn new(pixel: [i32; 2], index: u32, dimension: u32) -> Self {
-        Self { pixel: pixel.map(|x| x as u32), index, dimension }
+        Self { pixel: pixel.each(|x| x as u32), index, dimension }
     }
 
     /// The current address; continues after `dimensions` more.

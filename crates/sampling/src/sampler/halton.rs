@@ -11,6 +11,7 @@ use crate::low_discrepancy::{
     PRIME_COUNT, owen_scrambled_radical_inverse, permuted_radical_inverse, radical_inverse,
 };
 use crate::mix_word;
+use lanes::Each;
 use math::Vec2;
 
 /// Radical inverses in prime bases, randomised for each pixel, of any number of samples.
@@ -43,7 +44,7 @@ impl Halton {
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
-        let [x, y] = pixel.map(|i| i as u32);
+        let [x, y] = pixel.each(|i| i as u32);
         self.pixel_hash = mix_word(mix_word(self.key ^ x) ^ y);
         let start = if self.randomize == Randomize::None { self.pixel_hash } else { 0 };
         self.index = start.wrapping_add(index);

@@ -8,6 +8,7 @@
 
 use super::reference::{Extent, Reference, in_parts};
 use super::tree::Blocks;
+use lanes::Each;
 use math::Vec4;
 
 /// Where bins lie: the range of the centroids, cut into intervals along each axis.
@@ -38,7 +39,7 @@ impl Grid {
     #[inline]
     fn bins(&self, r: &Reference) -> [u32; 4] {
         let at = (r.extent().doubled_centroid() - self.min) * self.scale + Self::ROUND;
-        at.to_array().map(|at| at.to_bits() & self.mask)
+        at.to_array().each(|at| at.to_bits() & self.mask)
     }
 }
 
