@@ -80,7 +80,7 @@ pub(super) fn draw<R: Real>(
     lambda: &SampledWavelengths<R>,
     active: R::Mask,
 ) {
-    pass.instruction_set.dispatch_large(Sample {
+    pass.instruction_set.dispatch_large(&mut Sample {
         pass,
         direct,
         light,
@@ -183,11 +183,12 @@ struct Sample<'a, 'b> {
     active: u32,
 }
 
-impl Kernel for Sample<'_, '_> {
+/// By reference, as its arrays would be copied for each call.
+impl Kernel for &mut Sample<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Real>(mut self) {
+    fn run<R: Real>(self) {
         self.samples.masks = [0; 4];
         let Pass { area_lights, pixels, .. } = self.pass;
         let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));

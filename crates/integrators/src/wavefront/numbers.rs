@@ -32,8 +32,8 @@ impl<R: Real> CameraNumbers<R> {
         draw.push(Coordinates::TwoOfPixel, address);
         draw.push_if(scene.traits().is_moving || camera.is_moving(), Coordinates::One, address);
         draw.push_if(camera.has_lens(), Coordinates::Two, address);
-        let u = draw.numbers(pass);
-        Self { wavelength: u.one(0), place: u.two(1), time: u.one(2), lens: u.two(3) }
+        draw.compute(pass);
+        Self { wavelength: draw.one(0), place: draw.two(1), time: draw.one(2), lens: draw.two(3) }
     }
 }
 
@@ -57,8 +57,8 @@ impl<R: Real> VertexNumbers<R> {
         let passage = address.dimension;
         address.skip(2);
         draw.push(Coordinates::Two, address);
-        let u = draw.numbers(pass);
-        Self { light: (u.one(0), u.two(1)), passage, bsdf: (R::zero(), u.two(2)) }
+        draw.compute(pass);
+        Self { light: (draw.one(0), draw.two(1)), passage, bsdf: (R::zero(), draw.two(2)) }
     }
 
     /// The next coordinates of each lane; only some lanes sample a light, and not all BSDFs choose
@@ -87,8 +87,9 @@ impl<R: Real> VertexNumbers<R> {
         let first = draw.count;
         draw.push_if(chooses_lobes, Coordinates::One, address);
         draw.push(Coordinates::Two, address);
-        let u = draw.numbers(pass);
-        Self { light: (u.one(0), u.two(1)), passage, bsdf: (u.one(first), u.two(first + 1)) }
+        draw.compute(pass);
+        let bsdf = (draw.one(first), draw.two(first + 1));
+        Self { light: (draw.one(0), draw.two(1)), passage, bsdf }
     }
 }
 
@@ -104,8 +105,8 @@ pub(super) fn draw_two<R: Real>(
         draw.push_if(chooses_lobes, Coordinates::One, address);
         draw.push(Coordinates::Two, address);
     }
-    let u = draw.numbers(pass);
-    [(u.one(0), u.two(1)), (u.one(2), u.two(3))]
+    draw.compute(pass);
+    [(draw.one(0), draw.two(1)), (draw.one(2), draw.two(3))]
 }
 
 /// The next coordinate of each lane.
@@ -113,7 +114,8 @@ pub(super) fn draw_two<R: Real>(
 pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R {
     let mut draw = Draw::new(pass, address);
     draw.push(Coordinates::One, address);
-    draw.numbers(pass).one(0)
+    draw.compute(pass);
+    draw.one(0)
 }
 
 /// The next two coordinates of each lane.
@@ -121,7 +123,8 @@ pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R 
 pub(super) fn draw_2d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> Vec2<R> {
     let mut draw = Draw::new(pass, address);
     draw.push(Coordinates::Two, address);
-    draw.numbers(pass).two(0)
+    draw.compute(pass);
+    draw.two(0)
 }
 
 /// Coordinates that a sampler gives at once.
@@ -146,6 +149,8 @@ struct Draw<'a> {
     coordinates: [Coordinates; MAX_DRAWS],
     /// The dimensions of each.
     dimension: [[u32; MAX_LANES]; MAX_DRAWS],
+    /// The numbers of each, once they are computed.
+    numbers: [[[f32; MAX_LANES]; 2]; MAX_DRAWS],
 }
 
 impl<'a> Draw<'a> {
@@ -158,6 +163,7 @@ impl<'a> Draw<'a> {
             count: 0,
             coordinates: [Coordinates::One; MAX_DRAWS],
             dimension: [[0; MAX_LANES]; MAX_DRAWS],
+            numbers: [[[0.0; MAX_LANES]; 2]; MAX_DRAWS],
         }
     }
 
@@ -180,20 +186,30 @@ impl<'a> Draw<'a> {
     }
 
     #[inline(always)]
-    fn numbers(self, pass: &Pass) -> Numbers {
-        pass.instruction_set.dispatch_large(self)
+    fn compute(&mut self, pass: &Pass) {
+        pass.instruction_set.dispatch_large(self);
+    }
+
+    #[inline(always)]
+    fn one<R: Real>(&self, draw: usize) -> R {
+        R::load(&self.numbers[draw][0])
+    }
+
+    #[inline(always)]
+    fn two<R: Real>(&self, draw: usize) -> Vec2<R> {
+        Vec2::new(R::load(&self.numbers[draw][0]), R::load(&self.numbers[draw][1]))
     }
 }
 
-impl Kernel for Draw<'_> {
-    type Output = Numbers;
+/// By reference, as its arrays would be copied for each call.
+impl Kernel for &mut Draw<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn run<R: Real>(self) -> Numbers {
-        let Self { sampler, pixel: [x, y], index, .. } = self;
+    fn run<R: Real>(self) {
+        let Draw { sampler, pixel: [x, y], index, count, .. } = *self;
         let pixel = [R::Int::load(&x), R::Int::load(&y)];
-        let mut numbers = Numbers([[[0.0; MAX_LANES]; 2]; MAX_DRAWS]);
-        for draw in 0..self.count {
+        for draw in 0..count {
             let address = Address { pixel, index, dimension: R::Int::load(&self.dimension[draw]) };
             let [u, v] = match self.coordinates[draw] {
                 Coordinates::Zero => continue,
@@ -201,24 +217,8 @@ impl Kernel for Draw<'_> {
                 Coordinates::Two => sampler.at_2d::<R>(&address),
                 Coordinates::TwoOfPixel => sampler.at_pixel_2d::<R>(&address),
             };
-            u.store(&mut numbers.0[draw][0]);
-            v.store(&mut numbers.0[draw][1]);
+            u.store(&mut self.numbers[draw][0]);
+            v.store(&mut self.numbers[draw][1]);
         }
-        numbers
-    }
-}
-
-/// Coordinates in the order in which they were added.
-struct Numbers([[[f32; MAX_LANES]; 2]; MAX_DRAWS]);
-
-impl Numbers {
-    #[inline(always)]
-    fn one<R: Real>(&self, draw: usize) -> R {
-        R::load(&self.0[draw][0])
-    }
-
-    #[inline(always)]
-    fn two<R: Real>(&self, draw: usize) -> Vec2<R> {
-        Vec2::new(R::load(&self.0[draw][0]), R::load(&self.0[draw][1]))
     }
 }
