@@ -1,5 +1,7 @@
 //! `--device`: which machine part renders.
 
+use std::env;
+use std::path::Path;
 use std::sync::Arc;
 
 use alhazen::Job;
@@ -37,6 +39,17 @@ impl From<Restir> for Weights {
             Restir::Unbiased => Self::Unbiased,
             Restir::Biased => Self::Biased,
         }
+    }
+}
+
+/// Turns off the layer of Mesa that asks displays which GPU is theirs, where no Wayland can be: its
+/// library would print that it lacks `XDG_RUNTIME_DIR`. `main` does this before all else.
+#[expect(unsafe_code, reason = "only the environment reaches a layer of Vulkan")]
+pub fn silence_layers() {
+    let runtime = env::var_os("XDG_RUNTIME_DIR");
+    if cfg!(target_os = "linux") && !runtime.is_some_and(|folder| Path::new(&folder).is_absolute()) {
+        // SAFETY: the program has no other thread yet that could read the environment.
+        unsafe { env::set_var("NODEVICE_SELECT", "1") };
     }
 }
 

@@ -43,6 +43,8 @@ use clap::Parser;
 use failure::Failure;
 
 fn main() -> ExitCode {
+    #[cfg(feature = "gpu")]
+    device::silence_layers();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),

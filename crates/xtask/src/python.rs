@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::command::{cargo, python_environment, succeed, target};
+use super::command::{python_environment, succeed, target};
 use super::dist;
 
 /// What builds wheels.
@@ -21,19 +21,22 @@ const PROGRAM: &str = if cfg!(windows) { "alhazen.exe" } else { "alhazen" };
 /// script: a library of both would be half as large, but the command would have to start Python,
 /// and each change of the program to link the library.
 pub fn wheel(root: &Path) -> Result<(), String> {
-    let mut program = cargo(root);
-    program.args(["build", "--release", "--package", "alhazen-cli", "--features", dist::FEATURES]);
-    succeed(&mut program)?;
+    let host = dist::host(root)?;
+    let program = dist::build(root, &host, false, "")?;
     let python = python_environment(&target(root).join("maturin"), &BUILD)?;
     let mut command = Command::new(python);
-    command.args(["-m", "maturin", "build", "--release", "--manifest-path"]);
-    command.arg(root.join(FOLDER).join("Cargo.toml")).arg("--out").arg(target(root).join("wheels"));
+    command.args(["-m", "maturin", "build", "--profile", dist::PROFILE, "--target", &host]);
+    command
+        .arg("--manifest-path")
+        .arg(root.join(FOLDER).join("Cargo.toml"))
+        .arg("--out")
+        .arg(target(root).join("wheels"));
     // Maturin takes the files of a wheel that are no modules from a folder of this name.
     let data = root.join(FOLDER).join("alhazen._alhazen.data");
     let scripts = data.join("scripts");
     let put = || {
         fs::create_dir_all(&scripts)?;
-        fs::copy(target(root).join("release").join(PROGRAM), scripts.join(PROGRAM))
+        fs::copy(&program, scripts.join(PROGRAM))
     };
     put().map_err(|error| format!("{}: {error}", scripts.display()))?;
     let built = succeed(&mut command);
