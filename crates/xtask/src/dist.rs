@@ -5,8 +5,9 @@
 //!
 //! The program has the window of `alhazen view`. Libraries of a graphics driver can be loaded by a
 //! dynamically linked program only, so on Linux it needs a glibc as new as that of the machine that
-//! built it. With `--static` it has neither window nor GPU, and runs on any distribution. With `--profile` it is
-//! optimized by a profile (`profile.rs`), which takes three times as long to build.
+//! built it. With `--static` it has neither window nor GPU, and runs on any distribution. With
+//! `--profile` it is optimized by a profile (`profile.rs`), which takes three times as long to
+//! build.
 
 use std::fs;
 use std::path::{Path, PathBuf};
