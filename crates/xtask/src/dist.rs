@@ -72,7 +72,7 @@ pub fn host(root: &Path) -> Result<String, String> {
 }
 
 /// Builds the program for a target, with more flags for the compiler, and returns its path.
-pub fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<PathBuf, String> {
+fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<PathBuf, String> {
     let mut command = cargo(root);
     let features = if is_static { "portable" } else { "full" };
     command.args(["build", "--profile", PROFILE, "--package", "alhazen-cli"]);
