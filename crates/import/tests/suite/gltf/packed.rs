@@ -1,7 +1,9 @@
 //! Primitives packed by Draco and images packed by Basis Universal, as their own encoders write
 //! them.
 
-use super::{File, mesh};
+use super::File;
+#[cfg(feature = "draco")]
+use super::mesh;
 use base64::Engine;
 use description::{MaterialKind, Parameter, SceneDesc, Severity, TextureKind};
 use serde_json::json;
