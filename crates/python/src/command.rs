@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use pyo3::prelude::*;
 
 /// Runs the program with its arguments, of which the first is its name, and returns its exit code.
-#[pyfunction]
+#[pyfunction(name = "_main")]
 pub fn main(py: Python, arguments: Vec<OsString>) -> u8 {
     let ended = py.detach(|| cli::run(arguments));
     // The standard library does not tell the number of an exit code.

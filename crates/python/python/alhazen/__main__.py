@@ -9,7 +9,7 @@ from . import _alhazen
 
 def main() -> int:
     """Runs the program with the arguments of this one, and returns its exit code."""
-    return _alhazen.main(["alhazen", *sys.argv[1:]])
+    return _alhazen._main(["alhazen", *sys.argv[1:]])
 
 
 if __name__ == "__main__":

@@ -10,9 +10,6 @@ from .settings import Settings
 
 __version__: str
 
-def main(arguments: Sequence[str]) -> int:
-    """Runs the program with its arguments, of which the first is its name, and returns its exit code."""
-
 class SceneError(Exception):
     """A scene has errors; the text names all with their places."""
 class SceneWarning(UserWarning):
