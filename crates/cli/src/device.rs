@@ -1,5 +1,7 @@
 //! `--device`: which machine part renders.
 
+use std::env;
+use std::path::Path;
 use std::sync::Arc;
 
 use alhazen::Job;
@@ -37,6 +39,17 @@ impl From<Restir> for Weights {
             Restir::Unbiased => Self::Unbiased,
             Restir::Biased => Self::Biased,
         }
+    }
+}
+
+/// Turns off the layer of Mesa that asks displays which GPU is theirs, where no Wayland can be: its
+/// library would print that it lacks `XDG_RUNTIME_DIR`. The program does this before all else.
+#[expect(unsafe_code, reason = "only the environment reaches a layer of Vulkan")]
+pub fn silence_layers() {
+    let runtime = env::var_os("XDG_RUNTIME_DIR");
+    if cfg!(target_os = "linux") && !runtime.is_some_and(|folder| Path::new(&folder).is_absolute()) {
+        // SAFETY: no other thread uses the environment yet: Python has those of numpy at most.
+        unsafe { env::set_var("NODEVICE_SELECT", "1") };
     }
 }
 

@@ -67,6 +67,7 @@ impl Interrupt {
     }
 
     /// Does what the first Ctrl-C does while a picture is being rendered; returns whether one is.
+    #[cfg(feature = "serve")]
     pub fn cancel_rendering(&self) -> bool {
         let is_rendering = self.rendering.load(Ordering::SeqCst);
         if is_rendering && !self.interrupted.swap(true, Ordering::SeqCst) {

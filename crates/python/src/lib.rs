@@ -7,6 +7,7 @@
 mod builder;
 mod calls;
 mod color;
+mod command;
 mod difference;
 mod errors;
 mod film;
@@ -36,6 +37,7 @@ fn _alhazen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<film::Film>()?;
     module.add_class::<render::Progress>()?;
     module.add_class::<difference::Difference>()?;
+    module.add_function(wrap_pyfunction!(command::main, module)?)?;
     module.add_function(wrap_pyfunction!(scene::load, module)?)?;
     module.add_function(wrap_pyfunction!(value::rgb, module)?)?;
     module.add_function(wrap_pyfunction!(value::spectrum, module)?)?;

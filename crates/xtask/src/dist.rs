@@ -5,8 +5,9 @@
 //!
 //! The program has the window of `alhazen view`. Libraries of a graphics driver can be loaded by a
 //! dynamically linked program only, so on Linux it needs a glibc as new as that of the machine that
-//! built it. With `--static` it has no window, and runs on any distribution. With `--profile` it is
-//! optimized by a profile (`profile.rs`), which takes three times as long to build.
+//! built it. With `--static` it has neither window nor GPU, and runs on any distribution. With
+//! `--profile` it is optimized by a profile (`profile.rs`), which takes three times as long to
+//! build.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,14 +16,14 @@ use std::process::Command;
 use super::command::{cargo, succeed, target};
 use super::profile;
 
-/// The features of the program that people get.
-pub const FEATURES: &str = "gpu,usd,view";
+/// The profile of what people get.
+pub const PROFILE: &str = "dist";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "elvish", "powershell"];
 /// Files of the repository that go along.
 const DOCUMENTS: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
 
-/// Builds for this machine, or for another target, into `target/dist`.
+/// Builds for this machine, or for another target, into `target/packages`.
 pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let host = host(root)?;
     let (options, targets): (Vec<&str>, Vec<&str>) =
@@ -47,23 +48,23 @@ pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let program = build(root, triple, is_static, &flags)?;
     // Pages and completions are the same everywhere, and only a program of this machine runs.
     let own = if triple == host { program.clone() } else { build(root, &host, is_static, "")? };
-    let dist = target(root).join("dist");
+    let packages = target(root).join("packages");
     let name = format!("alhazen-{VERSION}-{triple}{}", if is_static { "-static" } else { "" });
-    let folder = dist.join(&name);
+    let folder = packages.join(&name);
     io(&folder, || assemble(root, &folder, &program))?;
     describe(&own, &folder)?;
 
     let archive = format!("{name}.tar.gz");
-    succeed(Command::new("tar").current_dir(&dist).args(["-czf", &archive, &name]))?;
-    println!("{}", dist.join(archive).display());
+    succeed(Command::new("tar").current_dir(&packages).args(["-czf", &archive, &name]))?;
+    println!("{}", packages.join(archive).display());
     if triple.contains("linux") && !is_static {
-        debian(&folder, triple, &dist)?;
+        debian(&folder, triple, &packages)?;
     }
     Ok(())
 }
 
 /// The target that this machine's compiler builds for.
-fn host(root: &Path) -> Result<String, String> {
+pub fn host(root: &Path) -> Result<String, String> {
     let output = cargo(root).args(["-vV"]).output().map_err(|error| error.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));
@@ -73,17 +74,9 @@ fn host(root: &Path) -> Result<String, String> {
 /// Builds the program for a target, with more flags for the compiler, and returns its path.
 fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<PathBuf, String> {
     let mut command = cargo(root);
-    let features = if is_static { "usd" } else { FEATURES };
-    command.args([
-        "build",
-        "--release",
-        "--package",
-        "alhazen-cli",
-        "--features",
-        features,
-        "--target",
-        triple,
-    ]);
+    let features = if is_static { "portable" } else { "full" };
+    command.args(["build", "--profile", PROFILE, "--package", "alhazen-cli"]);
+    command.args(["--features", features, "--target", triple]);
     let mut all = flags.to_owned();
     if is_static && triple.contains("linux-gnu") {
         all += " -C target-feature=+crt-static";
@@ -98,7 +91,7 @@ fn build(root: &Path, triple: &str, is_static: bool, flags: &str) -> Result<Path
     }
     succeed(&mut command)?;
     let suffix = if triple.contains("windows") { ".exe" } else { "" };
-    Ok(target(root).join(triple).join("release").join(format!("alhazen{suffix}")))
+    Ok(target(root).join(triple).join(PROFILE).join(format!("alhazen{suffix}")))
 }
 
 /// Puts the program and documents into an empty folder.
@@ -127,7 +120,7 @@ fn describe(program: &Path, folder: &Path) -> Result<(), String> {
 }
 
 /// Makes a Debian package of an archive's folder, where `dpkg-deb` is installed.
-fn debian(folder: &Path, triple: &str, dist: &Path) -> Result<(), String> {
+fn debian(folder: &Path, triple: &str, packages: &Path) -> Result<(), String> {
     let architecture = match triple.split('-').next() {
         Some("x86_64") => "amd64",
         Some("aarch64") => "arm64",
@@ -137,10 +130,10 @@ fn debian(folder: &Path, triple: &str, dist: &Path) -> Result<(), String> {
         eprintln!("warning: no Debian package, as there is no dpkg-deb");
         return Ok(());
     }
-    let package = dist.join(format!("alhazen_{VERSION}_{architecture}"));
+    let package = packages.join(format!("alhazen_{VERSION}_{architecture}"));
     io(&package, || lay_out(folder, &package, architecture))?;
     let mut command = Command::new("dpkg-deb");
-    succeed(command.args(["--root-owner-group", "--build"]).arg(&package).arg(dist))?;
+    succeed(command.args(["--root-owner-group", "--build"]).arg(&package).arg(packages))?;
     Ok(())
 }
 

@@ -30,8 +30,8 @@ usage: cargo xtask TASK
              memory and time of forests of 10⁶ to 10⁸ triangles
   wheel      build the Python package, into target/wheels
   dist [--static] [--profile] [TARGET]
-             archives of the program, and on Debian a package, into target/dist;
-             with --static without a window, for any Linux
+             archives of the program, and on Debian a package, into target/packages;
+             with --static without window and GPU, for any Linux
   gallery [NAME…]
              the pages of docs/gallery with these in their names, with their pictures
   scenes [NAME…]

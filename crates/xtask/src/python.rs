@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::command::{cargo, python_environment, succeed, target};
+use super::command::{python_environment, succeed, target};
 use super::dist;
 
 /// What builds wheels.
@@ -14,31 +14,14 @@ const TEST: [&str; 4] = ["numpy", "pytest==9.*", "nbclient", "ipykernel"];
 /// Where the package is.
 const FOLDER: &str = "crates/python";
 
-/// The program's file.
-const PROGRAM: &str = if cfg!(windows) { "alhazen.exe" } else { "alhazen" };
-
-/// Builds the wheel of the workspace at `root` into `target/wheels`. It has the program as a
-/// script: a library of both would be half as large, but the command would have to start Python,
-/// and each change of the program to link the library.
+/// Builds the wheel of the workspace at `root` into `target/wheels`. Its library has the program,
+/// too, so that the wheel is half as large as with a program of its own.
 pub fn wheel(root: &Path) -> Result<(), String> {
-    let mut program = cargo(root);
-    program.args(["build", "--release", "--package", "alhazen-cli", "--features", dist::FEATURES]);
-    succeed(&mut program)?;
     let python = python_environment(&target(root).join("maturin"), &BUILD)?;
     let mut command = Command::new(python);
-    command.args(["-m", "maturin", "build", "--release", "--manifest-path"]);
-    command.arg(root.join(FOLDER).join("Cargo.toml")).arg("--out").arg(target(root).join("wheels"));
-    // Maturin takes the files of a wheel that are no modules from a folder of this name.
-    let data = root.join(FOLDER).join("alhazen._alhazen.data");
-    let scripts = data.join("scripts");
-    let put = || {
-        fs::create_dir_all(&scripts)?;
-        fs::copy(target(root).join("release").join(PROGRAM), scripts.join(PROGRAM))
-    };
-    put().map_err(|error| format!("{}: {error}", scripts.display()))?;
-    let built = succeed(&mut command);
-    fs::remove_dir_all(&data).map_err(|error| format!("{}: {error}", data.display()))?;
-    built
+    command.args(["-m", "maturin", "build", "--profile", dist::PROFILE, "--target", &dist::host(root)?]);
+    command.arg("--manifest-path").arg(root.join(FOLDER).join("Cargo.toml"));
+    succeed(command.arg("--out").arg(target(root).join("wheels")))
 }
 
 /// Tests the package, whose library the tests of the workspace have built, from a folder in which
@@ -52,12 +35,10 @@ pub fn test(root: &Path) -> Result<(), String> {
     succeed(command.env("PYTHONPATH", &folder).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Copies the sources of the package, its library and the program to a folder, as if they were
-/// installed there.
+/// Copies the sources of the package and its library to a folder, as if they were installed there.
 fn assemble(root: &Path, folder: &Path) -> std::io::Result<()> {
-    let (package, programs) = (folder.join("alhazen"), folder.join("bin"));
+    let package = folder.join("alhazen");
     fs::create_dir_all(&package)?;
-    fs::create_dir_all(&programs)?;
     for file in root.join(FOLDER).join("python/alhazen").read_dir()? {
         let file = file?;
         if file.file_type()?.is_file() {
@@ -68,6 +49,5 @@ fn assemble(root: &Path, folder: &Path) -> std::io::Result<()> {
     let library = target(root).join("debug/deps").join(format!("{prefix}_alhazen{suffix}"));
     let extension = if cfg!(windows) { "pyd" } else { "abi3.so" };
     fs::copy(library, package.join(format!("_alhazen.{extension}")))?;
-    fs::copy(target(root).join("debug").join(PROGRAM), programs.join(PROGRAM))?;
     Ok(())
 }

@@ -14,8 +14,8 @@ struct Step {
 }
 
 /// What is checked beyond the program of a plain `cargo build`, and what of it is tested.
-const CHECKED: &str = "alhazen-cli/gpu,alhazen-cli/usd,alhazen-cli/view,alhazen-bench/gpu";
-const TESTED: &str = "alhazen-cli/gpu,alhazen-cli/usd";
+const CHECKED: &str = "alhazen-cli/full,alhazen-bench/gpu";
+const TESTED: &str = "alhazen-cli/portable,alhazen-cli/gpu";
 
 /// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
 /// and documentation share one check of the workspace, which has the window; tests do without.

@@ -1,7 +1,9 @@
 //! Those who watch a render while it runs. Each has a thread of its own and gets the latest
 //! snapshot alone, so that none of them delays the render.
 
+#[cfg_attr(not(feature = "serve"), allow(dead_code, reason = "the server alone asks for all of it"))]
 mod feed;
+#[cfg_attr(not(feature = "serve"), path = "without_server.rs")]
 mod serve;
 mod snapshot;
 mod tev;
@@ -51,7 +53,7 @@ impl Live {
             options.serve.as_ref().map(|at| Server::start(&at.address, token, &name, &feed, interrupt));
         let server = server.transpose()?;
         if let Some(server) = &server {
-            warn(format_args!("the picture is at {}", server.url))?;
+            warn(format_args!("the picture is at {}", server.url()))?;
         }
         let stays = options.serve.as_ref().is_some_and(|at| at.stays);
         Ok(Self { feed, schedule: PreviewSchedule::begin(), tev, server, stays })

@@ -100,6 +100,16 @@ fn a_missing_or_foreign_scene_is_wrong_input() {
     }
 }
 
+/// The option is known, and refused before the scene is read.
+#[cfg(not(feature = "serve"))]
+#[test]
+fn a_program_without_the_server_says_so() {
+    let folder = Folder::new("unserved");
+    let refused = folder.alhazen(&["render", "none.pbrt", "--serve"]).expect(2);
+    assert!(refused.err.contains("built without the server of --serve"), "{refused:?}");
+    assert!(refused.err.contains("the cargo feature `serve`"), "{refused:?}");
+}
+
 #[test]
 fn outputs_are_checked_before_anything_else() {
     let folder = Folder::new("outputs");

@@ -5,6 +5,8 @@
 mod common;
 mod compare;
 mod console;
+#[cfg(feature = "gpu")]
+mod device;
 mod doctor;
 mod errors;
 mod image;
@@ -16,6 +18,7 @@ mod meshes;
 mod render;
 mod resume;
 mod scene;
+#[cfg(feature = "serve")]
 mod serve;
 mod tev;
 mod trace;

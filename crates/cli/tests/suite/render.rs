@@ -34,7 +34,7 @@ fn pictures_are_written_in_every_format_asked_for() {
 }
 
 /// A named ball in front of a wall that fills the picture.
-const LAYERED: &str = r#"
+pub const LAYERED: &str = r#"
 LookAt 0 0 -5  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 24 "integer yresolution" 16
@@ -279,18 +279,4 @@ fn every_instruction_set_gives_the_same_file() {
     assert_eq!(unknown.status.code(), Some(2));
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(message.contains("ALHAZEN_INSTRUCTION_SET: there is no instruction set \"avx3\""), "{message}");
-}
-
-/// Whether or not there is a GPU, the CPU takes what the GPU cannot, and says why and where.
-#[cfg(feature = "gpu")]
-#[test]
-fn what_no_gpu_draws_is_left_to_the_cpu() {
-    let folder = Folder::new("device");
-    folder.write("scene.pbrt", &LAYERED.replace("Shape \"sphere\"", "Shape \"cone\""));
-    let arguments = ["render", "scene.pbrt", "-o", "a.exr", "--device", "gpu"];
-    let told = folder.alhazen(&arguments).expect(0);
-    assert!(told.err.contains("GPU") && told.out.contains("CPU"), "{told:?}");
-    let picture = folder.image("a.exr");
-    folder.alhazen(&["render", "scene.pbrt", "-o", "b.exr", "--device", "cpu"]).expect(0);
-    assert!(picture.values().eq(folder.image("b.exr").values()));
 }

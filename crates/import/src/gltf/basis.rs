@@ -2,8 +2,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+#[cfg(feature = "basis")]
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
-use image::{ColorEncoding, Image, ImageError, Pixels};
+#[cfg(feature = "basis")]
+use image::Pixels;
+use image::{ColorEncoding, Image, ImageError};
 
 /// The first bytes of a KTX2 file.
 const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -41,6 +44,7 @@ fn check_size(bytes: &[u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
+#[cfg(feature = "basis")]
 fn unpack(bytes: &[u8], encoding: ColorEncoding) -> Result<Image, ImageError> {
     let refused = |error: basisu::Error| ImageError::Unsupported(format!("KTX2: {error:?}"));
     let texture = Transcoder::new(bytes).map_err(refused)?;
@@ -51,4 +55,9 @@ fn unpack(bytes: &[u8], encoding: ColorEncoding) -> Result<Image, ImageError> {
     }
     codes = codes.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
     Image::new(width, height, ["R", "G", "B"], Pixels::U8(codes, encoding))
+}
+
+#[cfg(not(feature = "basis"))]
+fn unpack(_: &[u8], _: ColorEncoding) -> Result<Image, ImageError> {
+    Err(ImageError::Unsupported(format!("KTX2 {}", super::document::built_without("basis"))))
 }

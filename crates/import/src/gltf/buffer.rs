@@ -80,6 +80,7 @@ impl Buffers {
     }
 
     /// How many bytes may still be decoded.
+    #[cfg(feature = "draco")]
     pub fn left(&self) -> u64 {
         self.budget.get()
     }

@@ -6,11 +6,10 @@ use super::json::{Fault, Place, Result};
 use crate::log::Log;
 
 /// The extensions that are read, or that change nothing for a renderer that does not cull.
-const EXTENSIONS: [&str; 28] = [
+const EXTENSIONS: [&str; 26] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
-    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -31,10 +30,15 @@ const EXTENSIONS: [&str; 28] = [
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "KHR_node_visibility",
-    "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_xmp",
     "KHR_xmp_json_ld",
+];
+
+/// Extensions that optional features of the build read.
+const OPTIONAL: [(&str, &str, bool); 2] = [
+    ("KHR_draco_mesh_compression", "draco", cfg!(feature = "draco")),
+    ("KHR_texture_basisu", "basis", cfg!(feature = "basis")),
 ];
 
 /// The arrays of the text.
@@ -84,8 +88,8 @@ impl<'a> Document<'a> {
             let Some(name) = required.value.as_str() else {
                 return Err(required.invalid("this must be a string"));
             };
-            if !EXTENSIONS.contains(&name) {
-                let message = format!("the file requires the extension `{name}`, which is not read");
+            if let Some(unread) = unread(name) {
+                let message = format!("the file requires the extension `{name}`, which {unread}");
                 return Err(Fault::new("unknown-extension", required.pointer, message));
             }
         }
@@ -96,8 +100,8 @@ impl<'a> Document<'a> {
                     log.fault(item.invalid("this must be an object"));
                 }
                 let name = item.value.as_str().unwrap_or("");
-                if is_name && !EXTENSIONS.contains(&name) {
-                    let message = format!("the extension `{name}` is not read");
+                if is_name && let Some(unread) = unread(name) {
+                    let message = format!("the extension `{name}` {unread}");
                     log.warn("unknown-extension", item.pointer, message);
                 }
             }
@@ -130,4 +134,18 @@ impl<'a> Document<'a> {
     pub fn index(&self, place: &Place, key: &str, array: &str) -> Result<Option<usize>> {
         place.index(key, self.count(array), array)
     }
+}
+
+/// Why an extension is not read, as the end of a sentence about it; `None` if it is.
+pub(super) fn unread(name: &str) -> Option<String> {
+    let optional = OPTIONAL.iter().find(|(optional, ..)| *optional == name);
+    match optional {
+        Some((_, feature, is_built)) => (!is_built).then(|| built_without(feature)),
+        None => (!EXTENSIONS.contains(&name)).then(|| "is not read".into()),
+    }
+}
+
+/// The end of a sentence about something that an optional feature of the build reads.
+pub(super) fn built_without(feature: &str) -> String {
+    format!("is not read, as this program was built without the cargo feature `{feature}`")
 }

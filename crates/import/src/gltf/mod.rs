@@ -13,6 +13,7 @@ mod camera;
 mod charts;
 mod container;
 mod document;
+#[cfg_attr(not(feature = "draco"), path = "without_draco.rs")]
 mod draco;
 mod json;
 mod light;

@@ -3,7 +3,7 @@
 use description::{EdgeMode, TextureFilter, WrapMode};
 use math::{DAffine2, DMat2, DVec2};
 
-use super::document::Document;
+use super::document::{self, Document};
 use super::json::{Place, Result};
 use crate::log::Log;
 
@@ -89,7 +89,11 @@ pub(super) fn check(document: &Document, log: &mut Log) {
         let names: Vec<_> = names.into_iter().flat_map(|names| names.keys()).map(String::as_str).collect();
         let reason = match names.as_slice() {
             [] => "it has no image".to_owned(),
-            names => format!("its image is in `{}`, which is not read", names.join("`, `")),
+            names => {
+                let unread = names.iter().find_map(|name| document::unread(name));
+                let unread = unread.unwrap_or_else(|| "is not read".into());
+                format!("its image is in `{}`, which {unread}", names.join("`, `"))
+            }
         };
         let message = format!("this texture is left out, and its factor is drawn alone: {reason}");
         log.warn("not-drawn", texture.pointer, message);
@@ -107,7 +111,7 @@ fn image(document: &Document, texture: &Place) -> Result<Option<usize>> {
     if let Some(index) = document.index(texture, "source", "images")? {
         return Ok(Some(index));
     }
-    let packed = texture.extension("KHR_texture_basisu")?;
+    let packed = texture.extension("KHR_texture_basisu")?.filter(|_| cfg!(feature = "basis"));
     packed.map_or(Ok(None), |packed| document.index(&packed, "source", "images"))
 }
 

@@ -71,7 +71,7 @@ const EDGES: [(&str, &[&str]); 22] = [
     ),
     ("view", &["alhazen", "planet"]),
     ("cli", &["alhazen", "view"]),
-    ("python", &["alhazen"]),
+    ("python", &["alhazen", "cli"]),
     ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering", "gpu", "alhazen", "view"]),
     ("xtask", &["lanes", "math", "sampling", "spectrum", "planet"]),
 ];

@@ -41,8 +41,7 @@ const ABSENT: Duration = Duration::from_millis(1500);
 
 /// A server of the picture of one render.
 pub struct Server {
-    /// What a browser opens.
-    pub url: String,
+    url: String,
     served: Arc<Served>,
     connections: Arc<()>,
 }
@@ -88,6 +87,11 @@ impl Server {
         };
         super::spawn("serve", move || runtime.block_on(serve(listener, served, connections)))?;
         Ok(server)
+    }
+
+    /// What a browser opens.
+    pub fn url(&self) -> &str {
+        &self.url
     }
 
     /// Whether a page asks for the picture to be written.

@@ -21,7 +21,10 @@ fn samples_are_read() {
     assert!(found.len() > 30);
     for path in found {
         let imported = import(&path, &Files);
-        assert!(!imported.has_errors(), "{}:\n{}", path.display(), shown(&imported));
+        // Some need features that the program may have been built without.
+        let mut errors = imported.diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
+        let is_read = errors.all(|error| error.message.contains("built without the cargo feature"));
+        assert!(is_read, "{}:\n{}", path.display(), shown(&imported));
     }
 }
 

@@ -1,7 +1,9 @@
 //! Primitives packed by Draco and images packed by Basis Universal, as their own encoders write
 //! them.
 
-use super::{File, mesh};
+use super::File;
+#[cfg(feature = "draco")]
+use super::mesh;
 use base64::Engine;
 use description::{MaterialKind, Parameter, SceneDesc, Severity, TextureKind};
 use serde_json::json;
@@ -34,6 +36,7 @@ fn quad(packed: &[u8]) -> File {
     file
 }
 
+#[cfg(feature = "draco")]
 #[test]
 fn packed_primitives_are_those_without_packing() {
     for packed in QUADS {
@@ -53,6 +56,7 @@ fn packed_primitives_are_those_without_packing() {
 }
 
 /// Encoders merge vertices, or split them, and exporters keep the old numbers.
+#[cfg(feature = "draco")]
 #[test]
 fn stale_counts_of_packed_primitives_are_those_of_the_stream() {
     for packed in QUADS.map(decode) {
@@ -86,6 +90,7 @@ fn stale_counts_of_packed_primitives_are_those_of_the_stream() {
     }
 }
 
+#[cfg(feature = "draco")]
 #[test]
 fn damaged_packed_primitives_are_refused() {
     for packed in QUADS.map(decode) {
@@ -142,6 +147,7 @@ fn base(desc: &SceneDesc) -> &image::Image {
     &desc.images[base.image].image
 }
 
+#[cfg(feature = "basis")]
 #[test]
 fn packed_images_have_their_pixels() {
     for picture in PICTURES {
@@ -175,6 +181,7 @@ fn an_image_of_webp_goes_before_that_of_other_programs() {
     assert_eq!(base(&file.scene()).rgb(0, 0), [0.0, 1.0, 0.0]);
 }
 
+#[cfg(feature = "basis")]
 #[test]
 fn damaged_packed_images_are_refused() {
     for picture in PICTURES.map(decode) {
@@ -194,4 +201,45 @@ fn damaged_packed_images_are_refused() {
         huge[at..at + 2].copy_from_slice(&bytes);
         assert!(textured(&huge).messages(Severity::Error)[0].contains("image too large"));
     }
+}
+
+/// Where the file requires the extension, and where it does not.
+#[cfg(not(feature = "draco"))]
+#[test]
+fn packed_primitives_need_a_feature() {
+    let reason = "the extension `KHR_draco_mesh_compression` is not read, as this program was built without the \
+                  cargo feature `draco`";
+    let mut file = quad(&decode(QUADS[0]));
+    let required = reason
+        .replace("` is", "`, which is")
+        .replace("the ext", "/extensionsRequired/0: the file requires the ext");
+    assert_eq!(file.messages(Severity::Error), [required]);
+    file.json.as_object_mut().unwrap().remove("extensionsRequired");
+    let place = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
+    assert_eq!(file.messages(Severity::Error), [format!("{place}: {reason}")]);
+}
+
+/// A texture that has no other image is left out, unless the file requires it.
+#[cfg(not(feature = "basis"))]
+#[test]
+fn packed_images_need_a_feature() {
+    let reason = "is not read, as this program was built without the cargo feature `basis`";
+    let mut file = textured(&decode(PICTURES[0]));
+    let required = format!(
+        "/extensionsRequired/0: the file requires the extension `KHR_texture_basisu`, which {reason}"
+    );
+    assert_eq!(file.messages(Severity::Error), [required]);
+    file.json.as_object_mut().unwrap().remove("extensionsRequired");
+    let warnings = file.messages(Severity::Warning);
+    let left_out = format!(
+        "/textures/0: this texture is left out, and its factor is drawn alone: its image is in \
+         `KHR_texture_basisu`, which {reason}"
+    );
+    assert!(warnings.contains(&left_out), "{warnings:?}");
+    file.json["textures"] = json!([{"source": 0}]);
+    let errors = file.messages(Severity::Error);
+    assert!(
+        errors.len() == 1 && errors[0].starts_with("/images/0: ") && errors[0].ends_with(reason),
+        "{errors:?}"
+    );
 }
