@@ -35,6 +35,9 @@ const RUNS_OF_8: u32 = 1;
 const RUNS_OF_4: u32 = 2;
 const MASKED: u32 = 3;
 
+/// The most pixels of a side.
+const MOST_SIDE: u32 = u16::MAX as u32;
+
 /// What precedes the pixels.
 struct Header {
     size: [u32; 2],
@@ -115,7 +118,6 @@ impl Header {
         } else {
             (long(info, 4)? as i32, long(info, 8)? as i32, 12)
         };
-        const MOST_SIDE: u32 = u16::MAX as u32;
         if width <= 0 || height == 0 || width.unsigned_abs().max(height.unsigned_abs()) > MOST_SIDE {
             return invalid(format!("a bitmap of {width} × {height} pixels"));
         }
@@ -258,10 +260,11 @@ impl Field {
 
     /// The 8-bit code of these bits of a number.
     fn code(self, number: u32) -> u8 {
-        if self.bits == 0 {
-            u8::MAX
-        } else {
-            widened(number >> self.shift & ((1 << self.bits) - 1), self.bits)
+        let code = number >> self.shift;
+        match self.bits {
+            0 => u8::MAX,
+            8 => code as u8,
+            bits => widened(code & ((1 << bits) - 1), bits),
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::io::{BufWriter, Write};
 
-use jpeg_encoder::{Encoder, EncodingError, ImageBuffer, JpegColorType, rgb_to_ycbcr};
+use jpeg_encoder::{Encoder, EncodingError, ImageBuffer, JpegColorType, SamplingFactor, rgb_to_ycbcr};
 use zune_jpeg::{
     JpegDecoder,
     errors::DecodeErrors,
@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{depth::SampleDepth, error::ImageError, image::Image, memory::filled, source::PixelSource};
 
-/// Of 100; at this one losses are hard to see, and colours are as dense as brightness.
+/// Of 100; at this one losses are hard to see.
 const QUALITY: u8 = 95;
 
 /// Size and channels.
@@ -59,7 +59,7 @@ fn from_library(error: DecodeErrors) -> ImageError {
             ImageError::Invalid("the data ends early".into())
         }
         DecodeErrors::LargeDimensions(side) => ImageError::Limits(format!("a side of {side} pixels")),
-        error => ImageError::Invalid(format!("{error:?}")),
+        error => ImageError::Invalid(format!("JPEG: {error:?}")),
     }
 }
 
@@ -73,10 +73,11 @@ pub fn encode(
     let raster = Layout::new(picture, true, false).codes(picture)?;
     let size = raster.size_within(u16::MAX)?;
     let mut output = BufWriter::new(output);
-    let encoder = Encoder::new(&mut output as &mut dyn Write, QUALITY);
+    let mut encoder = Encoder::new(&mut output as &mut dyn Write, QUALITY);
+    encoder.set_sampling_factor(SamplingFactor::F_1_1);
     encoder.encode_image(Source { raster: &raster, size }).map_err(|error| match error {
         EncodingError::IoError(error) => ImageError::Io(error),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("JPEG: {error}")),
     })?;
     Ok(output.flush()?)
 }

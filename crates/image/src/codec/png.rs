@@ -98,7 +98,7 @@ fn from_library(error: DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(error) => from_io(error),
         DecodingError::LimitsExceeded => too_large(),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("PNG: {error}")),
     }
 }
 
@@ -120,7 +120,7 @@ pub fn encode(
     let mut output = BufWriter::new(output);
     write(&raster, depth, picture.metadata(), &mut output).map_err(|error| match error {
         EncodingError::IoError(error) => ImageError::Io(error),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("PNG: {error}")),
     })?;
     Ok(output.flush()?)
 }

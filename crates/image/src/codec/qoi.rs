@@ -44,6 +44,6 @@ fn from_library(error: Error) -> ImageError {
     match error {
         Error::IoError(error) => from_io(error),
         Error::UnexpectedBufferEnd => ImageError::Invalid("the data ends early".into()),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("QOI: {error}")),
     }
 }

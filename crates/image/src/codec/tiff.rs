@@ -2,24 +2,25 @@
 //! (CMYK), of integers and of floats. Colours that are stored multiplied by their opacity
 //! (associated alpha) are divided by it, as those of other formats are not.
 
+mod strips;
+
 use std::borrow::Cow;
-use std::io::{BufWriter, Cursor, Write};
+use std::io::Cursor;
 
 use half::f16;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::encoder::{Rational, TiffEncoder, TiffValue};
-use tiff::tags::{CompressionMethod, ResolutionUnit, SampleFormat, Tag};
+use tiff::tags::{SampleFormat, Tag};
 use tiff::{ColorType, TiffError};
 
-use super::raster::{Layout, Raster, channel_names, from_io, invalid, packed, widened};
-use super::{Format, Output, ReadOptions, WriteOptions};
+pub use strips::encode;
+
+use super::ReadOptions;
+use super::raster::{channel_names, from_io, invalid, packed, widened};
 use crate::{
-    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     image::{Image, Pixels},
     memory::{collected, reserved},
-    source::PixelSource,
 };
 
 const PALETTE: u16 = 3;
@@ -289,67 +290,6 @@ fn as_grey(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(grey)
 }
 
-/// Writes grey or colours, with opacity or without, of 8 or 16 bits or of single floats, unpacked.
-pub fn encode(
-    picture: &dyn PixelSource,
-    options: &WriteOptions,
-    output: &mut dyn Output,
-) -> Result<(), ImageError> {
-    use SampleDepth::{F32, U8, U16};
-    let is_float = picture.channels()[0].depth != U8;
-    let depths = if is_float { [F32, U8, U16] } else { [U8, U16, F32] };
-    let depth = options.depth_among(Format::Tiff, &depths)?;
-    let layout = Layout::new(picture, true, true);
-    let mut output = BufWriter::new(output);
-    match depth {
-        U8 => write(&layout.codes(picture)?, SampleFormat::Uint, &mut output),
-        U16 => write(&layout.wide_codes(picture)?, SampleFormat::Uint, &mut output),
-        _ => write(&layout.floats(picture)?, SampleFormat::IEEEFP, &mut output),
-    }
-    .map_err(from_library)?;
-    Ok(output.flush()?)
-}
-
-fn write<T>(
-    raster: &Raster<T>,
-    format: SampleFormat,
-    output: &mut BufWriter<&mut dyn Output>,
-) -> Result<(), TiffError>
-where
-    [T]: TiffValue,
-{
-    /// As many bytes as readers have memory for.
-    const STRIP_LENGTH: usize = 1 << 20;
-    let ([width, height], channels) = (raster.size, raster.channels);
-    let row_length = width as usize * channels;
-    let rows = (STRIP_LENGTH / (row_length * size_of::<T>())).clamp(1, height as usize);
-    let mut encoder = TiffEncoder::new(output)?;
-    let mut directory = encoder.image_directory()?;
-    let (mut starts, mut lengths) = (Vec::new(), Vec::new());
-    for strip in raster.samples.chunks(rows * row_length) {
-        starts.push(u32::try_from(directory.write_data(strip)?)?);
-        lengths.push(u32::try_from(size_of_val(strip))?);
-    }
-    directory.write_tag(Tag::ImageWidth, width)?;
-    directory.write_tag(Tag::ImageLength, height)?;
-    directory.write_tag(Tag::BitsPerSample, &*vec![8 * size_of::<T>() as u16; channels])?;
-    directory.write_tag(Tag::Compression, CompressionMethod::None.to_u16())?;
-    let photometric = if channels < 3 { BLACK_IS_ZERO.into() } else { RGB };
-    directory.write_tag(Tag::PhotometricInterpretation, photometric)?;
-    directory.write_tag(Tag::StripOffsets, &*starts)?;
-    directory.write_tag(Tag::SamplesPerPixel, channels as u16)?;
-    directory.write_tag(Tag::RowsPerStrip, rows as u32)?;
-    directory.write_tag(Tag::StripByteCounts, &*lengths)?;
-    directory.write_tag(Tag::XResolution, Rational { n: 1, d: 1 })?;
-    directory.write_tag(Tag::YResolution, Rational { n: 1, d: 1 })?;
-    directory.write_tag(Tag::ResolutionUnit, ResolutionUnit::None.to_u16())?;
-    directory.write_tag(Tag::SampleFormat, &*vec![format.to_u16(); channels])?;
-    if raster.has_alpha() {
-        directory.write_tag(Tag::ExtraSamples, STRAIGHT)?;
-    }
-    directory.finish()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -490,7 +430,7 @@ mod tests {
         assert_eq!(image.channels(), ["R", "G", "B"]);
         let srgb = |code: f32| ColorEncoding::Srgb.to_linear(code / 255.0);
         assert_eq!(pixel(&image), [0.0, 1.0, srgb(204.0)]);
-        assert_eq!(pixel(&inks.read(&[0, 0, 0, 204]).unwrap()), [srgb(51.0); 3]);
+        assert_eq!(pixel(&inks.read(&[0, 0, 0, 255]).unwrap()), [0.0; 3]);
         let planes = File { is_planar: true, palette: Vec::new(), ..inks };
         assert_eq!(pixel(&planes.read(&[255, 0, 51, 0]).unwrap()), [0.0, 1.0, srgb(204.0)]);
         let wide = File { bits: 16, palette: Vec::new(), ..inks };

@@ -36,7 +36,7 @@ fn from_library(error: DecodingError) -> ImageError {
         DecodingError::IoError(error) => from_io(error),
         DecodingError::MemoryLimitExceeded => ImageError::Limits("WebP".into()),
         DecodingError::UnsupportedFeature(text) => ImageError::Unsupported(text),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("WebP: {error}")),
     }
 }
 
@@ -54,7 +54,7 @@ pub fn encode(
     let encoder = WebPEncoder::new(&mut output as &mut dyn Write);
     encoder.encode(&raster.samples, width, height, color).map_err(|error| match error {
         EncodingError::IoError(error) => ImageError::Io(error),
-        error => ImageError::Invalid(error.to_string()),
+        error => ImageError::Invalid(format!("WebP: {error}")),
     })?;
     Ok(output.flush()?)
 }
