@@ -269,7 +269,8 @@ impl Field {
     }
 }
 
-/// Writes 8 bits: indices of grey, colours, or colours with opacity, for which version 4 has a mask.
+/// Writes 8 bits: indices of grey, colours, or colours with opacity, for which version 4 has a
+/// mask.
 pub fn encode(
     picture: &dyn PixelSource,
     options: &WriteOptions,

@@ -1,5 +1,6 @@
-//! What the formats of integers have in common: a header with a size and a kind of pixels, and
-//! samples side by side, which become the pixels of an [`Image`], or are made of those of a picture.
+//! Rasters, which the formats of integers have in common: a header with a size and a kind of
+//! pixels, and samples side by side, which become the pixels of an [`Image`], or are made of those
+//! of a picture.
 
 use std::io;
 

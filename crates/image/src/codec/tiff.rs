@@ -1,26 +1,26 @@
-//! TIFF by the crate `tiff`: grey and coloured pictures with and without opacity, palettes, and inks
-//! (CMYK), of integers and of floats. Colours that are stored multiplied by their opacity
+//! TIFF by the crate `tiff`: grey and coloured pictures with and without opacity, palettes, and
+//! inks (CMYK), of integers and of floats. Colours that are stored multiplied by their opacity
 //! (associated alpha) are divided by it, as those of other formats are not.
 
 mod strips;
 
 use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{BufWriter, Cursor, Write};
 
 use half::f16;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{SampleFormat, Tag};
 use tiff::{ColorType, TiffError};
 
-pub use strips::encode;
-
-use super::ReadOptions;
-use super::raster::{channel_names, from_io, invalid, packed, widened};
+use super::raster::{Layout, channel_names, from_io, invalid, packed, widened};
+use super::{Format, Output, ReadOptions, WriteOptions};
 use crate::{
+    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     image::{Image, Pixels},
     memory::{collected, reserved},
+    source::PixelSource,
 };
 
 const PALETTE: u16 = 3;
@@ -260,8 +260,8 @@ fn looked_up(indices: &[u8], palette: &[u8]) -> Result<Vec<u8>, ImageError> {
     Ok(colors)
 }
 
-/// Red, green and blue of paper with cyan, magenta, yellow and black ink, of which there are `count`
-/// amounts from 0 to `most`.
+/// Red, green and blue of paper with cyan, magenta, yellow and black ink, of which there are
+/// `count` amounts from 0 to `most`.
 fn without_ink(inks: impl Iterator<Item = f32>, count: usize, most: f32) -> Result<Vec<f32>, ImageError> {
     let inks = collected(count, inks)?;
     let colors = inks.as_chunks().0.iter().flat_map(|&[c, m, y, black]| {
@@ -288,6 +288,27 @@ fn as_grey(bytes: &[u8]) -> Option<Vec<u8>> {
     let low = entry + 8 + usize::from(!is_little);
     *grey.get_mut(low)? = BLACK_IS_ZERO;
     Some(grey)
+}
+
+/// Writes grey or colours, with opacity or without, of 8 or 16 bits or of single floats, unpacked.
+pub fn encode(
+    picture: &dyn PixelSource,
+    options: &WriteOptions,
+    output: &mut dyn Output,
+) -> Result<(), ImageError> {
+    use SampleDepth::{F32, U8, U16};
+    let is_float = picture.channels()[0].depth != U8;
+    let depths = if is_float { [F32, U8, U16] } else { [U8, U16, F32] };
+    let depth = options.depth_among(Format::Tiff, &depths)?;
+    let layout = Layout::new(picture, true, true);
+    let mut output = BufWriter::new(output);
+    match depth {
+        U8 => strips::write(&layout.codes(picture)?, SampleFormat::Uint, &mut output),
+        U16 => strips::write(&layout.wide_codes(picture)?, SampleFormat::Uint, &mut output),
+        _ => strips::write(&layout.floats(picture)?, SampleFormat::IEEEFP, &mut output),
+    }
+    .map_err(from_library)?;
+    Ok(output.flush()?)
 }
 
 #[cfg(test)]

@@ -1,42 +1,16 @@
 //! The writer of TIFF: strips of rows, unpacked, then the directory that names them.
 
-use std::io::{BufWriter, Write};
+use std::io::{Seek, Write};
 
 use tiff::TiffError;
 use tiff::encoder::{Rational, TiffEncoder, TiffValue};
 use tiff::tags::{CompressionMethod, ResolutionUnit, SampleFormat, Tag};
 
-use super::{BLACK_IS_ZERO, RGB, STRAIGHT, from_library};
-use crate::codec::raster::{Layout, Raster};
-use crate::codec::{Format, Output, WriteOptions};
-use crate::{depth::SampleDepth, error::ImageError, source::PixelSource};
+use super::{BLACK_IS_ZERO, RGB, STRAIGHT};
+use crate::codec::raster::Raster;
 
-/// Writes grey or colours, with opacity or without, of 8 or 16 bits or of single floats, unpacked.
-pub fn encode(
-    picture: &dyn PixelSource,
-    options: &WriteOptions,
-    output: &mut dyn Output,
-) -> Result<(), ImageError> {
-    use SampleDepth::{F32, U8, U16};
-    let is_float = picture.channels()[0].depth != U8;
-    let depths = if is_float { [F32, U8, U16] } else { [U8, U16, F32] };
-    let depth = options.depth_among(Format::Tiff, &depths)?;
-    let layout = Layout::new(picture, true, true);
-    let mut output = BufWriter::new(output);
-    match depth {
-        U8 => write(&layout.codes(picture)?, SampleFormat::Uint, &mut output),
-        U16 => write(&layout.wide_codes(picture)?, SampleFormat::Uint, &mut output),
-        _ => write(&layout.floats(picture)?, SampleFormat::IEEEFP, &mut output),
-    }
-    .map_err(from_library)?;
-    Ok(output.flush()?)
-}
-
-fn write<T>(
-    raster: &Raster<T>,
-    format: SampleFormat,
-    output: &mut BufWriter<&mut dyn Output>,
-) -> Result<(), TiffError>
+/// Writes a picture of samples of this kind.
+pub fn write<T>(raster: &Raster<T>, format: SampleFormat, output: impl Write + Seek) -> Result<(), TiffError>
 where
     [T]: TiffValue,
 {
