@@ -5,7 +5,7 @@
 //! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a
 //! panic on those would end the process. Sources: [OpenEXR file layout].
 
-use std::io::{BufWriter, Cursor, Read, Seek, SeekFrom, Write};
+use std::io::{BufWriter, Cursor, Read, SeekFrom, Write};
 
 use exr::{
     block::{self, BlockIndex, UncompressedBlock, chunk::Chunk, reader::ChunksReader, writer::ChunksWriter},
@@ -21,7 +21,7 @@ use half::f16;
 use math::Mat4;
 use rayon::prelude::*;
 
-use super::{ReadOptions, WriteOptions};
+use super::{Output, ReadOptions, WriteOptions};
 use crate::{
     depth::SampleDepth,
     error::ImageError,
@@ -244,7 +244,7 @@ fn from_attribute(value: &AttributeValue) -> Option<Attribute> {
 pub fn encode(
     picture: &dyn PixelSource,
     options: &WriteOptions,
-    output: &mut (impl Read + Write + Seek),
+    output: &mut dyn Output,
 ) -> Result<(), ImageError> {
     let sample_type = |depth| match (options.depth, depth) {
         (SampleDepth::Natural, SampleDepth::F32) | (SampleDepth::F32, _) => Ok(SampleType::F32),
@@ -296,13 +296,13 @@ pub fn encode(
 
 /// Sorts the attributes of a file's header by name, so that the same picture gives the same bytes:
 /// the library's order is random. Nothing after the header moves.
-fn sort_attributes(file: &mut (impl Read + Write + Seek), start: u64) -> Result<(), ImageError> {
+fn sort_attributes(file: &mut dyn Output, start: u64) -> Result<(), ImageError> {
     /// The magic number and the version.
     const BEFORE: u64 = 8;
     file.seek(SeekFrom::Start(start + BEFORE))?;
     let (mut header, mut attributes, mut end) = (Vec::new(), Vec::new(), 0);
     loop {
-        let more = file.take(1 << 16).read_to_end(&mut header)?;
+        let more = (&mut *file).take(1 << 16).read_to_end(&mut header)?;
         while let Some(length) = attribute_length(&header[end..]) {
             attributes.push(end..end + length);
             end += length;

@@ -4,13 +4,24 @@
 //! Values are radiance: `EXPOSURE` and `COLORCORR`, by which those of a file are multiplied, are
 //! divided out. Signatures may name any program.
 
-use super::ReadOptions;
+use std::io::{BufWriter, Write};
+
+use super::{
+    Format, Output, ReadOptions, WriteOptions,
+    raster::{invalid, take},
+};
 use crate::{
+    depth::SampleDepth,
+    encoding::at_most,
     error::ImageError,
     image::{Image, Pixels},
     memory::filled,
     metadata::ImageMetadata,
+    source::{PixelSource, color_channels},
 };
+
+/// The lengths of lines that are packed component by component.
+const PACKED_LENGTHS: std::ops::Range<usize> = 8..1 << 15;
 
 /// The header before the pixels.
 struct Header {
@@ -24,10 +35,6 @@ struct Header {
     factors: [f32; 3],
     /// Width of a pixel over its height.
     pixel_aspect: f32,
-}
-
-fn invalid<T>(text: impl Into<String>) -> Result<T, ImageError> {
-    Err(ImageError::Invalid(text.into()))
 }
 
 /// The width and height in the header.
@@ -125,18 +132,12 @@ impl Header {
     }
 }
 
-fn take<'a>(data: &mut &'a [u8], count: usize) -> Result<&'a [u8], ImageError> {
-    let Some((taken, rest)) = data.split_at_checked(count) else { return invalid("the data ends early") };
-    *data = rest;
-    Ok(taken)
-}
-
 /// Reads a line of pixels: of runs for each component, if it begins with 2, 2 and its length, else
 /// of pixels, where one of 1, 1, 1 repeats the one before.
 fn read_line(data: &mut &[u8], line: &mut [[u8; 4]]) -> Result<(), ImageError> {
     if let [2, 2, high, low, ..] = **data
         && usize::from(u16::from_be_bytes([high, low])) == line.len()
-        && (8..1 << 15).contains(&line.len())
+        && PACKED_LENGTHS.contains(&line.len())
     {
         take(data, 4)?;
         return (0..4).try_for_each(|component| read_component(data, line, component));
@@ -178,6 +179,77 @@ fn read_component(data: &mut &[u8], line: &mut [[u8; 4]], component: usize) -> R
             pixel[component] = values[if is_run { 0 } else { index }];
         }
         at += count;
+    }
+    Ok(())
+}
+
+/// Writes lines from the top, packed component by component where they may be.
+pub fn encode(
+    picture: &dyn PixelSource,
+    options: &WriteOptions,
+    output: &mut dyn Output,
+) -> Result<(), ImageError> {
+    options.depth_among(Format::Hdr, &[SampleDepth::F32])?;
+    let channels = picture.channels();
+    let color = color_channels(&channels);
+    let (width, height) = (picture.width() as usize, picture.height());
+    let mut output = BufWriter::new(output);
+    write!(output, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n")?;
+    let mut row = filled(width * channels.len(), 0.0)?;
+    let mut line = filled(width, [0; 4])?;
+    for y in 0..height {
+        picture.row(y, &mut row);
+        for (pixel, values) in line.iter_mut().zip(row.chunks_exact(channels.len())) {
+            *pixel = rgbe(color.map(|c| values[c]));
+        }
+        if !PACKED_LENGTHS.contains(&width) {
+            output.write_all(line.as_flattened())?;
+            continue;
+        }
+        output.write_all(&[2, 2, (width >> 8) as u8, width as u8])?;
+        (0..4).try_for_each(|component| write_component(&line, component, &mut output))?;
+    }
+    Ok(output.flush()?)
+}
+
+/// The components and the exponent of a colour; values that are too large become the greatest.
+fn rgbe(color: [f32; 3]) -> [u8; 4] {
+    const GREATEST: f32 = (255.0 / 256.0) * (1_u128 << 127) as f32;
+    let color = color.map(|value| at_most(value, GREATEST));
+    let (_, exponent) = libm::frexpf(color[0].max(color[1]).max(color[2]));
+    if exponent < -127 || color == [0.0; 3] {
+        return [0; 4];
+    }
+    let [r, g, b] = color.map(|value| libm::ldexpf(value, 8 - exponent) as u8);
+    [r, g, b, (exponent + 128) as u8]
+}
+
+/// Writes runs of a component of a line: a count above 128 and what is repeated, or a count and
+/// that many values.
+fn write_component(line: &[[u8; 4]], component: usize, output: &mut impl Write) -> Result<(), ImageError> {
+    /// Shorter runs take as many bytes as their values.
+    const SHORTEST_RUN: usize = 3;
+    const MOST_REPEATED: usize = 127;
+    const MOST_VALUES: usize = 128;
+    let run = |start: usize| {
+        let values = line[start..].iter().take(MOST_REPEATED);
+        values.take_while(|pixel| pixel[component] == line[start][component]).count()
+    };
+    let mut start = 0;
+    while start < line.len() {
+        let length = run(start);
+        if length >= SHORTEST_RUN {
+            output.write_all(&[128 + length as u8, line[start][component]])?;
+            start += length;
+            continue;
+        }
+        let most = line.len().min(start + MOST_VALUES);
+        let end = (start + 1..most).find(|&at| run(at) >= SHORTEST_RUN).unwrap_or(most);
+        output.write_all(&[(end - start) as u8])?;
+        for pixel in &line[start..end] {
+            output.write_all(&[pixel[component]])?;
+        }
+        start = end;
     }
     Ok(())
 }
@@ -264,5 +336,43 @@ mod tests {
         assert!(picture(HEADER, "-Y 1 +X 2", &[1, 1, 1, 1, 9, 9, 9, 9]).is_err());
         assert!(picture(HEADER, "-Y 1 +X 9", &[2, 2, 0, 9, 0]).is_err());
         assert!(picture(HEADER, "-Y 99999 +X 99999", &WHITE).is_err());
+    }
+
+    #[test]
+    fn codes_are_written_as_they_are_read() {
+        for pixel in [[128, 0, 1, 129], [255, 255, 255, 255], [0, 128, 0, 1], [0; 4], [200, 100, 50, 20]] {
+            let image = picture(HEADER, "-Y 1 +X 1", &pixel).unwrap();
+            assert_eq!(rgbe(image.rgb(0, 0)), pixel);
+        }
+        assert_eq!(rgbe([f32::NAN, -1.0, 0.0]), [0; 4]);
+        assert_eq!(rgbe([f32::MAX, 0.0, f32::INFINITY]), [255, 0, 255, 255]);
+        assert_eq!(rgbe([1e-45, 0.0, 0.0]), [0; 4]);
+    }
+
+    #[test]
+    fn runs_are_written_as_they_are_read() {
+        let values: [&[u8]; 6] = [
+            &[1, 2, 3, 4, 5, 6, 7, 8, 9],
+            &[1; 300],
+            &[1, 1, 2, 2, 3, 3, 3, 3, 4, 5],
+            &[1, 2, 2, 2, 2, 2, 2, 2],
+            &std::array::from_fn::<u8, 255, _>(|i| i as u8),
+            &[7; 3],
+        ];
+        for values in values {
+            let image = Image::new(
+                values.len() as u32,
+                1,
+                ["R", "G", "B"],
+                Pixels::F32(values.iter().flat_map(|&v| [f32::from(v), 1.0, 0.0]).collect()),
+            );
+            let image = image.unwrap();
+            let mut output = std::io::Cursor::new(Vec::new());
+            encode(&image, &WriteOptions::default(), &mut output).unwrap();
+            let bytes = output.into_inner();
+            let read = decode(&bytes, &ReadOptions::default()).unwrap();
+            assert_eq!(reds(&read), reds(&image));
+            assert!(bytes.len() < 70 + 5 * values.len(), "{}", bytes.len());
+        }
     }
 }

@@ -8,9 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use exr::meta::attribute::SampleType;
 use exr::meta::{BlockDescription, MetaData};
-use image_rs::{ExtendedColorType, ImageDecoder, ImageReader};
 
-use super::{Format, ReadOptions, exr as open_exr, hdr, pfm, raster, tiff};
+use super::raster::{Header, channel_names};
+use super::{Format, ReadOptions, bmp, exr as open_exr, hdr, jpeg, pfm, png, qoi, tga, tiff, webp};
 use crate::error::ImageError;
 use crate::metadata::{Attribute, ImageMetadata, Window};
 
@@ -83,16 +83,19 @@ pub fn info(bytes: &[u8], name: &str) -> Result<ImageInfo, ImageError> {
             let channels = ["R", "G", "B"].map(|name| (name.to_owned(), Sample::SharedExponent));
             Ok(single_layer(format, hdr::size(bytes)?, channels.into()))
         }
-        Format::Tiff => match tiff::Tiff::open(bytes)? {
-            Some(mut file) => {
-                let (bits, is_float) = file.sample()?;
-                let sample = if is_float { Sample::Float(bits) } else { Sample::Integer(bits) };
-                let channels = file.channels().iter().map(|&name| (name.to_owned(), sample)).collect();
-                Ok(single_layer(format, file.size(), channels))
-            }
-            None => raster_info(bytes, format),
-        },
-        _ => raster_info(bytes, format),
+        Format::Tiff => {
+            let mut file = tiff::Tiff::open(bytes)?;
+            let (bits, is_float) = file.sample()?;
+            let sample = if is_float { Sample::Float(bits) } else { Sample::Integer(bits) };
+            let channels = file.channels().iter().map(|&name| (name.to_owned(), sample)).collect();
+            Ok(single_layer(format, file.size(), channels))
+        }
+        Format::Png => Ok(raster_info(format, png::header(bytes)?)),
+        Format::Jpeg => Ok(raster_info(format, jpeg::header(bytes)?)),
+        Format::Tga => Ok(raster_info(format, tga::header(bytes)?)),
+        Format::Bmp => Ok(raster_info(format, bmp::header(bytes)?)),
+        Format::Qoi => Ok(raster_info(format, qoi::header(bytes)?)),
+        Format::Webp => Ok(raster_info(format, webp::header(bytes)?)),
     };
     // As in `read`: the decoders of other crates may panic on damaged files.
     catch_unwind(AssertUnwindSafe(inspect))
@@ -118,25 +121,10 @@ fn single_layer(format: Format, [width, height]: [u32; 2], channels: Vec<(String
     }
 }
 
-fn raster_info(bytes: &[u8], format: Format) -> Result<ImageInfo, ImageError> {
-    let reader = ImageReader::with_format(Cursor::new(bytes), raster::library_format(format)?);
-    let decoder = reader.into_decoder().map_err(raster::from_library)?;
-    let (width, height) = decoder.dimensions();
-    let color = decoder.original_color_type();
-    let count = usize::from(color.channel_count()).max(1);
-    let bits = u32::from(color.bits_per_pixel()) / count as u32;
-    let sample = match color {
-        ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F => Sample::Float(bits),
-        _ => Sample::Integer(bits),
-    };
-    let names = match count {
-        1 => &["Y"][..],
-        2 => &["Y", "A"],
-        3 => &["R", "G", "B"],
-        _ => &["R", "G", "B", "A"],
-    };
-    let channels = names.iter().map(|&name| (name.to_owned(), sample)).collect();
-    Ok(single_layer(format, [width, height], channels))
+fn raster_info(format: Format, header: Header) -> ImageInfo {
+    let sample = Sample::Integer(header.bits);
+    let channels = channel_names(header.channels).iter().map(|&name| (name.to_owned(), sample)).collect();
+    single_layer(format, header.size, channels)
 }
 
 fn exr_info(bytes: &[u8]) -> Result<ImageInfo, ImageError> {

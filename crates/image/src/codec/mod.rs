@@ -5,12 +5,18 @@
 //! the file could possibly hold before memory is allocated, and a panic inside a third-party
 //! decoder becomes [`ImageError::Invalid`].
 
+mod bmp;
 mod exr;
 mod hdr;
 mod info;
+mod jpeg;
 mod pfm;
+mod png;
+mod qoi;
 mod raster;
+mod tga;
 mod tiff;
+mod webp;
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -176,19 +182,40 @@ pub struct WriteOptions {
     pub depth: SampleDepth,
 }
 
+impl WriteOptions {
+    /// The depth in which a format of these depths is written, the first where any suits; refused
+    /// where it lacks the one asked for.
+    fn depth_among(&self, format: Format, depths: &[SampleDepth]) -> Result<SampleDepth, ImageError> {
+        match self.depth {
+            SampleDepth::Natural => Ok(depths[0]),
+            depth if depths.contains(&depth) => Ok(depth),
+            depth => {
+                Err(ImageError::Unsupported(format!("{format:?} does not hold samples of depth {depth:?}")))
+            }
+        }
+    }
+}
+
+/// A file, or bytes in memory, that a format is written to.
+trait Output: Read + Write + Seek {}
+
+impl<T: Read + Write + Seek> Output for T {}
+
 /// Decodes the bytes of a file. `name` is used where the content does not determine the format, and
 /// may be empty.
 pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, ImageError> {
     let format = Format::of(bytes, name)?;
     let decode = || match format {
         Format::Exr => exr::decode(bytes, options),
+        Format::Png => png::decode(bytes, options),
+        Format::Jpeg => jpeg::decode(bytes, options),
         Format::Hdr => hdr::decode(bytes, options),
+        Format::Tga => tga::decode(bytes, options),
         Format::Pfm => pfm::decode(bytes, options),
-        Format::Tiff => match tiff::Tiff::open(bytes)? {
-            Some(file) => file.decode(options),
-            None => raster::decode(bytes, format, options),
-        },
-        _ => raster::decode(bytes, format, options),
+        Format::Bmp => bmp::decode(bytes, options),
+        Format::Qoi => qoi::decode(bytes, options),
+        Format::Webp => webp::decode(bytes, options),
+        Format::Tiff => tiff::Tiff::open(bytes)?.decode(options),
     };
     // The decoders of other crates may panic on damaged files, which must not end a render.
     catch_unwind(AssertUnwindSafe(decode))
@@ -217,12 +244,19 @@ fn encode_to(
     picture: &dyn PixelSource,
     format: Format,
     options: &WriteOptions,
-    output: &mut (impl Read + Write + Seek),
+    output: &mut dyn Output,
 ) -> Result<(), ImageError> {
     match format {
         Format::Exr => exr::encode(picture, options, output),
+        Format::Png => png::encode(picture, options, output),
+        Format::Jpeg => jpeg::encode(picture, options, output),
+        Format::Hdr => hdr::encode(picture, options, output),
+        Format::Tga => tga::encode(picture, options, output),
         Format::Pfm => pfm::encode(picture, options, output),
-        _ => raster::encode(picture, format, options, output),
+        Format::Bmp => bmp::encode(picture, options, output),
+        Format::Qoi => qoi::encode(picture, options, output),
+        Format::Webp => webp::encode(picture, options, output),
+        Format::Tiff => tiff::encode(picture, options, output),
     }
 }
 

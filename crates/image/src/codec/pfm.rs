@@ -4,7 +4,7 @@
 
 use std::io::{BufWriter, Write};
 
-use super::{ReadOptions, WriteOptions};
+use super::{Format, Output, ReadOptions, WriteOptions};
 use crate::{
     depth::SampleDepth,
     error::ImageError,
@@ -47,11 +47,9 @@ pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> 
 pub fn encode(
     picture: &dyn PixelSource,
     options: &WriteOptions,
-    output: &mut impl Write,
+    output: &mut dyn Output,
 ) -> Result<(), ImageError> {
-    if !matches!(options.depth, SampleDepth::Natural | SampleDepth::F32) {
-        return Err(ImageError::Unsupported("PFM holds single floats only".into()));
-    }
+    options.depth_among(Format::Pfm, &[SampleDepth::F32])?;
     let channels = picture.channels();
     let color = color_channels(&channels);
     let (kind, count) = if color[0] != color[1] { ("PF", 3) } else { ("Pf", 1) };

@@ -1,179 +1,119 @@
-//! PNG, JPEG, TGA, BMP, QOI, WebP and TIFF, by the `image` crate, which also writes Radiance HDR.
+//! Rasters, which the formats of integers have in common: a header with a size and a kind of
+//! pixels, and samples side by side, which become the pixels of an [`Image`], or are made of those
+//! of a picture.
 
-use std::io::{BufWriter, Cursor, Seek, Write};
+use std::io;
 
-use image_rs::{
-    DynamicImage, ImageBuffer, ImageDecoder, ImageError as RasterError, ImageFormat, ImageReader, Limits,
-    Luma, LumaA, Rgb, Rgba, codecs::jpeg::JpegEncoder,
-};
-
-use super::{Format, ReadOptions, WriteOptions};
+use super::ReadOptions;
 use crate::{
-    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     image::{Image, Pixels},
-    memory::{collected, filled, reserved},
-    metadata::{Attribute, ImageMetadata},
+    memory::{collected, reserved},
     source::{PixelSource, alpha_channel, color_channels},
 };
 
-/// Of 100; at this one losses are hard to see.
-const JPEG_QUALITY: u8 = 95;
+/// The size and the kind of pixels that the header of a file states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Header {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// How many channels the decoded picture has: grey or colours, and opacity.
+    pub channels: usize,
+    /// The bits of a sample.
+    pub bits: u32,
+}
 
-/// 8-bit images stay so; 16-bit ones become linear single floats. Palettes are looked up.
-pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Image, ImageError> {
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), library_format(format)?);
-    let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(options.byte_limit(bytes.len()));
-    limits.max_image_width = Some(1 << 20);
-    limits.max_image_height = Some(1 << 20);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(from_library)?;
-    let ((width, height), color_type) = (decoder.dimensions(), decoder.color_type());
-    let size = usize::try_from(decoder.total_bytes())
-        .ok()
-        .filter(|&size| size as u64 <= options.byte_limit(bytes.len()))
-        .ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))?;
-    let mut samples = reserved(size)?;
-    // The library aborts where its own allocation fails, so that memory is tested first.
-    drop(reserved::<u8>(size)?);
-    samples.resize(size, 0);
-    decoder.read_image(&mut samples).map_err(from_library)?;
-    if format == Format::Png {
-        check_palette(bytes)?;
+impl Header {
+    /// The number of samples of the picture; refused where they exceed what `options` allow for a
+    /// file of `length` bytes, or have no memory.
+    pub fn sample_count(&self, length: usize, options: &ReadOptions) -> Result<usize, ImageError> {
+        const MOST_SIDE: u32 = 1 << 20;
+        let [width, height] = self.size;
+        if width == 0 || height == 0 {
+            return invalid(format!("{width} × {height} pixels"));
+        }
+        if width.max(height) > MOST_SIDE {
+            return Err(ImageError::Limits(format!("{width} × {height} pixels")));
+        }
+        let bytes = self.channels * self.bits.div_ceil(8) as usize;
+        options.check_size(width as usize, height as usize, bytes, length)?;
+        let pixels = width as usize * height as usize;
+        // Some libraries abort where their own allocation fails, so that memory is tested first.
+        drop(reserved::<u8>(pixels * bytes)?);
+        Ok(pixels * self.channels)
     }
-    let encoding = options.encoding();
-    let count = usize::from(color_type.channel_count());
-    let channels: &[&str] = match count {
+}
+
+/// The names of this many channels.
+pub fn channel_names(count: usize) -> &'static [&'static str] {
+    match count {
         1 => &["Y"],
         2 => &["Y", "A"],
         3 => &["R", "G", "B"],
         _ => &["R", "G", "B", "A"],
-    };
-    let pixels = match usize::from(color_type.bytes_per_pixel()) / count {
-        1 => Pixels::U8(samples, encoding),
-        2 => {
-            let linear = |(index, code): (usize, &[u8; 2])| {
-                let code = f32::from(u16::from_ne_bytes(*code)) / 65535.0;
-                let alpha = count % 2 == 0 && index % count == count - 1;
-                if alpha { code } else { encoding.to_linear(code) }
-            };
-            Pixels::F32(collected(size / 2, samples.as_chunks().0.iter().enumerate().map(linear))?)
+    }
+}
+
+/// A picture as its file has it: rows from the top, the samples of a pixel side by side, which are
+/// grey or red, green and blue, then opacity if there is any.
+#[derive(Debug, PartialEq)]
+pub struct Raster<T> {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Samples of a pixel.
+    pub channels: usize,
+    /// All samples.
+    pub samples: Vec<T>,
+}
+
+impl<T> Raster<T> {
+    /// The rows from the top.
+    pub fn rows(&self) -> std::slice::ChunksExact<'_, T> {
+        self.samples.chunks_exact(self.size[0] as usize * self.channels)
+    }
+
+    /// Whether the last sample of a pixel is opacity.
+    pub fn has_alpha(&self) -> bool {
+        self.channels.is_multiple_of(2)
+    }
+
+    /// Width and height, where both are at most `most`.
+    pub fn size_within(&self, most: u16) -> Result<[u16; 2], ImageError> {
+        let [width, height] = self.size;
+        match self.size.map(|side| u16::try_from(side).ok().filter(|side| *side <= most)) {
+            [Some(width), Some(height)] => Ok([width, height]),
+            _ => Err(ImageError::Limits(format!("{width} × {height} pixels, where {most} is the most"))),
         }
-        _ => {
-            let values = samples.as_chunks().0.iter().map(|&bytes| f32::from_ne_bytes(bytes));
-            Pixels::F32(collected(size / 4, values)?)
-        }
-    };
-    Image::new(width, height, channels.iter().copied(), pixels)
+    }
 }
 
-/// Refuses a PNG whose pixels index colours beyond its palette, which the library reads as black.
-fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
-    let damaged = |error: png::DecodingError| ImageError::Invalid(error.to_string());
-    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(damaged)?;
-    let info = reader.info();
-    let (width, bits) = (info.width as usize, info.bit_depth as usize);
-    let Some(palette) = info.palette.as_ref().filter(|_| info.color_type == png::ColorType::Indexed) else {
-        return Ok(());
-    };
-    let color_count = palette.len() / 3;
-    if color_count >= 1 << bits {
-        return Ok(());
+impl Raster<u8> {
+    /// The image of these codes.
+    pub fn into_image(self, options: &ReadOptions) -> Result<Image, ImageError> {
+        let [width, height] = self.size;
+        let pixels = Pixels::U8(self.samples, options.encoding());
+        Image::new(width, height, channel_names(self.channels).iter().copied(), pixels)
     }
-    let size = reader.output_buffer_size().ok_or_else(|| ImageError::Limits("PNG".into()))?;
-    let mut packed = filled(size, 0)?;
-    let frame = reader.next_frame(&mut packed).map_err(damaged)?;
-    let index = |row: &[u8], x: usize| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xff >> (8 - bits));
-    let known = |row: &[u8]| (0..width).all(|x| usize::from(index(row, x)) < color_count);
-    if packed[..frame.buffer_size()].chunks_exact(frame.line_size).all(known) {
-        return Ok(());
-    }
-    Err(ImageError::Invalid(format!("a PNG pixel names a colour beyond the palette of {color_count}")))
 }
 
-/// Integer formats hold sRGB codes of the colour clamped to [0, 1]; alpha is kept where the format
-/// has it.
-pub fn encode(
-    picture: &dyn PixelSource,
-    format: Format,
-    options: &WriteOptions,
-    output: &mut (impl Write + Seek),
-) -> Result<(), ImageError> {
-    let channels = picture.channels();
-    let depth = match (format, options.depth) {
-        (Format::Hdr, SampleDepth::Natural) => SampleDepth::F32,
-        (Format::Tiff, SampleDepth::Natural) if channels[0].depth != SampleDepth::U8 => SampleDepth::F32,
-        (_, SampleDepth::Natural) => SampleDepth::U8,
-        (_, depth) => depth,
-    };
-    let allowed: &[SampleDepth] = match format {
-        Format::Hdr => &[SampleDepth::F32],
-        Format::Tiff => &[SampleDepth::U8, SampleDepth::U16, SampleDepth::F32],
-        Format::Png => &[SampleDepth::U8, SampleDepth::U16],
-        _ => &[SampleDepth::U8],
-    };
-    if !allowed.contains(&depth) {
-        return Err(ImageError::Unsupported(format!("{format:?} does not hold samples of depth {depth:?}")));
+impl Raster<u16> {
+    /// The image of the linear values of these codes.
+    pub fn into_image(self, options: &ReadOptions) -> Result<Image, ImageError> {
+        let [width, height] = self.size;
+        let (count, encoding) = (self.channels, options.encoding());
+        let linear = |(index, &code): (usize, &u16)| {
+            let code = f32::from(code) / 65535.0;
+            let is_alpha = self.has_alpha() && index % count == count - 1;
+            if is_alpha { code } else { encoding.to_linear(code) }
+        };
+        let pixels = Pixels::F32(collected(self.samples.len(), self.samples.iter().enumerate().map(linear))?);
+        Image::new(width, height, channel_names(count).iter().copied(), pixels)
     }
-    let keeps_alpha = !matches!(format, Format::Hdr | Format::Jpeg);
-    let color = color_channels(&channels);
-    // Only some formats have grey images, and no float writer of the library does.
-    let grey =
-        color[0] == color[1] && depth != SampleDepth::F32 && !matches!(format, Format::Qoi | Format::Webp);
-    let alpha = alpha_channel(&channels).filter(|_| keeps_alpha);
-    let written: Vec<usize> = color[..if grey { 1 } else { 3 }].iter().copied().chain(alpha).collect();
-    let buffer = dynamic(picture, &Layout { channels: channels.len(), written, alpha }, depth)?;
-    let mut output = BufWriter::new(output);
-    match format {
-        Format::Jpeg => buffer.write_with_encoder(JpegEncoder::new_with_quality(&mut output, JPEG_QUALITY)),
-        Format::Png => return write_png(&buffer, picture, &mut output),
-        _ => buffer.write_to(&mut output, library_format(format)?),
-    }
-    .map_err(from_library)?;
-    Ok(output.flush()?)
-}
-
-/// Writes a PNG, with the name of its view as text if it has one.
-fn write_png(
-    buffer: &DynamicImage,
-    picture: &dyn PixelSource,
-    output: &mut impl Write,
-) -> Result<(), ImageError> {
-    let failed = |error: png::EncodingError| match error {
-        png::EncodingError::IoError(error) => ImageError::Io(error),
-        error => ImageError::Invalid(error.to_string()),
-    };
-    let color = buffer.color();
-    let mut encoder = png::Encoder::new(&mut *output, buffer.width(), buffer.height());
-    encoder.set_color(match color.channel_count() {
-        1 => png::ColorType::Grayscale,
-        2 => png::ColorType::GrayscaleAlpha,
-        3 => png::ColorType::Rgb,
-        _ => png::ColorType::Rgba,
-    });
-    encoder.set_compression(png::Compression::Fast);
-    if let Some(Attribute::Text(view)) = picture.metadata().get(ImageMetadata::VIEW) {
-        encoder.add_text_chunk("View".into(), view.clone()).map_err(failed)?;
-    }
-    let is_wide = color.bytes_per_pixel() > color.channel_count();
-    encoder.set_depth(if is_wide { png::BitDepth::Sixteen } else { png::BitDepth::Eight });
-    let mut writer = encoder.write_header().map_err(failed)?;
-    if is_wide {
-        // Of big-endian numbers.
-        let codes = buffer.as_bytes().as_chunks().0.iter().map(|&code| u16::from_ne_bytes(code));
-        let bytes = collected(buffer.as_bytes().len(), codes.flat_map(u16::to_be_bytes))?;
-        writer.write_image_data(&bytes).map_err(failed)?;
-    } else {
-        writer.write_image_data(buffer.as_bytes()).map_err(failed)?;
-    }
-    writer.finish().map_err(failed)?;
-    Ok(output.flush()?)
 }
 
 /// Which of a picture's channels are written.
-struct Layout {
+pub struct Layout {
     /// How many channels it has.
     channels: usize,
     /// Which of them are written, in this order.
@@ -183,89 +123,112 @@ struct Layout {
 }
 
 impl Layout {
+    /// The channels that a format keeps, which may have neither grey pixels nor opacity.
+    pub fn new(picture: &dyn PixelSource, keeps_grey: bool, keeps_alpha: bool) -> Self {
+        let channels = picture.channels();
+        let color = color_channels(&channels);
+        let alpha = alpha_channel(&channels).filter(|_| keeps_alpha);
+        let count = if keeps_grey && color[0] == color[1] { 1 } else { 3 };
+        let written = color[..count].iter().copied().chain(alpha).collect();
+        Self { channels: channels.len(), written, alpha }
+    }
+
+    /// The picture in 8-bit codes of sRGB.
+    pub fn codes(&self, picture: &dyn PixelSource) -> Result<Raster<u8>, ImageError> {
+        self.collect(picture, |value, encoding| encoding.quantize(value))
+    }
+
+    /// The picture in 16-bit codes of sRGB.
+    pub fn wide_codes(&self, picture: &dyn PixelSource) -> Result<Raster<u16>, ImageError> {
+        self.collect(picture, |value, encoding| (encoding.from_linear(value) * 65535.0 + 0.5) as u16)
+    }
+
+    /// The picture in linear values.
+    pub fn floats(&self, picture: &dyn PixelSource) -> Result<Raster<f32>, ImageError> {
+        self.collect(picture, |value, _| value)
+    }
+
     /// The written values, each made of a linear one and the encoding of its channel.
     fn collect<T>(
         &self,
         picture: &dyn PixelSource,
         convert: impl Fn(f32, ColorEncoding) -> T,
-    ) -> Result<Vec<T>, ImageError> {
-        let (width, height) = (picture.width() as usize, picture.height() as usize);
-        let mut values = reserved(width * height * self.written.len())?;
+    ) -> Result<Raster<T>, ImageError> {
+        let size = [picture.width(), picture.height()];
+        let [width, height] = size.map(|side| side as usize);
+        let mut samples = reserved(width * height * self.written.len())?;
         let mut row = vec![0.0; width * self.channels];
         for y in 0..picture.height() {
             picture.row(y, &mut row);
             for pixel in row.chunks_exact(self.channels) {
-                values.extend(self.written.iter().map(|&c| {
+                samples.extend(self.written.iter().map(|&c| {
                     let linear = self.alpha == Some(c);
                     convert(pixel[c], if linear { ColorEncoding::Linear } else { ColorEncoding::Srgb })
                 }));
             }
         }
-        Ok(values)
+        Ok(Raster { size, channels: self.written.len(), samples })
     }
 }
 
-/// The library's image of a picture.
-fn dynamic(
-    picture: &dyn PixelSource,
-    layout: &Layout,
-    depth: SampleDepth,
-) -> Result<DynamicImage, ImageError> {
-    let (width, height) = (picture.width(), picture.height());
-    let u8s = || layout.collect(picture, |v, encoding| (encoding.from_linear(v) * 255.0 + 0.5) as u8);
-    let u16s = || layout.collect(picture, |v, encoding| (encoding.from_linear(v) * 65535.0 + 0.5) as u16);
-    let floats = || layout.collect(picture, |v, _| v);
-    let image: Option<DynamicImage> = match (depth, layout.written.len(), layout.alpha.is_some()) {
-        (SampleDepth::F32, _, false) => {
-            ImageBuffer::<Rgb<f32>, _>::from_raw(width, height, floats()?).map(Into::into)
-        }
-        (SampleDepth::F32, _, true) => {
-            ImageBuffer::<Rgba<f32>, _>::from_raw(width, height, floats()?).map(Into::into)
-        }
-        (SampleDepth::U16, 1, _) => {
-            ImageBuffer::<Luma<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
-        }
-        (SampleDepth::U16, 2, _) => {
-            ImageBuffer::<LumaA<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
-        }
-        (SampleDepth::U16, 3, _) => {
-            ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
-        }
-        (SampleDepth::U16, ..) => {
-            ImageBuffer::<Rgba<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
-        }
-        (_, 1, _) => ImageBuffer::<Luma<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
-        (_, 2, _) => ImageBuffer::<LumaA<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
-        (_, 3, _) => ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
-        _ => ImageBuffer::<Rgba<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
-    };
-    image.ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))
+/// The refusal of bytes that contradict their format.
+pub fn invalid<T>(text: impl Into<String>) -> Result<T, ImageError> {
+    Err(ImageError::Invalid(text.into()))
 }
 
-pub(super) fn library_format(format: Format) -> Result<ImageFormat, ImageError> {
-    Ok(match format {
-        Format::Png => ImageFormat::Png,
-        Format::Jpeg => ImageFormat::Jpeg,
-        Format::Hdr => ImageFormat::Hdr,
-        Format::Tga => ImageFormat::Tga,
-        Format::Bmp => ImageFormat::Bmp,
-        Format::Qoi => ImageFormat::Qoi,
-        Format::Webp => ImageFormat::WebP,
-        Format::Tiff => ImageFormat::Tiff,
-        Format::Exr | Format::Pfm => {
-            return Err(ImageError::Unsupported(format!("{format:?} is not a raster format")));
-        }
-    })
+/// The error of a library whose input ended or failed.
+pub fn from_io(error: io::Error) -> ImageError {
+    if error.kind() == io::ErrorKind::UnexpectedEof {
+        return ImageError::Invalid("the data ends early".into());
+    }
+    ImageError::Io(error)
 }
 
-pub(super) fn from_library(error: RasterError) -> ImageError {
-    match error {
-        RasterError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            ImageError::Invalid("the data ends early".into())
+/// The first `count` bytes, which are removed from `data`.
+pub fn take<'a>(data: &mut &'a [u8], count: usize) -> Result<&'a [u8], ImageError> {
+    let Some((taken, rest)) = data.split_at_checked(count) else { return invalid("the data ends early") };
+    *data = rest;
+    Ok(taken)
+}
+
+/// The number of `bits` at place `index` of a row of such numbers, the first in the high bits.
+pub fn packed(row: &[u8], bits: usize, index: usize) -> u8 {
+    let bit = index * bits;
+    row[bit / 8] >> (8 - bits - bit % 8) & (0xff >> (8 - bits))
+}
+
+/// The nearest 8-bit code of one of 1 to 8 bits.
+pub fn widened(code: u32, bits: u32) -> u8 {
+    let most = (1 << bits) - 1;
+    ((code * 255 + most / 2) / most) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_of_few_bits_are_read_from_the_high_ones_and_widened() {
+        assert_eq!([0, 1, 2].map(|x| packed(&[0b1001_1100], 2, x)), [2, 1, 3]);
+        assert_eq!([7, 8].map(|x| packed(&[1, 0x80], 1, x)), [1, 1]);
+        assert_eq!(packed(&[1, 2], 8, 1), 2);
+        for bits in 1..=8 {
+            let most = (1_u32 << bits) - 1;
+            for code in 0..=most {
+                let exact = f64::from(code) * 255.0 / f64::from(most);
+                assert_eq!(f64::from(widened(code, bits)), exact.round(), "{code} of {bits} bits");
+            }
         }
-        RasterError::IoError(error) => ImageError::Io(error),
-        RasterError::Limits(error) => ImageError::Limits(error.to_string()),
-        RasterError::Unsupported(error) => ImageError::Unsupported(error.to_string()),
-        other => ImageError::Invalid(other.to_string()),
+    }
+
+    #[test]
+    fn sizes_that_no_file_holds_are_refused() {
+        let options = ReadOptions::default();
+        let count = |size, length| Header { size, channels: 3, bits: 8 }.sample_count(length, &options);
+        assert_eq!(count([5, 4], 30).unwrap(), 60);
+        assert!(matches!(count([0, 4], 30), Err(ImageError::Invalid(_))));
+        for size in [[(1 << 20) + 1, 1], [1 << 16, 1 << 16]] {
+            assert!(matches!(count(size, 30), Err(ImageError::Limits(_))));
+        }
     }
 }

@@ -1,26 +1,33 @@
-//! TIFF by the crate `tiff`: grey and coloured pictures with and without opacity, and palettes, of
-//! integers and of floats. Colours that are stored multiplied by their opacity (associated alpha)
-//! are divided by it, as those of other formats are not.
+//! TIFF by the crate `tiff`: grey and coloured pictures with and without opacity, palettes, and
+//! inks (CMYK), of integers and of floats. Colours that are stored multiplied by their opacity
+//! (associated alpha) are divided by it, as those of other formats are not.
+
+mod strips;
 
 use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{BufWriter, Cursor, Write};
 
 use half::f16;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{SampleFormat, Tag};
 use tiff::{ColorType, TiffError};
 
-use super::ReadOptions;
+use super::raster::{Layout, channel_names, from_io, invalid, packed, widened};
+use super::{Format, Output, ReadOptions, WriteOptions};
 use crate::{
+    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     image::{Image, Pixels},
     memory::{collected, reserved},
+    source::PixelSource,
 };
 
 const PALETTE: u16 = 3;
 const BLACK_IS_ZERO: u8 = 1;
+const RGB: u16 = 2;
 const ASSOCIATED: u16 = 1;
+const STRAIGHT: u16 = 2;
 
 /// The layout of a file, before its pixels are decoded.
 pub struct Tiff<'a> {
@@ -35,6 +42,8 @@ pub struct Tiff<'a> {
     alpha: Alpha,
     /// Red, green and blue of the colours that pixels index.
     palette: Option<Vec<u8>>,
+    /// Samples are cyan, magenta, yellow and black ink.
+    is_ink: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -47,10 +56,7 @@ enum Alpha {
 
 fn from_library(error: TiffError) -> ImageError {
     match error {
-        TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            ImageError::Invalid("the data ends early".into())
-        }
-        TiffError::IoError(error) => ImageError::Io(error),
+        TiffError::IoError(error) => from_io(error),
         TiffError::UnsupportedError(error) => ImageError::Unsupported(error.to_string()),
         TiffError::LimitsExceeded => ImageError::Limits("TIFF".into()),
         error => ImageError::Invalid(error.to_string()),
@@ -58,8 +64,8 @@ fn from_library(error: TiffError) -> ImageError {
 }
 
 impl<'a> Tiff<'a> {
-    /// Reads the header of a file; `None` for kinds of colour that are not read here.
-    pub fn open(bytes: &'a [u8]) -> Result<Option<Self>, ImageError> {
+    /// Reads the header of a file.
+    pub fn open(bytes: &'a [u8]) -> Result<Self, ImageError> {
         let mut decoder = Decoder::new(Cursor::new(Cow::Borrowed(bytes))).map_err(from_library)?;
         let photometric = decoder.find_tag_unsigned::<u16>(Tag::PhotometricInterpretation);
         let mut palette = None;
@@ -78,9 +84,10 @@ impl<'a> Tiff<'a> {
         let extra = extra.unwrap_or_default().first().copied();
         let alpha = match extra {
             Some(ASSOCIATED) => Alpha::Associated,
-            Some(2) => Alpha::Straight,
+            Some(STRAIGHT) => Alpha::Straight,
             _ => Alpha::None,
         };
+        let mut is_ink = false;
         let (samples, bits, read, alpha) = match decoder.colortype().map_err(from_library)? {
             ColorType::Gray(bits) => (1, bits, vec![0], Alpha::None),
             ColorType::Multiband { bit_depth, num_samples } => {
@@ -91,10 +98,14 @@ impl<'a> Tiff<'a> {
             // Without a tag, the fourth sample is opacity as in other formats.
             ColorType::RGBA(bits) if alpha == Alpha::None => (4, bits, vec![0, 1, 2, 3], Alpha::Straight),
             ColorType::RGBA(bits) => (4, bits, vec![0, 1, 2, 3], alpha),
-            _ => return Ok(None),
+            ColorType::CMYK(bits @ (8 | 16)) => {
+                is_ink = true;
+                (4, bits, vec![0, 1, 2, 3], Alpha::None)
+            }
+            kind => return Err(ImageError::Unsupported(format!("TIFF colours of kind {kind:?}"))),
         };
         let (width, height) = decoder.dimensions().map_err(from_library)?;
-        Ok(Some(Self {
+        Ok(Self {
             decoder,
             length: bytes.len(),
             size: [width, height],
@@ -103,7 +114,8 @@ impl<'a> Tiff<'a> {
             read,
             alpha,
             palette,
-        }))
+            is_ink,
+        })
     }
 
     /// Width and height.
@@ -120,13 +132,7 @@ impl<'a> Tiff<'a> {
 
     /// The names of the channels.
     pub fn channels(&self) -> &'static [&'static str] {
-        match self.read.len() {
-            _ if self.palette.is_some() => &["R", "G", "B"],
-            1 => &["Y"],
-            2 => &["Y", "A"],
-            3 => &["R", "G", "B"],
-            _ => &["R", "G", "B", "A"],
-        }
+        channel_names(if self.palette.is_some() || self.is_ink { 3 } else { self.read.len() })
     }
 
     /// 8-bit integers stay so; others become linear floats.
@@ -162,6 +168,11 @@ impl<'a> Tiff<'a> {
                 let codes = collected(total, places.map(|at| self.code(&bytes, columns, at)))?;
                 match &self.palette {
                     Some(palette) => Pixels::U8(looked_up(&codes, palette)?, encoding),
+                    None if self.is_ink => {
+                        let codes = codes.iter().map(|&code| code.into());
+                        let colors = without_ink(codes, total, 255.0)?.into_iter().map(|code| code as u8);
+                        Pixels::U8(collected(total / 4 * 3, colors)?, encoding)
+                    }
                     None if self.alpha == Alpha::Associated => {
                         self.linear(codes.iter().map(|&code| f32::from(code) / 255.0), Some(encoding))?
                     }
@@ -170,6 +181,12 @@ impl<'a> Tiff<'a> {
             }
             _ if self.palette.is_some() => {
                 return Err(ImageError::Unsupported("a TIFF palette of more than 256 colours".into()));
+            }
+            DecodingResult::U16(codes) if self.is_ink => {
+                let codes = places.map(|at| codes[at].into());
+                let colors = without_ink(codes, total, 65535.0)?.into_iter();
+                let linear = |code: f32| encoding.to_linear(code.trunc() / 65535.0);
+                Pixels::F32(collected(total / 4 * 3, colors.map(linear))?)
             }
             DecodingResult::U16(codes) => {
                 let code = scaled(65535.0);
@@ -198,12 +215,9 @@ impl<'a> Tiff<'a> {
         }
         // Rows begin at whole bytes.
         let row_samples = columns * self.samples;
-        let (row, column) = (at / row_samples, at % row_samples);
-        let bit = column * bits;
-        let byte = bytes[row * (row_samples * bits).div_ceil(8) + bit / 8];
-        let most = (1_u16 << bits) - 1;
-        let value = u16::from(byte >> (8 - bits - bit % 8)) & most;
-        if self.palette.is_some() { value as u8 } else { (value * 255 / most) as u8 }
+        let row = &bytes[at / row_samples * (row_samples * bits).div_ceil(8)..];
+        let code = packed(row, bits, at % row_samples);
+        if self.palette.is_some() { code } else { widened(code.into(), self.bits.into()) }
     }
 
     /// Linear values of codes in [0, 1], or of values without an encoding, with colours that their
@@ -239,11 +253,22 @@ fn looked_up(indices: &[u8], palette: &[u8]) -> Result<Vec<u8>, ImageError> {
     for &index in indices {
         let Some(color) = palette.get(3 * usize::from(index)..).and_then(|rest| rest.first_chunk::<3>())
         else {
-            return Err(ImageError::Invalid("a TIFF pixel names a colour beyond its palette".into()));
+            return invalid("a TIFF pixel names a colour beyond its palette");
         };
         colors.extend(color);
     }
     Ok(colors)
+}
+
+/// Red, green and blue of paper with cyan, magenta, yellow and black ink, of which there are
+/// `count` amounts from 0 to `most`.
+fn without_ink(inks: impl Iterator<Item = f32>, count: usize, most: f32) -> Result<Vec<f32>, ImageError> {
+    let inks = collected(count, inks)?;
+    let colors = inks.as_chunks().0.iter().flat_map(|&[c, m, y, black]| {
+        let paper = 1.0 - black / most;
+        [c, m, y].map(|ink| (most - ink) * paper)
+    });
+    collected(count / 4 * 3, colors)
 }
 
 /// A classic TIFF file with its first picture declared to be grey.
@@ -263,6 +288,27 @@ fn as_grey(bytes: &[u8]) -> Option<Vec<u8>> {
     let low = entry + 8 + usize::from(!is_little);
     *grey.get_mut(low)? = BLACK_IS_ZERO;
     Some(grey)
+}
+
+/// Writes grey or colours, with opacity or without, of 8 or 16 bits or of single floats, unpacked.
+pub fn encode(
+    picture: &dyn PixelSource,
+    options: &WriteOptions,
+    output: &mut dyn Output,
+) -> Result<(), ImageError> {
+    use SampleDepth::{F32, U8, U16};
+    let is_float = picture.channels()[0].depth != U8;
+    let depths = if is_float { [F32, U8, U16] } else { [U8, U16, F32] };
+    let depth = options.depth_among(Format::Tiff, &depths)?;
+    let layout = Layout::new(picture, true, true);
+    let mut output = BufWriter::new(output);
+    match depth {
+        U8 => strips::write(&layout.codes(picture)?, SampleFormat::Uint, &mut output),
+        U16 => strips::write(&layout.wide_codes(picture)?, SampleFormat::Uint, &mut output),
+        _ => strips::write(&layout.floats(picture)?, SampleFormat::IEEEFP, &mut output),
+    }
+    .map_err(from_library)?;
+    Ok(output.flush()?)
 }
 
 #[cfg(test)]
@@ -296,7 +342,7 @@ mod tests {
     impl File {
         fn read(&self, data: &[u8]) -> Result<Image, ImageError> {
             let bytes = self.bytes(data);
-            Tiff::open(&bytes)?.expect("a kind that is read").decode(&ReadOptions::default())
+            Tiff::open(&bytes)?.decode(&ReadOptions::default())
         }
 
         fn bytes(&self, data: &[u8]) -> Vec<u8> {
@@ -396,6 +442,23 @@ mod tests {
         let premultiplied = File { samples: 2, extra: Some(1), ..GREY }.read(&[51, 51]).unwrap();
         assert_eq!(pixel(&premultiplied), [1.0, 0.2]);
         assert!(File { format: 2, ..GREY }.read(&[1]).is_err(), "signed");
+    }
+
+    #[test]
+    fn inks_become_colours() {
+        let inks = File { samples: 4, photometric: 5, ..GREY };
+        let image = inks.read(&[255, 0, 51, 0]).unwrap();
+        assert_eq!(image.channels(), ["R", "G", "B"]);
+        let srgb = |code: f32| ColorEncoding::Srgb.to_linear(code / 255.0);
+        assert_eq!(pixel(&image), [0.0, 1.0, srgb(204.0)]);
+        assert_eq!(pixel(&inks.read(&[0, 0, 0, 255]).unwrap()), [0.0; 3]);
+        let planes = File { is_planar: true, palette: Vec::new(), ..inks };
+        assert_eq!(pixel(&planes.read(&[255, 0, 51, 0]).unwrap()), [0.0, 1.0, srgb(204.0)]);
+        let wide = File { bits: 16, palette: Vec::new(), ..inks };
+        let half = f32::from(0x7fff_u16) / 65535.0;
+        let found = pixel(&wide.read(&[255, 255, 0, 0x80, 0, 0, 0, 0]).unwrap());
+        assert_eq!(found, [0.0, ColorEncoding::Srgb.to_linear(half), 1.0]);
+        assert!(File { bits: 32, palette: Vec::new(), ..inks }.read(&[0; 16]).is_err());
     }
 
     #[test]

@@ -53,6 +53,30 @@ fn a_header_that_claims_too_much_is_refused_before_memory_is_taken() {
 }
 
 #[test]
+fn pictures_that_end_early_are_refused() {
+    let color = small();
+    let grey = color.select(&["R"]).unwrap();
+    for format in Format::ALL {
+        for image in [&color, &grey] {
+            let bytes = encode(image, format, &WriteOptions::default()).unwrap();
+            // A PNG ends with a mark, and a WebP with a byte that makes its length even. Pixels
+            // that a JPEG lacks are grey.
+            let needed = match format {
+                Format::Png => bytes.len() - 12,
+                Format::Jpeg => 300,
+                Format::Webp => bytes.len() - 2,
+                _ => bytes.len(),
+            };
+            for length in 0..needed {
+                let name = format!("x.{}", format.extensions()[0]);
+                let result = read(&bytes[..length], &name, &ReadOptions::default());
+                assert!(result.is_err(), "{format:?} {length}");
+            }
+        }
+    }
+}
+
+#[test]
 fn files_without_a_format_are_refused() {
     for bytes in [&b""[..], b"hello", &[0; 100]] {
         assert!(matches!(read(bytes, "x.txt", &ReadOptions::default()), Err(ImageError::Unsupported(_))));
