@@ -117,9 +117,10 @@ pub trait Real:
     /// Appends the lanes where the mask is true.
     #[inline(always)]
     fn append(self, mask: Self::Mask, to: &mut Vec<f32>) {
-        let len = to.len();
-        to.resize(len + Self::LANES, 0.0);
-        let count = self.compress(mask, &mut to[len..]);
+        let (len, mut kept) = (to.len(), [0.0; MAX_LANES]);
+        let count = self.compress(mask, &mut kept);
+        // All lanes, as their number is known when this is compiled.
+        to.extend_from_slice(&kept[..Self::LANES]);
         to.truncate(len + count);
     }
 
@@ -352,9 +353,9 @@ pub trait Int:
     /// Appends the lanes where the mask is true.
     #[inline(always)]
     fn append(self, mask: Self::Mask, to: &mut Vec<u32>) {
-        let len = to.len();
-        to.resize(len + Self::Real::LANES, 0);
-        let count = self.compress(mask, &mut to[len..]);
+        let (len, mut kept) = (to.len(), [0; MAX_LANES]);
+        let count = self.compress(mask, &mut kept);
+        to.extend_from_slice(&kept[..Self::Real::LANES]);
         to.truncate(len + count);
     }
 

@@ -19,9 +19,9 @@ impl Spectra {
     /// Appends the lanes of a mask.
     #[inline(always)]
     pub fn append<R: Real>(&mut self, mask: R::Mask, s: SampledSpectrum<R>) {
-        let len = self.0.len();
-        self.0.resize(len + R::LANES, [0.0; N]);
-        let count = R::compress_four(s.0, mask, self.0[len..].as_flattened_mut());
+        let (len, mut kept) = (self.0.len(), [[0.0; N]; MAX_LANES]);
+        let count = R::compress_four(s.0, mask, kept.as_flattened_mut());
+        self.0.extend_from_slice(&kept[..R::LANES]);
         self.0.truncate(len + count);
     }
 
