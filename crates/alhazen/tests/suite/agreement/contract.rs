@@ -43,7 +43,7 @@ fn threads_never_change_a_bit() {
 /// scattering events.
 const FURNACE: &str = r#"Option "disablewavelengthjitter" true
     Camera "perspective" "float fov" 90
-    Film "rgb" "integer xresolution" 16 "integer yresolution" 16 "bool savefp16" false
+    Film "rgb" "integer xresolution" 8 "integer yresolution" 8 "bool savefp16" false
     PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5
     Sampler "zsobol" "integer pixelsamples" 16
     WorldBegin
