@@ -47,11 +47,11 @@ fn pixels_at_the_border_receive_light_from_both_sides() {
     let mlt = MltDesc {
         technique: MltTechnique::Bdpt,
         max_depth: 2,
-        mutations_per_pixel: 200,
+        mutations_per_pixel: 400,
         ..MltDesc::default()
     };
     let algorithms = [
-        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 2 }), 16),
+        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 2 }), 32),
         (
             IntegratorDesc::Bdpt(BdptDesc {
                 max_depth: 2,
@@ -59,9 +59,9 @@ fn pixels_at_the_border_receive_light_from_both_sides() {
                 visualize_strategies: false,
                 visualize_weights: false,
             }),
-            16,
+            32,
         ),
-        (IntegratorDesc::Vcm(VcmDesc { max_depth: 2, radius: Some(0.01), ..VcmDesc::default() }), 16),
+        (IntegratorDesc::Vcm(VcmDesc { max_depth: 2, radius: Some(0.01), ..VcmDesc::default() }), 32),
         (IntegratorDesc::Mlt(mlt), 1),
     ];
     for mapping in [SphericalMapping::EquiRectangular, SphericalMapping::EqualArea] {
@@ -74,7 +74,7 @@ fn pixels_at_the_border_receive_light_from_both_sides() {
             }
             moments
         };
-        let expected = moments(&path, 32, 100);
+        let expected = moments(&path, 64, 100);
         for (integrator, samples) in &algorithms {
             let found = moments(integrator, *samples, 0);
             for (side, (found, expected)) in found.iter().zip(&expected).enumerate() {

@@ -134,7 +134,7 @@ fn the_mean_agrees_with_path_tracing() {
 fn long_paths_are_supported() {
     let scene = diffuse_box();
     let found = |max_depth| -> Moments {
-        let desc = MltDesc { mutations_per_pixel: 20, ..mlt(MltTechnique::Bdpt, max_depth) };
+        let desc = MltDesc { mutations_per_pixel: 40, ..mlt(MltTechnique::Bdpt, max_depth) };
         (0..8).map(|seed| mean(&with(&scene, IntegratorDesc::Mlt(desc), seed))).collect()
     };
     let expected = found(30);

@@ -135,7 +135,7 @@ fn means(desc: &SceneDesc, integrator: &IntegratorDesc, pixel_samples: u32) -> M
 /// blur light.
 fn assert_agreement(desc: &SceneDesc) {
     let path = IntegratorDesc::VolPath(PathDesc { max_depth: DEPTH, ..PathDesc::default() });
-    let expected = means(desc, &path, 75);
+    let expected = means(desc, &path, 150);
     let photons = PhotonMappingDesc {
         max_depth: DEPTH,
         photons: 3000,
@@ -146,18 +146,18 @@ fn assert_agreement(desc: &SceneDesc) {
     let max_depth = DEPTH;
     for (integrator, samples, bias) in [
         (IntegratorDesc::Bdpt(BdptDesc { max_depth, ..BdptDesc::default() }), 50, 0.0),
-        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth }), 150, 0.0),
+        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth }), 300, 0.0),
         (
             IntegratorDesc::Mlt(MltDesc {
                 max_depth,
-                mutations_per_pixel: 150,
+                mutations_per_pixel: 300,
                 chains: 100,
                 ..MltDesc::default()
             }),
             1,
             0.0,
         ),
-        (IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(RADIUS), ..VcmDesc::default() }), 13, 0.01),
+        (IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(RADIUS), ..VcmDesc::default() }), 25, 0.01),
         (
             IntegratorDesc::Sppm(SppmDesc {
                 max_depth,
@@ -165,11 +165,11 @@ fn assert_agreement(desc: &SceneDesc) {
                 radius: Some(RADIUS),
                 seed: None,
             }),
-            15,
+            30,
             0.02,
         ),
-        (IntegratorDesc::PhotonMapping(photons), 10, 0.02),
-        (IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 4, ..photons }), 15, 0.02),
+        (IntegratorDesc::PhotonMapping(photons), 20, 0.02),
+        (IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 4, ..photons }), 30, 0.02),
     ] {
         let found = means(desc, &integrator, samples);
         let error = (found.variance_of_mean() + expected.variance_of_mean()).sqrt();

@@ -274,6 +274,7 @@ fn mlt_agrees_with_path_tracing() {
 #[test]
 #[ignore = "slow: three minutes of one core"]
 fn all_agree_with_path_tracing_in_small_squares() {
-    [bdpt, light_tracing, vcm, sppm, delta_lights, photon_mapping, sppm_in_media, mlt]
-        .map(|compare| compare(Precision::Fine));
+    for compare in [bdpt, light_tracing, vcm, sppm, delta_lights, photon_mapping, sppm_in_media, mlt] {
+        compare(Precision::Fine);
+    }
 }
