@@ -214,7 +214,11 @@ fn mlt(precision: Precision) {
     // Where few paths carry light, the squares of so few chains are too far from normally
     // distributed.
     let can = |scene: &Scene| scene.name != "a door that is almost closed";
-    Compared { integrator: "mlt", settings: &[], samples: 32, can }.assert_agrees(precision);
+    let settings = match precision {
+        Precision::Coarse => &[("bootstrapsamples", "25000")],
+        Precision::Fine => &[("bootstrapsamples", "100000")],
+    };
+    Compared { integrator: "mlt", settings, samples: 32, can }.assert_agrees(precision);
 }
 
 fn delta_lights(precision: Precision) {
