@@ -4,12 +4,14 @@
 //! against an exact value, [`welch_test`] two estimators against each other. All take `[f32; 2]`,
 //! `[f32; 3]` and `f64`, so that every crate can use them.
 //!
-//! [`lanes_agree`] runs a [`LaneFunction`] on every instruction set.
+//! [`lanes_agree`] runs a [`LaneFunction`] on every instruction set. [`data`] finds files of other
+//! authors.
 //!
 //! Every test has a generator with a fixed seed ([`Random`]), so that its result is reproducible,
 //! and corrects its significance for the number of tests (Šidák's correction).
 
 mod chi2;
+mod data;
 mod lane_function;
 mod means;
 mod quadrature;
@@ -17,6 +19,7 @@ mod random;
 mod special;
 
 pub use chi2::Chi2;
+pub use data::{data, skip};
 pub use lane_function::{LaneFunction, lanes_agree};
 pub use means::{Moments, t_test, welch_test, z_test};
 pub use quadrature::integrate;

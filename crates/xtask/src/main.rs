@@ -1,6 +1,7 @@
 //! Development tasks of the project.
 
 mod bench;
+mod ci;
 mod command;
 mod dist;
 mod gallery;
@@ -8,7 +9,6 @@ mod profile;
 mod python;
 mod rgb_table;
 mod scenes;
-mod test;
 mod tidy;
 mod wgsl;
 
@@ -18,7 +18,8 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  test       all checks: format, source rules, lints, documentation, tests
+  ci         all checks: format, source rules, lints, documentation, the gallery, and
+             the tests that `cargo test` leaves out
   tidy       the source rules alone, in a second
   bench rays [--help | OPTIONS]
              the ray engine beside Embree, on a million triangles
@@ -44,7 +45,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments[..] {
-        ["test"] => test::run(workspace()),
+        ["ci"] => ci::run(workspace()),
         ["tidy"] => tidy::run(workspace()),
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),

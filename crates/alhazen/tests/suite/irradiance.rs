@@ -318,7 +318,9 @@ fn stretched_skies_give_the_irradiance_of_their_directions() {
             path.display()
         );
         let text = over_a_floor([-3.0, 3.0, -3.0, 3.0], 1024, &light);
-        assert_radiance(&text, expected.map(|l| RHO * l), &algorithms, name);
+        // The last map is the most general one; how a map acts does not depend on the algorithm.
+        let algorithms = if name == "a shear" { &algorithms } else { &algorithms[..1] };
+        assert_radiance(&text, expected.map(|l| RHO * l), algorithms, name);
     }
     std::fs::remove_file(path).unwrap();
 }

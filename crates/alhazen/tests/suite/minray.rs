@@ -5,8 +5,6 @@
 #[path = "../../examples/minray.rs"]
 mod example;
 
-use std::path::{Path, PathBuf};
-
 /// The numbers of a plain portable pixmap after its magic number: width, height, maximum, channels.
 fn numbers(text: &str) -> Vec<i32> {
     text.split_whitespace().skip(1).map(|word| word.parse().expect("a number")).collect()
@@ -14,12 +12,8 @@ fn numbers(text: &str) -> Vec<i32> {
 
 #[test]
 fn the_picture_is_that_of_the_original_program() {
-    let data = std::env::var_os("ALHAZEN_DATA").map(PathBuf::from);
-    let data = data.unwrap_or(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
-    let path = data.join("../minray/minray.ppm");
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        return eprintln!("skipped: there is no {}", path.display());
-    };
+    let Some(path) = testkit::data("../minray/minray.ppm") else { return };
+    let text = std::fs::read_to_string(path).expect("the picture is read");
     let expected = numbers(&text);
     assert_eq!(expected[..3], [32, 32, 255]);
     let ours = example::picture(32);

@@ -18,7 +18,7 @@ fn scene(time: f32, duration: f32, world: &str) -> String {
         "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40\n\
          \"float shutteropen\" {open} \"float shutterclose\" {close}\n\
          Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16 \"bool savefp16\" false \"float iso\" {iso}\n\
-         PixelFilter \"box\" Sampler \"independent\" \"integer pixelsamples\" 64\n\
+         PixelFilter \"box\" Sampler \"independent\" \"integer pixelsamples\" 16\n\
          Option \"disablewavelengthjitter\" true\nWorldBegin\n\
          Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n\
          Shape \"bilinearmesh\" \"point3 P\" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]\n\

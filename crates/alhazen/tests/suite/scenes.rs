@@ -47,20 +47,35 @@ fn every_scene_renders_without_diagnostics() {
         silent(name, &warnings);
         job.render(&Control::default()).expect("not cancelled");
         let values: Vec<f32> = job.picture().unwrap().values().collect();
-        assert_eq!(values, without_extents(desc), "{name} without extents");
         assert!(values.iter().all(|value| value.is_finite()), "{name} has values that are no numbers");
         assert!(values.iter().any(|&value| value > 0.01), "{name} is black");
         assert_eq!(job.session.state().film.rejected().count, 0, "{name} has samples that are no numbers");
     }
 }
 
-/// The picture of a scene where every ray is tested against every primitive.
-fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
-    desc.accelerator = AcceleratorDesc::None.into();
-    let mut job = Job::compile(desc).expect("a scene").job;
-    job.render(&Control::default()).expect("not cancelled");
-    assert_eq!(job.session.progress().stats.extents, 0);
-    job.picture().expect("a picture").values().collect()
+/// Where every ray is tested against every primitive, pictures are the same.
+#[test]
+fn accelerators_never_change_a_bit() {
+    let small = Overrides {
+        integrator: Some("vol-path".into()),
+        resolution: Some([16, 16]),
+        samples_per_pixel: Some(1),
+        ..Overrides::default()
+    };
+    for (path, name) in scenes() {
+        let mut desc = import(&path, &Files).desc;
+        small.apply(&mut desc).expect("changes that every scene can take");
+        let picture = |accelerator: AcceleratorDesc| {
+            let desc = SceneDesc { accelerator: accelerator.into(), ..desc.clone() };
+            let mut job = Job::compile(desc).expect("a scene").job;
+            job.render(&Control::default()).expect("not cancelled");
+            let values: Vec<f32> = job.picture().expect("a picture").values().collect();
+            (values, job.session.progress().stats.extents)
+        };
+        let (values, extents) = picture(AcceleratorDesc::None);
+        assert_eq!(extents, 0);
+        assert_eq!(values, picture(desc.accelerator.value.clone()).0, "{name}");
+    }
 }
 
 #[test]

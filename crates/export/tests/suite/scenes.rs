@@ -1,10 +1,11 @@
 //! Scenes of files are the same after they were written.
-//!
-//! Those of others are looked for in `$ALHAZEN_DATA` or in `../shared/data` beside the workspace.
 
 use std::path::{Path, PathBuf};
 
+use alhazen_export::Exported;
+use description::SceneDesc;
 use import::{Files, import};
+use testkit::data;
 
 use crate::plain::difference;
 use crate::round_trip;
@@ -23,19 +24,15 @@ fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-fn data(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("ALHAZEN_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
-    let path = root.join(folder);
-    if path.is_dir() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there (set ALHAZEN_DATA)", path.display());
-    None
+/// Asserts that scenes are the same after they were written, and are then written the same again.
+fn check(scenes: &[PathBuf]) {
+    check_once(scenes, |path, exported, again| {
+        assert_eq!(round_trip(again).0.text, exported.text, "{}", path.display());
+    });
 }
 
-/// Scenes that are not the same after they were written, and what differs first.
-fn check(scenes: &[PathBuf]) {
+/// Asserts that scenes are the same after they were written, and then has a look at them.
+fn check_once(scenes: &[PathBuf], look: impl Fn(&Path, &Exported, &SceneDesc)) {
     let mut wrong = Vec::new();
     for path in scenes {
         let imported = import(path, &Files);
@@ -47,8 +44,7 @@ fn check(scenes: &[PathBuf]) {
         if let Some(difference) = difference(&imported.desc, &again) {
             wrong.push(format!("{}:\n{difference}", path.display()));
         }
-        // What was written once is written the same again.
-        assert_eq!(round_trip(&again).0.text, exported.text, "{}", path.display());
+        look(path, &exported, &again);
     }
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), scenes.len(), wrong.join("\n"));
 }
@@ -71,7 +67,7 @@ fn conformance_scenes_are_the_same() {
 fn larger_scenes_are_the_same() {
     for folder in ["pbrt-bitterli", "pbrt-v4-scenes"] {
         let Some(folder) = data(folder) else { continue };
-        check(&files(&folder, &["pbrt"]));
+        check_once(&files(&folder, &["pbrt"]), |_, _, _| ());
     }
 }
 

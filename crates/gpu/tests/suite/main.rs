@@ -30,9 +30,8 @@ mod twins;
 mod validation;
 mod wavefront;
 
-use std::io::Write;
-
 use alhazen_gpu::{Device, GpuError};
+use testkit::skip;
 
 /// The GPU of a test, by a part of its name in `ALHAZEN_GPU` or the first one; `None` where the
 /// test cannot run.
@@ -60,9 +59,4 @@ fn opened(open: impl Fn(&str) -> Result<Device, GpuError>) -> Option<Device> {
             None
         }
     }
-}
-
-fn skip(reason: &str) {
-    // Not by a macro, whose output the harness keeps to itself.
-    let _ = writeln!(std::io::stderr(), "SKIPPED, not tested: {reason}");
 }

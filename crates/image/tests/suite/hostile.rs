@@ -17,7 +17,7 @@ fn read_in_time(path: &std::path::Path) -> Result<Image, ImageError> {
 
 #[test]
 fn malformed_files_end_in_an_image_or_an_error() {
-    let Some(data) = crate::common::data_folder() else { return };
+    let Some(data) = testkit::data("") else { return };
     for folder in ["exr", "png", "tga", "bmp"] {
         for path in crate::common::files_below(&data.join("malformed").join(folder)) {
             let result = read_in_time(&path);

@@ -4,7 +4,7 @@ use alhazen_image::{Format, Image, ImageError, Pixels, ReadOptions, Window, read
 
 #[test]
 fn every_valid_picture_loads() {
-    let Some(data) = crate::common::data_folder() else { return };
+    let Some(data) = testkit::data("") else { return };
     let mut count = 0;
     for folder in ["images", "envmaps"] {
         for path in crate::common::files_below(&data.join(folder)) {
@@ -36,7 +36,7 @@ fn mean(image: &Image) -> [f64; 3] {
 
 #[test]
 fn every_compression_means_the_same_picture() {
-    let Some(data) = crate::common::data_folder() else { return };
+    let Some(data) = testkit::data("") else { return };
     const EXACT: [f64; 3] = [118.9307, 144.0682, 207.8686];
     const HALVES: [f64; 3] = [118.9378, 144.0852, 207.8640];
     for (file, expected) in [
@@ -60,7 +60,7 @@ fn every_compression_means_the_same_picture() {
 
 #[test]
 fn windows_are_kept_apart() {
-    let Some(data) = crate::common::data_folder() else { return };
+    let Some(data) = testkit::data("") else { return };
     let image = alhazen_image::open(data.join("images/exr/t05.exr")).unwrap();
     assert_eq!(image.data_window(), Window { min: [0, 0], max: [400, 300] });
     assert_eq!(image.display_window(), Window { min: [30, 20], max: [370, 280] });

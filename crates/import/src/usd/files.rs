@@ -87,7 +87,10 @@ impl<'a> Files<'a> {
                         layer::check(&bytes).map_err(invalid)?;
                         Ok(bytes)
                     });
-                    lock(&self.layers).push(name);
+                    // What is refused unread is not parsed to find its faults, either.
+                    if checked.is_ok() {
+                        lock(&self.layers).push(name);
+                    }
                     _ = reply.send(checked);
                 }
             }

@@ -1,7 +1,5 @@
 //! Scenes and meshes of other authors: valid ones are read without errors, damaged ones are refused
 //! with a message, in bounded time.
-//!
-//! The files are looked for in `$ALHAZEN_DATA` or in `../shared/data` beside the workspace.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -11,17 +9,7 @@ use description::MaterialKind;
 use math::spherical_direction;
 use scattering::{Directions, Measured, Scatter, TransportMode};
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledWavelengths};
-
-pub(crate) fn data(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("ALHAZEN_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
-    let path = root.join(folder);
-    if path.is_dir() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there (set ALHAZEN_DATA)", path.display());
-    None
-}
+pub(crate) use testkit::data;
 
 pub(crate) fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();

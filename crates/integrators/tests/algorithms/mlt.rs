@@ -120,7 +120,7 @@ fn the_mean_agrees_with_path_tracing() {
         });
         let path: Moments = (0..6).map(|seed| mean(&with(&scene, path.clone(), seed))).collect();
         for technique in TECHNIQUES {
-            let desc = MltDesc { mutations_per_pixel: 80, ..mlt(technique, 4) };
+            let desc = MltDesc { mutations_per_pixel: 40, ..mlt(technique, 4) };
             let desc = |seed| with(&scene, IntegratorDesc::Mlt(desc), seed);
             let found: Moments = (0..8).map(|seed| mean(&desc(seed))).collect();
             let error = found.variance_of_mean().sqrt() / path.mean;

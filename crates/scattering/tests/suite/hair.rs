@@ -6,7 +6,6 @@ use math::{Vec2, Vec3, Vector3, spherical_direction};
 use sampling::warp::sample_uniform_sphere;
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
-use std::path::PathBuf;
 use testkit::{Chi2, LaneFunction, Moments, Random, lanes_agree};
 
 use TransportMode::{Importance, Radiance};
@@ -21,12 +20,8 @@ fn hair(h: f32, sigma_a: f32, roughness: [f32; 2]) -> Hair {
 /// Rows of β_m, β_n, α in degrees, η, σ_a, h, two directions with x along the fibre, and f·|cos|.
 #[test]
 fn values_are_those_of_pbrt() {
-    let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let data = std::env::var_os("ALHAZEN_DATA").map_or_else(beside, PathBuf::from);
-    let Ok(bytes) = std::fs::read(data.join("measured/hair/pbrt_hair_bsdf_a.f32")) else {
-        eprintln!("skipped: no measured/hair in {}; set ALHAZEN_DATA", data.display());
-        return;
-    };
+    let Some(path) = testkit::data("measured/hair/pbrt_hair_bsdf_a.f32") else { return };
+    let bytes = std::fs::read(path).expect("the file is read");
     let numbers: Vec<f32> =
         bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     let (mut count, mut different) = (0, 0);

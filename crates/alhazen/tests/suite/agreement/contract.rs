@@ -43,7 +43,7 @@ fn threads_never_change_a_bit() {
 /// scattering events.
 const FURNACE: &str = r#"Option "disablewavelengthjitter" true
     Camera "perspective" "float fov" 90
-    Film "rgb" "integer xresolution" 16 "integer yresolution" 16 "bool savefp16" false
+    Film "rgb" "integer xresolution" 8 "integer yresolution" 8 "bool savefp16" false
     PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5
     Sampler "zsobol" "integer pixelsamples" 16
     WorldBegin
@@ -102,6 +102,7 @@ impl Member {
         const MAP: [(&str, &str); 4] =
             [("radius", "0.3"), ("photons", "1000"), ("causticphotons", "0"), ("nearest", "1000000")];
         const GATHERED: [(&str, &str); 5] = [MAP[0], MAP[1], MAP[2], MAP[3], ("gather", "2")];
+        const STARTS: (&str, &str) = ("bootstrapsamples", "10000");
         const MERGED: [(&str, &str); 2] = [("radius", "0.3"), ("photons", "2000")];
         const FLAT: [(&str, &str); 3] = [("patchsize", "1"), ("subdivision", "0"), ("tolerance", "0.0002")];
         const FLAT_GATHERED: [(&str, &str); 4] = [FLAT[0], FLAT[1], FLAT[2], ("gather", "1")];
@@ -113,8 +114,8 @@ impl Member {
             Self::exact("simple-vol-path", &[]),
             Self::exact("light-tracing", &[]),
             Self::exact("bdpt", &[]),
-            Self::exact("mlt", &[("technique", "path"), ("mutationsperpixel", "64")]),
-            Self::exact("mlt", &[("technique", "bdpt"), ("mutationsperpixel", "128")]),
+            Self::exact("mlt", &[("technique", "path"), ("mutationsperpixel", "64"), STARTS]),
+            Self::exact("mlt", &[("technique", "bdpt"), ("mutationsperpixel", "128"), STARTS]),
             Self { lost: [kernel; 2], ..Self::exact("photon-mapping", &MAP) },
             Self { lost: [0.0, 2.5 * kernel], ..Self::exact("photon-mapping", &GATHERED) },
             Self { lost: [beyond_disks(2.0 / 3.0); 2], ..Self::exact("sppm", &MERGED) },

@@ -1,5 +1,4 @@
-//! Helpers of the tests on third-party data: its location, scenes as text, and pictures with their
-//! standard errors.
+//! Helpers of the tests on data of others: scenes as text, and pictures with their standard errors.
 
 use std::fmt::Write as _;
 use std::io;
@@ -10,18 +9,8 @@ use alhazen::image::Image;
 use alhazen::import::{AssetSource, Files, read_obj, read_ply};
 use alhazen::integrators::Control;
 use alhazen::{Overrides, RenderError, render_file};
+pub use testkit::data;
 use testkit::{Moments, z_test};
-
-/// A part of the third-party test data, or `None`, with a message, where it is absent.
-pub fn data(part: &str) -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("ALHAZEN_DATA").map_or_else(beside, PathBuf::from).join(part);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there; set ALHAZEN_DATA", path.display());
-    None
-}
 
 /// All files below a folder, in order.
 pub fn files_below(folder: &Path) -> Vec<PathBuf> {

@@ -1,4 +1,5 @@
-//! All checks and tests, cheapest first; the first failure ends the run.
+//! Checks, and the tests that a plain `cargo test` leaves out, cheapest first; the first failure
+//! ends the run.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -7,48 +8,27 @@ use std::time::Instant;
 use super::command::{QUICK_KERNELS, cargo, succeed};
 use super::{gallery, python, tidy};
 
-/// A step that cargo runs.
-struct Step {
-    name: &'static str,
-    arguments: &'static [&'static str],
-}
-
-/// What is checked beyond the program of a plain `cargo build`, and what of it is tested.
+/// The features of all that is checked, and of all that is tested.
 const CHECKED: &str = "alhazen-cli/full,alhazen-bench/gpu";
 const TESTED: &str = "alhazen-cli/portable,alhazen-cli/gpu";
 
-/// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
-/// and documentation share one check of the workspace, which has the window; tests do without.
-const STEPS: [Step; 5] = [
-    Step { name: "format", arguments: &["fmt", "--all", "--check"] },
-    Step {
-        name: "lints",
-        arguments: &[
-            "clippy",
-            "--quiet",
-            "--workspace",
-            "--features",
-            CHECKED,
-            "--all-targets",
-            "--keep-going",
-            "--",
-            "-D",
-            "warnings",
-        ],
-    },
-    Step {
-        name: "the program without features",
-        arguments: &["check", "--quiet", "--package", "alhazen-cli"],
-    },
-    Step {
-        name: "documentation",
-        arguments: &["doc", "--quiet", "--workspace", "--features", CHECKED, "--no-deps", "--lib"],
-    },
-    Step {
-        name: "tests",
-        arguments: &["test", "--quiet", "--workspace", "--features", TESTED, "--no-fail-fast"],
-    },
-];
+/// Crates beside the program, and those of the program whose tests depend on features.
+const TESTS: &str = "-p alhazen-bench -p alhazen-cli -p alhazen-gpu -p alhazen-import -p alhazen-python \
+                     -p alhazen-view -p xtask";
+
+/// The names of steps, and what they ask of cargo. All have the profile of `cargo test`, so that
+/// what both build is built once. Lints and documentation share one check of the workspace, which
+/// has the window; tests do without.
+fn steps() -> [(&'static str, String); 5] {
+    let lints = "--all-targets --keep-going -- -D warnings";
+    [
+        ("format", "fmt --all --check".into()),
+        ("lints", format!("clippy --quiet --workspace --features {CHECKED} {lints}")),
+        ("documentation", format!("doc --quiet --workspace --features {CHECKED} --no-deps --lib")),
+        ("lints without features", format!("clippy --quiet {lints}")),
+        ("tests", format!("test {TESTS} --features {TESTED} --no-fail-fast")),
+    ]
+}
 
 /// What steps find in their environment.
 const ENVIRONMENT: [(&str, &str); 2] = [("RUSTDOCFLAGS", "-D warnings"), QUICK_KERNELS];
@@ -64,14 +44,14 @@ pub fn run(root: &Path) -> Result<(), String> {
     install_components(root)?;
     install_vulkan();
     step("source rules", || tidy::run(root))?;
-    for Step { name, arguments } in STEPS {
+    for (name, arguments) in steps() {
         let mut cargo = cargo(root);
-        cargo.args(arguments).envs(ENVIRONMENT).env("RUST_TEST_THREADS", test_threads().to_string());
-        step(name, || succeed(&mut cargo))?;
+        cargo.args(arguments.split_whitespace()).envs(ENVIRONMENT);
+        step(name, || succeed(cargo.env("RUST_TEST_THREADS", test_threads().to_string())))?;
     }
     step("gallery", || gallery::check(root))?;
     step("tests of the Python package", || python::test(root))?;
-    println!("all tests passed in {:.0} s", start.elapsed().as_secs_f64());
+    println!("all passed in {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }
 
