@@ -36,7 +36,7 @@ const RUNS_OF_4: u32 = 2;
 const MASKED: u32 = 3;
 
 /// The most pixels of a side.
-const MOST_SIDE: u32 = u16::MAX as u32;
+const MAX_SIDE: u32 = u16::MAX as u32;
 
 /// What precedes the pixels.
 struct Header {
@@ -118,7 +118,7 @@ impl Header {
         } else {
             (long(info, 4)? as i32, long(info, 8)? as i32, 12)
         };
-        if width <= 0 || height == 0 || width.unsigned_abs().max(height.unsigned_abs()) > MOST_SIDE {
+        if width <= 0 || height == 0 || width.unsigned_abs().max(height.unsigned_abs()) > MAX_SIDE {
             return invalid(format!("a bitmap of {width} × {height} pixels"));
         }
         if short(info, at)? != 1 {

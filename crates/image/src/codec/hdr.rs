@@ -229,10 +229,10 @@ fn rgbe(color: [f32; 3]) -> [u8; 4] {
 fn write_component(line: &[[u8; 4]], component: usize, output: &mut impl Write) -> Result<(), ImageError> {
     /// Shorter runs take as many bytes as their values.
     const SHORTEST_RUN: usize = 3;
-    const MOST_REPEATED: usize = 127;
-    const MOST_VALUES: usize = 128;
+    const MAX_REPEATED: usize = 127;
+    const MAX_VALUES: usize = 128;
     let run = |start: usize| {
-        let values = line[start..].iter().take(MOST_REPEATED);
+        let values = line[start..].iter().take(MAX_REPEATED);
         values.take_while(|pixel| pixel[component] == line[start][component]).count()
     };
     let mut start = 0;
@@ -243,7 +243,7 @@ fn write_component(line: &[[u8; 4]], component: usize, output: &mut impl Write) 
             start += length;
             continue;
         }
-        let most = line.len().min(start + MOST_VALUES);
+        let most = line.len().min(start + MAX_VALUES);
         let end = (start + 1..most).find(|&at| run(at) >= SHORTEST_RUN).unwrap_or(most);
         output.write_all(&[(end - start) as u8])?;
         for pixel in &line[start..end] {

@@ -318,9 +318,9 @@ fn is_special(path: &Path) -> bool {
 /// where it is no link. An error where links lead to each other in a circle.
 pub fn link_target(path: &Path) -> io::Result<PathBuf> {
     /// As many links as Linux follows.
-    const MOST_LINKS: usize = 40;
+    const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         // A relative link starts at the folder that it is in.
         target = target.parent().unwrap_or(Path::new("")).join(next);

@@ -28,12 +28,12 @@ impl Header {
     /// The number of samples of the picture; refused where they exceed what `options` allow for a
     /// file of `length` bytes, or have no memory.
     pub fn sample_count(&self, length: usize, options: &ReadOptions) -> Result<usize, ImageError> {
-        const MOST_SIDE: u32 = 1 << 20;
+        const MAX_SIDE: u32 = 1 << 20;
         let [width, height] = self.size;
         if width == 0 || height == 0 {
             return invalid(format!("{width} × {height} pixels"));
         }
-        if width.max(height) > MOST_SIDE {
+        if width.max(height) > MAX_SIDE {
             return Err(ImageError::Limits(format!("{width} × {height} pixels")));
         }
         let bytes = self.channels * self.bits.div_ceil(8) as usize;

@@ -30,7 +30,7 @@ const FROM_TOP: u8 = 1 << 5;
 const ATTRIBUTE_BITS: u8 = 0b1111;
 
 /// The most pixels of a packet.
-const MOST_PACKED: usize = 128;
+const MAX_PACKED: usize = 128;
 
 /// What precedes the pixels.
 struct Header {
@@ -229,8 +229,7 @@ pub fn encode(
 fn write_packets(row: &[u8], pixel_size: usize, output: &mut impl Write) -> Result<(), ImageError> {
     let (mut start, count) = (0, row.len() / pixel_size);
     let pixel = |x: usize| &row[x * pixel_size..][..pixel_size];
-    let run =
-        |x: usize| (x..count.min(x + MOST_PACKED)).take_while(|&other| pixel(other) == pixel(x)).count();
+    let run = |x: usize| (x..count.min(x + MAX_PACKED)).take_while(|&other| pixel(other) == pixel(x)).count();
     while start < count {
         let length = run(start);
         if length > 1 {
@@ -239,8 +238,8 @@ fn write_packets(row: &[u8], pixel_size: usize, output: &mut impl Write) -> Resu
             start += length;
             continue;
         }
-        let end = (start + 1..count.min(start + MOST_PACKED)).find(|&x| run(x) > 1);
-        let end = end.unwrap_or(count.min(start + MOST_PACKED));
+        let end = (start + 1..count.min(start + MAX_PACKED)).find(|&x| run(x) > 1);
+        let end = end.unwrap_or(count.min(start + MAX_PACKED));
         output.write_all(&[(end - start - 1) as u8])?;
         output.write_all(&row[start * pixel_size..end * pixel_size])?;
         start = end;

@@ -132,7 +132,8 @@ fn means(desc: &SceneDesc, integrator: &IntegratorDesc, pixel_samples: u32) -> M
 }
 
 /// Asserts that the algorithms with light paths have the mean of path tracing, with a share of the
-/// samples that give a standard error of two percent; those with photons blur light.
+/// samples that give a standard error of two percent, but for Markov chains, whose errors are the
+/// largest; those with photons blur light.
 fn assert_agreement(desc: &SceneDesc, share: u32) {
     let largest = 0.02 * f64::from(share).sqrt();
     let path = IntegratorDesc::VolPath(PathDesc { max_depth: DEPTH, ..PathDesc::default() });
@@ -151,11 +152,11 @@ fn assert_agreement(desc: &SceneDesc, share: u32) {
         (
             IntegratorDesc::Mlt(MltDesc {
                 max_depth,
-                mutations_per_pixel: 600 / share,
+                mutations_per_pixel: 600,
                 chains: 100,
                 ..MltDesc::default()
             }),
-            share,
+            1,
             0.0,
         ),
         (IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(RADIUS), ..VcmDesc::default() }), 50, 0.01),
@@ -172,7 +173,7 @@ fn assert_agreement(desc: &SceneDesc, share: u32) {
         (IntegratorDesc::PhotonMapping(photons), 40, 0.02),
         (IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 4, ..photons }), 60, 0.02),
     ] {
-        let found = means(desc, &integrator, samples / share);
+        let found = means(desc, &integrator, (samples / share).max(1));
         let error = (found.variance_of_mean() + expected.variance_of_mean()).sqrt();
         let difference = (found.mean - expected.mean).abs();
         assert!(error < largest * expected.mean, "{integrator:?}: the error {error} is too large for a test");
