@@ -1,8 +1,8 @@
 //! Inlining in kernels: the operations of vectors are instructions, not calls.
 //!
 //! An operation of AVX-512 can be inlined only into functions compiled for AVX-512. Where a kernel
-//! calls a function that is not inlined into it, the operations in that function are calls, too, and
-//! their symbols are in the program. So a symbol of such an operation tells of a slow function,
+//! calls a function that is not inlined into it, the operations in that function are calls, too,
+//! and their symbols are in the program. So a symbol of such an operation tells of a slow function,
 //! whatever the profile of the build.
 
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]

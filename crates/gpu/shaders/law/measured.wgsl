@@ -71,13 +71,7 @@ fn Measured_f(this_: Measured, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
     let parts = chosen;
     let wo_1 = parts.v0;
     let wi_1 = parts.v1;
-    let outgoing = Measured_outgoing(this_, wo_1);
-    let facet = Measured_microfacet(this_, outgoing, wo_1, wi_1);
-    let parts_1 = MeasuredTable_invert_normal(this_.table, facet.at, outgoing.between);
-    let u = parts_1.v0;
-    let area = (4.0f * MeasuredTable_sigma(this_.table, outgoing.at)) * abs(wi_1.z);
-    let f = MeasuredTable_values(this_.table, u, outgoing.between, this_.lambda) * (MeasuredTable_ndf(this_.table, facet.at) / area);
-    return SampledSpectrum_select(facet.exists, f, SampledSpectrum_zero());
+    return MeasuredValue_run(MeasuredValue(this_, wo_1, wi_1));
 }
 
 fn Measured_sample_f(this_: Measured, wo: vec3f, unused_2: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
@@ -104,13 +98,49 @@ fn Measured_pdf(this_: Measured, wo: vec3f, wi: vec3f, unused_3: u32, directions
     if (!Directions_reflection(directions)) {
         return 0.0f;
     }
-    let outgoing = Measured_outgoing(this_, wo);
-    let facet = Measured_microfacet(this_, outgoing, wo, wi);
-    let parts = MeasuredTable_invert_normal(this_.table, facet.at, outgoing.between);
+    return MeasuredDensity_run(MeasuredDensity(this_, wo, wi));
+}
+
+// A value of the BRDF, which its samples have, too.
+struct MeasuredValue {
+    surface: Measured,
+    wo: vec3f,
+    wi: vec3f,
+}
+
+fn MeasuredValue_run(this_: MeasuredValue) -> vec4f {
+    let surface = this_.surface;
+    let wo = this_.wo;
+    let wi = this_.wi;
+    let table = surface.table;
+    let lambda = surface.lambda;
+    let outgoing = Measured_outgoing(surface, wo);
+    let facet = Measured_microfacet(surface, outgoing, wo, wi);
+    let parts = MeasuredTable_invert_normal(table, facet.at, outgoing.between);
+    let u = parts.v0;
+    let area = (4.0f * MeasuredTable_sigma(table, outgoing.at)) * abs(wi.z);
+    let f = MeasuredTable_values(table, u, outgoing.between, lambda) * (MeasuredTable_ndf(table, facet.at) / area);
+    return SampledSpectrum_select(facet.exists, f, SampledSpectrum_zero());
+}
+
+// The density of a sample.
+struct MeasuredDensity {
+    surface: Measured,
+    wo: vec3f,
+    wi: vec3f,
+}
+
+fn MeasuredDensity_run(this_: MeasuredDensity) -> f32 {
+    let surface = this_.surface;
+    let wo = this_.wo;
+    let wi = this_.wi;
+    let outgoing = Measured_outgoing(surface, wo);
+    let facet = Measured_microfacet(surface, outgoing, wo, wi);
+    let parts = MeasuredTable_invert_normal(surface.table, facet.at, outgoing.between);
     let u = parts.v0;
     let density = parts.v1;
     let solid_angle = (((2.0f * 3.1415927f) * 3.1415927f) * facet.at.x) * facet.sin_theta;
     let solid_angle_1 = (4.0f * facet.cosine) * real_max(solid_angle, 1e-6f);
-    let pdf = (density * MeasuredTable_luminance_pdf(this_.table, u, outgoing.between)) / solid_angle_1;
+    let pdf = (density * MeasuredTable_luminance_pdf(surface.table, u, outgoing.between)) / solid_angle_1;
     return select(0.0f, pdf, facet.exists);
 }
