@@ -15,8 +15,8 @@ use crate::adaptive::{Adaptive, PixelIntegrator};
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, Function, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping,
-    PixelLoop, Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, VolPath,
-    WaveIntegrator, Wavefront, Whitted,
+    PixelLoop, Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, WaveIntegrator,
+    Wavefront, Whitted,
 };
 
 /// The result of [`build`].
@@ -206,7 +206,9 @@ impl Builder<'_> {
             IntegratorDesc::SimplePath(desc) => self.pixels(SimplePath(desc), sampler),
             IntegratorDesc::Path(desc) => self.path(desc, Interfaces::Stop, sampler),
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
-            IntegratorDesc::SimpleVolPath(desc) => self.pixels(VolPath::simple(desc.max_depth), sampler),
+            IntegratorDesc::SimpleVolPath(desc) => {
+                self.pixels(Path::without_light_sampling(desc.max_depth), sampler)
+            }
             IntegratorDesc::LightTracing(desc) => {
                 let light_sampler = light_sampler(self.desc);
                 Box::new(LightTracing::new(desc, sampler, light_sampler))
@@ -312,10 +314,6 @@ impl Builder<'_> {
     }
 
     fn path(&self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
-        if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
-            let path = VolPath::new(desc);
-            return if self.has_parts() { self.pixels(path, sampler) } else { self.waves(path, sampler) };
-        }
         let path = Path::new(desc, interfaces);
         if self.has_parts() { self.pixels(path, sampler) } else { self.waves(path, sampler) }
     }

@@ -13,8 +13,7 @@
 //! | [`AmbientOcclusion`] | rays over the hemisphere of the first surface, for its visibility |
 //! | [`RandomWalk`] | paths in uniform directions, without next-event estimation |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each optional |
-//! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette |
-//! | [`VolPath`] | the same through participating media |
+//! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette; in media, too |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected at all pairs of vertices |
 //! | [`Mlt`] | Markov chains of paths, distributed in proportion to their contribution |
@@ -46,7 +45,7 @@ mod wavefront;
 pub use bidirectional::Bdpt;
 pub use build::{Built, build, light_sampler, sampler, seed_of_integrator};
 pub use camera_paths::{
-    AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, VolPath, Whitted,
+    AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
 pub use control::{Cancelled, Clock, Control, PassError};
 pub use function::Function;

@@ -9,7 +9,7 @@ use alhazen::geometry::InstructionSet;
 use alhazen::import::{AssetSource, Files, MemoryAssets, import};
 use alhazen::integrators::{
     self, AmbientOcclusion, Control, Integrator, Limits, PixelLoop, RayCasting, Session, SessionState,
-    VolPath, WaveIntegrator, Wavefront, Whitted,
+    WaveIntegrator, Wavefront, Whitted,
 };
 use alhazen::sampling::Randomize;
 use alhazen::sampling::sampler::{Independent, Sampler, ZSobol};
@@ -344,7 +344,7 @@ impl Compiled {
         let path = integrators::Path::new(settings, Interfaces::Stop);
         if !self.scene.media().is_empty() {
             // The others know media in the scalar engine only.
-            let vol_path = VolPath::new(settings);
+            let vol_path = integrators::Path::new(settings, Interfaces::Pass);
             return vec![
                 Engines::new("path", path, sampler, set),
                 Engines::new("vol-path", vol_path, sampler, set),

@@ -13,7 +13,7 @@ use image::Image;
 use import::{AssetSource, Files, MemoryAssets, import};
 use integrators::{
     AmbientOcclusion, Bdpt, Control, FirstHits, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
-    RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, VolPath, Whitted,
+    RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, Whitted,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified};
 use sampling::{Randomize, Sampler};
@@ -209,11 +209,10 @@ impl Case {
             Algorithm::Whitted(desc) => self.by_rays(Whitted::new(*desc)),
             Algorithm::AmbientOcclusion(desc, space) => self.by_rays(AmbientOcclusion::new(*desc, space)),
             Algorithm::Path(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Stop)),
-            Algorithm::VolPath(desc) if self.desc.media.is_empty() => {
-                self.by_rays(integrators::Path::new(*desc, Interfaces::Pass))
+            Algorithm::VolPath(desc) => self.by_rays(integrators::Path::new(*desc, Interfaces::Pass)),
+            Algorithm::SimpleVolPath(desc) => {
+                self.by_rays(integrators::Path::without_light_sampling(desc.max_depth))
             }
-            Algorithm::VolPath(desc) => self.by_rays(VolPath::new(*desc)),
-            Algorithm::SimpleVolPath(desc) => self.by_rays(VolPath::simple(desc.max_depth)),
             Algorithm::SimplePath(desc) => self.by_rays(SimplePath(*desc)),
             Algorithm::RandomWalk(desc) => self.by_rays(RandomWalk(*desc)),
             Algorithm::LightTracing(desc) => Box::new(LightTracing::new(*desc, sampler, light_sampler)),

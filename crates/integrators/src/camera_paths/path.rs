@@ -2,157 +2,232 @@
 //!
 //! At each vertex a shadow ray goes to a light and a scattered ray continues the path, weighted by
 //! the power heuristic (`transport/direct.rs`); from the second vertex on Russian roulette ends
-//! paths of low throughput (`transport/roulette.rs`).
+//! paths of low throughput (`transport/roulette.rs`). Paths that enter a body go on from another
+//! point of its surface (`transport/subsurface/`).
 //!
-//! Paths that enter a body go on from another point of its surface
-//! (`transport/subsurface/`).
+//! In scenes with media paths fly from surface to surface (`medium_vertices.rs`), and shadow rays
+//! estimate the transmittance on their way. Densities are then means over the wavelengths by which
+//! each may have been sampled: spectral MIS (`transport/media/`). `path` leaves media out, as
+//! pbrt-v4 does. Without light sampling (`simple-vol-path`), light is found by scattering alone.
 //!
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
-//! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
+//! rough bounce to find caustics with less noise. Sources: [Pharr 2023 §13.4, §14.2];
+//! [Miller 2019].
 
 use description::PathDesc;
+use film::FirstEvent;
 use math::RayDifferential;
-use scene::{Interfaces, Scene, View};
+use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::PathsFrom;
-use crate::transport::direct::{Connection, DirectLighting, light_context};
-use crate::transport::parts::{DIFFUSE, event_at, event_of};
+use crate::transport::direct::{Connection, DirectLighting, Vertex, light_context};
+use crate::transport::media::{Arrival, FlightEnd, Heroes, SpectralMis};
+use crate::transport::parts::{DIFFUSE, event_of};
 use crate::transport::path_state::{PathState, Scattered};
-use crate::transport::subsurface::{Exit, entered};
+use crate::transport::subsurface::entered;
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
-/// Path tracing.
+/// Path tracing, in vacuum and through participating media.
 #[derive(Clone, Debug)]
 pub struct Path {
     pub(crate) settings: PathDesc,
     interfaces: Interfaces,
+    sample_lights: bool,
     pub(crate) direct: DirectLighting,
 }
 
 impl Path {
-    /// Has no lights before [`prepare`](RayIntegrator::prepare). `interfaces` says whether
-    /// interfaces occlude delta lights.
+    /// Has no lights before [`prepare`](RayIntegrator::prepare). Where interfaces stop shadow rays
+    /// of delta lights, it is pbrt-v4's path tracer, which leaves media out; else paths go through
+    /// media.
     pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
-        Self { settings, interfaces, direct: DirectLighting::none(interfaces) }
+        Self { settings, interfaces, sample_lights: true, direct: DirectLighting::none(interfaces) }
     }
 
-    /// Takes the parts of the radiance along a ray that leaves the scene.
-    fn take_escaped(&self, tracer: &mut Tracer, path: &PathState, lambda: &SampledWavelengths) {
-        if tracer.takes_parts() {
-            let (scene, origin) = (tracer.scene, path.origin.as_ref());
-            for (light, l) in self.direct.escaped_from_each(scene, &path.ray, origin, lambda) {
-                tracer.take_part(Some(light), &path.first, path.depth, path.beta * l);
-            }
-        }
+    /// Path tracing through media, without light sampling.
+    pub fn without_light_sampling(max_depth: u32) -> Self {
+        let settings = PathDesc { max_depth, ..PathDesc::default() };
+        Self { sample_lights: false, ..Self::new(settings, Interfaces::Pass) }
     }
 
-    /// Leads a path out of a body under the surface of which it has gone; returns the direct light
-    /// where it leaves, and whether it goes on.
-    pub(crate) fn leave_body(
-        &self,
-        tracer: &mut Tracer,
-        path: &mut PathState,
-        exit: &Exit,
-        lambda: &SampledWavelengths,
-    ) -> (SampledSpectrum, bool) {
-        let context = light_context(&exit.surface, exit.bsdf.flags());
-        let light = self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
-        let l = light.map_or(SampledSpectrum::ZERO, |light| {
-            let l = path.beta * light.l;
-            tracer.take_part(Some(light.light), &path.first, path.depth, l);
-            l
-        });
-        let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
-        if let Some(scattered) = &scattered {
-            path.scatter(&exit.surface, context, scattered);
-        }
-        (l, scattered.is_some())
+    /// Whether paths in a scene fly through media. Without light sampling they choose heroes in
+    /// any scene.
+    pub(crate) fn flies_in(&self, scene: &Scene) -> bool {
+        self.interfaces == Interfaces::Pass && !(self.sample_lights && scene.media().is_empty())
     }
-}
 
-impl PathsFrom for Path {
-    fn li_from(
+    /// The radiance along the ray of paths that scatter at least `min_depth` times.
+    pub(crate) fn li_from(
         &self,
         min_depth: u32,
         tracer: &mut Tracer,
         ray: RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
-        let (scene, direct) = (tracer.scene, &self.direct);
         let mut l = SampledSpectrum::ZERO;
         let mut path = PathState::new(ray, 0);
-        let mut rough_before = false;
+        if self.flies_in(tracer.scene) {
+            path.medium = tracer.view.medium;
+            path.spectral = Some(SpectralMis::new(Heroes::any(tracer.sampler.get_1d())));
+        }
         loop {
-            let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
-                if path.depth >= min_depth {
-                    l += path.beta * direct.escaped(scene, &path.ray, path.origin.as_ref(), lambda);
-                    self.take_escaped(tracer, &path, lambda);
+            let hit = tracer.intersect(&path.ray.ray);
+            let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+            let counts = path.depth >= min_depth;
+            let (emitted, end) = self.fly(tracer, &mut path, t_max, lambda, counts);
+            l += emitted;
+            let (light, goes_on) = match (end, hit) {
+                (FlightEnd::Absorbed, _) => return l,
+                (FlightEnd::Scattered { p, phase, .. }, _) => {
+                    self.scatter_in_medium(tracer, &mut path, (p, phase), lambda)
                 }
-                return l;
-            };
-            if path.depth >= min_depth {
-                let emitted = path.beta * direct.emitted(scene, &surface, path.origin.as_ref(), lambda);
-                tracer.take_part(surface.area_light, &path.first, path.depth, emitted);
-                l += emitted;
-            }
-            let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
-                path.pass_through(&surface, t);
-                continue;
-            };
-            if path.depth == self.settings.max_depth {
-                return l;
-            }
-            path.depth += 1;
-            bsdf.bxdf.keep_boundary();
-            bsdf.regularize(self.settings.regularize && rough_before);
-
-            let context = light_context(&surface, bsdf.flags());
-            let light = match bsdf.flags().is_non_specular() {
-                true => direct.sample(tracer, (&surface, &context), &bsdf, lambda),
-                false => None,
-            };
-            let scattered = Scattered::sample(&surface, &bsdf, tracer.sampler);
-            let is_first = path.depth == 1 && tracer.takes_parts();
-            if let Some(Connection { light, wi, l: found, .. }) = light {
-                let found = path.beta * found;
-                let first = if is_first { event_at(&bsdf, surface.surface.wo, wi) } else { path.first };
-                tracer.take_part(Some(light), &first, path.depth, found);
-                l += found;
-            }
-            let Some(scattered) = scattered else { return l };
-            let body = entered(&bsdf, &surface, &scattered.sample);
-            if is_first {
-                path.first = match body {
-                    Some(_) => DIFFUSE,
-                    None => event_of(&bsdf, surface.surface.wo, &scattered.sample),
-                };
-            }
-            rough_before |= !scattered.sample.flags.is_specular();
-            if let Some(body) = body {
-                let entry = (&surface, context);
-                let Some(exit) = path.go_under(tracer, entry, (body, &scattered), lambda) else {
-                    return l;
-                };
-                let (left, goes_on) = self.leave_body(tracer, &mut path, &exit, lambda);
-                l += left;
-                if !goes_on {
-                    return l;
+                (FlightEnd::Passed, None) if counts => return l + self.escaped(tracer, &path, lambda),
+                (FlightEnd::Passed, None) => return l,
+                (FlightEnd::Passed, Some((surface, t))) => {
+                    if counts {
+                        l += self.emitted(tracer, &path, &surface, lambda);
+                    }
+                    self.scatter(tracer, &mut path, (surface, t), lambda)
                 }
-                rough_before = true;
-            } else {
-                path.scatter(&surface, context, &scattered);
-            }
-            if !path.survives(tracer.sampler) {
+            };
+            l += light;
+            if !goes_on {
                 return l;
             }
         }
+    }
+
+    /// The radiance of infinite lights along the ray of a path that leaves the scene.
+    fn escaped(&self, tracer: &mut Tracer, path: &PathState, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let lights = self.direct.escaped_from_each(tracer.scene, &path.ray, path.origin.as_ref(), lambda);
+        let mut sum = SampledSpectrum::ZERO;
+        for (light, l) in lights {
+            tracer.take_part(Some(light), &path.first, path.depth, path.beta * l);
+            sum += l;
+        }
+        path.beta * sum
+    }
+
+    /// The emission of a surface that a path has hit.
+    pub(crate) fn emitted(
+        &self,
+        tracer: &mut Tracer,
+        path: &PathState,
+        surface: &SurfaceInteraction,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let l = path.beta * self.direct.emitted(tracer.scene, surface, path.origin.as_ref(), lambda);
+        tracer.take_part(surface.area_light, &path.first, path.depth, l);
+        l
+    }
+
+    /// Scatters a path at a surface that it has hit at distance `t`; returns the direct light, and
+    /// whether it goes on.
+    pub(crate) fn scatter(
+        &self,
+        tracer: &mut Tracer,
+        path: &mut PathState,
+        (mut surface, t): (SurfaceInteraction, f32),
+        lambda: &mut SampledWavelengths,
+    ) -> (SampledSpectrum, bool) {
+        let mut l = SampledSpectrum::ZERO;
+        let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
+            path.pass_through(&surface, t);
+            return (l, true);
+        };
+        if path.depth == self.settings.max_depth {
+            return (l, false);
+        }
+        path.depth += 1;
+        if lambda.secondary_terminated() {
+            path.keep_first();
+        }
+        bsdf.bxdf.keep_boundary();
+        bsdf.regularize(self.settings.regularize && path.rough_before);
+
+        let context = light_context(&surface, bsdf.flags());
+        if bsdf.flags().is_non_specular() {
+            l += self.direct(tracer, path, &Vertex::Surface(&surface, &context, &bsdf), lambda);
+        }
+        let Some(scattered) = Scattered::sample(&surface, &bsdf, tracer.sampler) else { return (l, false) };
+        let body = entered(&bsdf, &surface, &scattered.sample);
+        if path.depth == 1 && tracer.takes_parts() {
+            path.first = match body {
+                Some(_) => DIFFUSE,
+                None => event_of(&bsdf, surface.surface.wo, &scattered.sample),
+            };
+        }
+        if let Some(body) = body {
+            let entry = (&surface, context);
+            let Some(exit) = path.go_under(tracer, entry, (body, &scattered), lambda) else {
+                return (l, false);
+            };
+            let context = light_context(&exit.surface, exit.bsdf.flags());
+            l += self.direct(tracer, path, &Vertex::Surface(&exit.surface, &context, &exit.bsdf), lambda);
+            let Some(scattered) = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler) else {
+                return (l, false);
+            };
+            path.scatter(&exit.surface, context, &scattered);
+        } else {
+            path.scatter(&surface, context, &scattered);
+        }
+        (l, self.goes_on(tracer, path))
+    }
+
+    /// Next-event estimation at a vertex.
+    pub(super) fn direct(
+        &self,
+        tracer: &mut Tracer,
+        path: &PathState,
+        vertex: &Vertex,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let black = SampledSpectrum::ZERO;
+        if !self.sample_lights {
+            return black;
+        }
+        let connection = self.direct.connect(tracer, vertex, lambda);
+        let numbers = path.spectral.map_or([0.0; 2], |_| tracer.two_numbers());
+        let Some(light) = connection else { return black };
+        let l = match path.spectral {
+            Some(SpectralMis { heroes, r_u, .. }) => {
+                let medium = vertex.medium_towards(light.wi, path.medium);
+                let shadow = (&light.ray, light.t_max);
+                match tracer.transmittance(shadow, medium, lambda, &heroes, numbers) {
+                    Some(passage) => {
+                        let Connection { l, ratio, .. } = light;
+                        Arrival { l: path.beta * l, r_u, ratio }.through(&passage, &heroes)
+                    }
+                    None => return black,
+                }
+            }
+            None if tracer.occluded(&light.ray, light.t_max, light.interfaces) => return black,
+            None => path.beta * light.weighted(),
+        };
+        if tracer.takes_parts() {
+            let first = match path.first {
+                FirstEvent::None => vertex.event(light.wi),
+                first => first,
+            };
+            tracer.take_part(Some(light.light), &first, path.depth, l);
+        }
+        l
+    }
+
+    /// Lets a path that has been scattered go on, or end by Russian roulette.
+    pub(super) fn goes_on(&self, tracer: &mut Tracer, path: &mut PathState) -> bool {
+        if !self.sample_lights {
+            path.origin = None;
+        }
+        path.survives(tracer.sampler)
     }
 }
 
 impl RayIntegrator for Path {
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
+        if self.sample_lights {
+            self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
+        }
         Ok(())
     }
 

@@ -56,9 +56,8 @@ use chains::{Chains, Targeted};
 use target::{CameraPaths, ConnectedPaths, FilmDomain, Target};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights};
-use crate::camera_paths::PathsFrom;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError, Path, VolPath};
+use crate::{Cancelled, Control, Integrator, PassError, Path, RayIntegrator};
 
 /// Metropolis light transport.
 #[derive(Debug)]
@@ -67,7 +66,7 @@ pub struct Mlt {
     /// For the camera rays of directly visible lights.
     sampler: Sampler,
     /// Path tracing of depth 0, for directly visible lights.
-    seen: Box<dyn PathsFrom>,
+    seen: Path,
     technique: Technique,
     chains: Chains,
 }
@@ -75,30 +74,24 @@ pub struct Mlt {
 /// The algorithm that samples paths, prepared for the scene.
 #[derive(Debug)]
 enum Technique {
-    Path(Box<dyn PathsFrom>),
+    Path(Path),
     Bdpt(Lights),
 }
 
 /// Path tracing up to a depth.
-fn paths(settings: &MltDesc, max_depth: u32, has_media: bool) -> Box<dyn PathsFrom> {
+fn paths(settings: &MltDesc, max_depth: u32) -> Path {
     let settings = PathDesc { max_depth, regularize: settings.regularize, ..PathDesc::default() };
-    if has_media { Box::new(VolPath::new(settings)) } else { Box::new(Path::new(settings, Interfaces::Pass)) }
+    Path::new(settings, Interfaces::Pass)
 }
 
 impl Mlt {
     /// `sampler` is for the camera rays of directly visible lights.
     pub fn new(settings: MltDesc, sampler: Sampler, seed: u32) -> Self {
         let technique = match settings.technique {
-            MltTechnique::Path => Technique::Path(paths(&settings, settings.max_depth, false)),
+            MltTechnique::Path => Technique::Path(paths(&settings, settings.max_depth)),
             MltTechnique::Bdpt => Technique::Bdpt(Lights::none()),
         };
-        Self {
-            settings,
-            sampler,
-            seen: paths(&settings, 0, false),
-            technique,
-            chains: Chains::new(settings, seed),
-        }
+        Self { settings, sampler, seen: paths(&settings, 0), technique, chains: Chains::new(settings, seed) }
     }
 }
 
@@ -112,13 +105,8 @@ impl Integrator for Mlt {
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
-        let has_media = !scene.media().is_empty();
-        self.seen = paths(&self.settings, 0, has_media);
         match &mut self.technique {
-            Technique::Path(path) => {
-                *path = paths(&self.settings, self.settings.max_depth, has_media);
-                path.prepare(scene, view, control)?;
-            }
+            Technique::Path(path) => path.prepare(scene, view, control)?,
             Technique::Bdpt(lights) => *lights = Lights::of(scene, control)?,
         }
         Ok(())
@@ -148,7 +136,7 @@ impl Integrator for Mlt {
             return Ok(stats);
         }
         let target: &dyn Target = match &self.technique {
-            Technique::Path(path) => &CameraPaths { film: domain, path: &**path },
+            Technique::Path(path) => &CameraPaths { film: domain, path },
             Technique::Bdpt(lights) => {
                 let balance = Balance::connecting(domain.area());
                 let light_goes_under = false;

@@ -7,8 +7,8 @@ use scene::ShutterSample;
 use scene::camera::{CameraRayDifferential, CameraSample, FilmPositions};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
+use crate::Path;
 use crate::bidirectional::Bidirectional;
-use crate::camera_paths::PathsFrom;
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::camera_ray;
 
@@ -95,7 +95,7 @@ pub(super) trait Target: Sync {
 /// Path tracing: a camera path with all its contributions.
 pub(super) struct CameraPaths<'a> {
     pub film: FilmDomain,
-    pub path: &'a dyn PathsFrom,
+    pub path: &'a Path,
 }
 
 impl Target for CameraPaths<'_> {

@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use description::LightSamplerDesc;
+use film::FirstEvent;
 use geometry::SurfacePoint;
 use lanes::Real;
 use math::{
@@ -24,6 +25,7 @@ use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
+use super::parts::event_at;
 use super::path_state::Origin;
 use crate::{Cancelled, Control};
 
@@ -118,68 +120,86 @@ impl DirectLighting {
         l * self.weight(scene.light(light), origin, -wo, Some((p.p, n)))
     }
 
-    /// Next-event estimation: direct light that a surface scatters to `wo`; `None` if none arrives.
+    /// Next-event estimation, before its shadow ray is traced; `None` if no light arrives.
     #[doc(alias = "SampleLd")]
-    pub fn sample(
-        &self,
-        tracer: &mut Tracer,
-        vertex: (&SurfaceInteraction, &LightSampleContext),
-        bsdf: &Bsdf<Bxdf>,
-        lambda: &SampledWavelengths,
-    ) -> Option<Connection> {
-        let connection = self.connect(tracer.scene, tracer.sampler, vertex, bsdf, lambda)?;
-        let Connection { ray, t_max, interfaces, .. } = &connection;
-        (!tracer.occluded(ray, *t_max, *interfaces)).then_some(connection)
-    }
-
-    /// Next-event estimation in a medium, before its shadow ray is traced; `None` if no light
-    /// arrives.
-    pub fn connect_medium(
-        &self,
-        scene: &Scene,
-        sampler: &mut Sampler,
-        vertex: &MediumVertex,
-        lambda: &SampledWavelengths,
-    ) -> Option<Connection> {
-        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
-        let (light, pmf) = self.lights.sample(&vertex.context, u)?;
-        let sample = scene.sample_light(light, &vertex.context, u_light, lambda, true)?;
-        let (p_l, p) = (pmf * sample.pdf, vertex.phase.p(vertex.wo, sample.wi));
-        let light = scene.light(light);
-        let weight = if light.is_delta() { 1.0 } else { power_heuristic(p_l, p) };
-        let (ray, t_max) = vertex.shadow_ray(&sample);
-        let l = sample.l * (p * weight / p_l);
-        let interfaces = self.interfaces(light);
-        (!l.is_black()).then_some(Connection { light: light.id(), wi: sample.wi, ray, t_max, interfaces, l })
-    }
-
-    /// [`sample`](Self::sample) before its shadow ray is traced; `None` if no light arrives.
     pub fn connect(
         &self,
-        scene: &Scene,
-        sampler: &mut Sampler,
-        (surface, context): (&SurfaceInteraction, &LightSampleContext),
-        bsdf: &Bsdf<Bxdf>,
+        tracer: &mut Tracer,
+        vertex: &Vertex,
         lambda: &SampledWavelengths,
     ) -> Option<Connection> {
+        let Tracer { scene, sampler, .. } = tracer;
         let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
-        let (light, pmf) = self.lights.sample(context, u)?;
-        let sample = scene.sample_light(light, context, u_light, lambda, true)?;
-        let l = scattered(surface, bsdf, &sample);
+        let (light, pmf) = self.lights.sample(vertex.context(), u)?;
+        let sample = scene.sample_light(light, vertex.context(), u_light, lambda, true)?;
+        let l = vertex.scattered(&sample);
         if l.is_black() {
             return None;
         }
-        let p_l = pmf * sample.pdf;
-        let light = scene.light(light);
-        let l = if light.is_delta() {
-            l / p_l
-        } else {
-            let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
-            l * (power_heuristic(p_l, p_b) / p_l)
-        };
-        let (ray, t_max) = sample.shadow_ray(&surface.surface);
+        let (wi, p_l, light) = (sample.wi, pmf * sample.pdf, scene.light(light));
+        let ratio = if light.is_delta() { 0.0 } else { vertex.pdf(wi) / p_l };
+        let (ray, t_max) = vertex.shadow_ray(&sample);
         let interfaces = self.interfaces(light);
-        Some(Connection { light: light.id(), wi: sample.wi, ray, t_max, interfaces, l })
+        Some(Connection { light: light.id(), wi, ray, t_max, interfaces, l: l / p_l, ratio })
+    }
+}
+
+/// A vertex from which lights are sampled.
+pub(crate) enum Vertex<'a> {
+    /// On a surface.
+    Surface(&'a SurfaceInteraction, &'a LightSampleContext, &'a Bsdf<Bxdf<'a>>),
+    /// In a medium.
+    Medium(&'a MediumVertex),
+}
+
+impl Vertex<'_> {
+    fn context(&self) -> &LightSampleContext {
+        match self {
+            Self::Surface(_, context, _) => context,
+            Self::Medium(vertex) => &vertex.context,
+        }
+    }
+
+    /// The light of a light sample that it scatters to `wo`, without visibility and density.
+    fn scattered(&self, light: &LightLiSample) -> SampledSpectrum {
+        match self {
+            Self::Surface(surface, _, bsdf) => scattered(surface, bsdf, light),
+            Self::Medium(vertex) => light.l * vertex.phase.p(vertex.wo, light.wi),
+        }
+    }
+
+    /// The density with which it scatters paths to `wi`.
+    fn pdf(&self, wi: Vector3) -> f32 {
+        match self {
+            Self::Surface(surface, _, bsdf) => {
+                bsdf.pdf(surface.surface.wo, wi, TransportMode::Radiance, Directions::All)
+            }
+            Self::Medium(vertex) => vertex.phase.p(vertex.wo, wi),
+        }
+    }
+
+    /// The shadow ray to a light sample, and its end.
+    fn shadow_ray(&self, sample: &LightLiSample) -> (Ray, f32) {
+        match self {
+            Self::Surface(surface, ..) => sample.shadow_ray(&surface.surface),
+            Self::Medium(vertex) => vertex.shadow_ray(sample),
+        }
+    }
+
+    /// The medium of a ray that leaves it along `wi`, if the path came in `medium`.
+    pub fn medium_towards(&self, wi: Vector3, medium: Option<MediumId>) -> Option<MediumId> {
+        match self {
+            Self::Surface(surface, ..) => surface.medium_towards(wi, medium),
+            Self::Medium(_) => medium,
+        }
+    }
+
+    /// The event by which it scatters light from `wi`.
+    pub fn event(&self, wi: Vector3) -> FirstEvent {
+        match self {
+            Self::Surface(surface, _, bsdf) => event_at(bsdf, surface.surface.wo, wi),
+            Self::Medium(_) => FirstEvent::Volume,
+        }
     }
 }
 
@@ -223,21 +243,28 @@ pub(crate) struct Connection {
     pub t_max: f32,
     /// Whether interfaces occlude it.
     pub interfaces: Interfaces,
-    /// The light that the vertex scatters if nothing occludes the ray, over its density and
-    /// weighted.
+    /// The light that the vertex scatters if nothing occludes the ray, over its density.
     pub l: SampledSpectrum,
+    /// The density with which scattering finds the light, over the same; 0 where it cannot.
+    pub ratio: f32,
 }
 
 impl Connection {
-    /// The light that arrives through media, if the shadow ray starts in `medium`.
+    /// The light that the vertex scatters, weighted against what scattering finds.
+    pub fn weighted(&self) -> SampledSpectrum {
+        self.l * power_heuristic(1.0, self.ratio)
+    }
+
+    /// The weighted light that arrives through media, if the shadow ray starts in `medium`.
     pub fn arriving(
         self,
         medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        let passed = tracer.transmittance_for(&self.ray, self.t_max, medium, &self.l, lambda);
-        passed.map_or(SampledSpectrum::ZERO, |passed| self.l * passed)
+        let l = self.weighted();
+        let passed = tracer.transmittance_for(&self.ray, self.t_max, medium, &l, lambda);
+        passed.map_or(SampledSpectrum::ZERO, |passed| l * passed)
     }
 }
 
@@ -256,7 +283,15 @@ pub(crate) fn connect_all_in_medium(
         let l = sample.l * (vertex.phase.p(vertex.wo, sample.wi) / sample.pdf);
         if !l.is_black() {
             let (ray, t_max) = vertex.shadow_ray(&sample);
-            connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
+            connect(Connection {
+                light,
+                wi: sample.wi,
+                ray,
+                t_max,
+                interfaces: Interfaces::Pass,
+                l,
+                ratio: 0.0,
+            });
         }
     }
 }
@@ -292,7 +327,15 @@ pub(crate) fn connect_all(
         if !l.is_black() {
             let (ray, t_max) = sample.shadow_ray(&surface.surface);
             let l = l / sample.pdf;
-            connect(Connection { light, wi: sample.wi, ray, t_max, interfaces: Interfaces::Pass, l });
+            connect(Connection {
+                light,
+                wi: sample.wi,
+                ray,
+                t_max,
+                interfaces: Interfaces::Pass,
+                l,
+                ratio: 0.0,
+            });
         }
     }
     around

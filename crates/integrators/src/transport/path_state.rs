@@ -7,15 +7,18 @@ use scattering::{Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
-use spectrum::SampledSpectrum;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use super::Tracer;
+use super::media::{Flight, Heroes, SpectralMis, Throughput};
 use super::roulette;
 
 /// The state of a camera path between two vertices.
 pub(crate) struct PathState {
     /// The ray to the next vertex.
     pub ray: RayDifferential,
-    /// Path throughput β: the product of f·|cos|/p over the vertices.
+    /// Path throughput β: the product of f·|cos|/p over the vertices. Where heroes choose
+    /// collisions, p is the mean of the densities over them.
     pub beta: SampledSpectrum,
     /// Scattering events so far.
     pub depth: u32,
@@ -26,8 +29,12 @@ pub(crate) struct PathState {
     /// The product of η² over the refractions: β times this is without the scaling of radiance by
     /// refraction.
     pub eta_scale: f32,
+    /// Whether an earlier vertex was not specular.
+    pub rough_before: bool,
     /// The event by which it left its first vertex, for layers of parts.
     pub first: FirstEvent,
+    /// For paths that fly through media.
+    pub spectral: Option<SpectralMis>,
 }
 
 /// The vertex that a ray starts at, as a context of light sampling, and the density of the ray's
@@ -71,7 +78,9 @@ impl PathState {
             origin: None,
             medium: None,
             eta_scale: 1.0,
+            rough_before: false,
             first: FirstEvent::None,
+            spectral: None,
         }
     }
 
@@ -89,12 +98,46 @@ impl PathState {
         Scattered { sample, pdf }: &Scattered,
     ) {
         self.beta *= throughput(surface, sample);
-        self.origin = (!sample.flags.is_specular()).then_some(Origin { context, pdf: *pdf });
         if sample.flags.is_transmissive() {
             self.eta_scale *= sample.eta * sample.eta;
         }
         self.medium = surface.medium_towards(sample.wi, self.medium);
-        self.ray = surface.spawn_scattered(&self.ray, sample);
+        let origin = (!sample.flags.is_specular()).then_some(context);
+        self.leave(surface.spawn_scattered(&self.ray, sample), *pdf, origin);
+    }
+
+    /// Leaves a vertex along a ray, in a direction of the density `pdf`; `origin` is the vertex,
+    /// unless it is specular.
+    pub fn leave(&mut self, ray: RayDifferential, pdf: f32, origin: Option<LightSampleContext>) {
+        self.ray = ray;
+        self.rough_before |= origin.is_some();
+        self.origin = origin.map(|context| Origin { context, pdf });
+        if let Some(spectral) = &mut self.spectral {
+            spectral.r_l = spectral.r_u / pdf;
+        }
+    }
+
+    /// Flies up to `t_max` through its medium; `None` without one. The density of the ray's
+    /// direction becomes that over the density with which shadow rays pass the same.
+    #[inline]
+    pub fn fly(&mut self, tracer: &mut Tracer, t_max: f32, lambda: &SampledWavelengths) -> Option<Flight> {
+        let SpectralMis { heroes, r_u, r_l } = self.spectral.as_mut()?;
+        let mut after = Throughput { beta: self.beta, r_u: *r_u, r_l: *r_l };
+        let flight = tracer.fly(self.medium?, &self.ray.ray, t_max, lambda, heroes, &mut after);
+        let density = heroes.mean(after.r_u);
+        self.beta = after.beta / density;
+        if let Some(origin) = &mut self.origin {
+            origin.pdf = density / heroes.mean(after.r_l);
+        }
+        (*r_u, *r_l) = (after.r_u / density, after.r_l / density);
+        Some(flight)
+    }
+
+    /// Goes on with the first wavelength as the only hero, after dispersion.
+    pub fn keep_first(&mut self) {
+        if let Some(spectral) = &mut self.spectral {
+            *spectral = SpectralMis::new(Heroes::first());
+        }
     }
 
     /// Plays Russian roulette; `false` if the path has ended.

@@ -1,8 +1,8 @@
 //! What paths have where there are media.
 //!
-//! Densities are divided by the mean of r_u (see `transport/media/`): β is then the estimate
-//! itself, and the density of a path's ray is 1 over the mean of r_l, so that stages that meet
-//! lights need not know of media.
+//! Densities are divided by the mean of r_u ([`SpectralMis`]): β is then the estimate itself, and
+//! the density of a path's ray is 1 over the mean of r_l, so that stages that meet lights need not
+//! know of media.
 
 use lanes::{Int, Real};
 use math::{Normal3, Point3, Vector3};
@@ -14,8 +14,7 @@ use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Rows};
 use super::spectra::Spectra;
-use crate::camera_paths::PathInMedia;
-use crate::transport::media::Throughput;
+use crate::transport::media::{Heroes, SpectralMis};
 
 /// The media of a scene, as lanes look them up.
 #[derive(Clone, Debug, Default)]
@@ -55,7 +54,7 @@ pub(super) fn medium(number: u32) -> Option<MediumId> {
 pub(super) struct MediaColumns {
     /// The media of the rays, as numbers.
     medium: Vec<u32>,
-    /// As of [`Throughput`].
+    /// As of [`SpectralMis`].
     r_u: Spectra,
     r_l: Spectra,
 }
@@ -81,9 +80,9 @@ impl MediaColumns {
         medium(self.medium[turn])
     }
 
-    /// The weights of a path whose estimate is β.
-    pub fn throughput(&self, turn: usize, beta: SampledSpectrum) -> Throughput {
-        Throughput { beta, r_u: self.r_u.row(turn), r_l: self.r_l.row(turn) }
+    /// The weights of a path that has these heroes.
+    pub fn spectral(&self, turn: usize, heroes: Heroes) -> SpectralMis {
+        SpectralMis { heroes, r_u: self.r_u.row(turn), r_l: self.r_l.row(turn) }
     }
 
     /// Copies a path.
@@ -94,11 +93,10 @@ impl MediaColumns {
     }
 
     /// Changes a path.
-    pub fn set(&mut self, turn: usize, path: &PathInMedia) {
-        let density = path.heroes.mean(path.throughput.r_u);
-        self.medium[turn] = number(path.medium);
-        self.r_u.set_row(turn, path.throughput.r_u / density);
-        self.r_l.set_row(turn, path.throughput.r_l / density);
+    pub fn set(&mut self, turn: usize, medium: Option<MediumId>, spectral: &SpectralMis) {
+        self.medium[turn] = number(medium);
+        self.r_u.set_row(turn, spectral.r_u);
+        self.r_l.set_row(turn, spectral.r_l);
     }
 
     /// The media of paths, and r_u.

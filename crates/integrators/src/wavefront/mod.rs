@@ -26,6 +26,7 @@ mod columns;
 mod emission;
 mod exits;
 mod finish;
+mod flights;
 mod groups;
 mod lights;
 mod lights_in_turn;
@@ -45,7 +46,6 @@ mod shade;
 mod shadows;
 mod spectra;
 mod stage;
-mod vol_path;
 mod whitted;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -79,11 +79,14 @@ pub trait WaveIntegrator: RayIntegrator {
     /// Whether it reads textures, for which camera rays have differentials.
     const READS_TEXTURES: bool = true;
 
-    /// Whether it knows media.
-    const KNOWS_MEDIA: bool = false;
-
-    /// Whether it follows paths under surfaces whose boundaries are shaded in lanes.
+    /// Whether it follows paths under surfaces whose boundaries are shaded in lanes, where it does
+    /// not know media.
     const FOLLOWS_BODIES: bool = false;
+
+    /// Whether it knows media, and a scene has them.
+    fn knows_media(&self, _scene: &Scene) -> bool {
+        false
+    }
 
     /// Continues each active path from its hit: adds light, asks for shadow rays, and gives the
     /// paths that go on their next rays.
@@ -130,7 +133,8 @@ impl<A: WaveIntegrator> Wavefront<A> {
         let control = batch.pass.control;
         let PixelSamples { scene, view, .. } = batch.pass.pixels;
         let with_differentials = A::READS_TEXTURES && scene.needs_footprints(view);
-        batch.begin(&tiles, Besides { differentials: with_differentials, media: A::KNOWS_MEDIA });
+        let media = self.algorithm.knows_media(scene);
+        batch.begin(&tiles, Besides { differentials: with_differentials, media });
         while !batch.columns.segments.rows.is_empty() {
             control.check()?;
             batch.extend();
@@ -138,7 +142,7 @@ impl<A: WaveIntegrator> Wavefront<A> {
             batch.go_on();
             control.check()?;
             batch.connect();
-            if A::KNOWS_MEDIA {
+            if media {
                 batch.connect_through_media();
             }
         }
@@ -154,7 +158,8 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.algorithm.prepare(scene, view, control)?;
-        self.materials = LaneMaterials::new(scene, view, A::FOLLOWS_BODIES);
+        let follows_bodies = A::FOLLOWS_BODIES && !self.algorithm.knows_media(scene);
+        self.materials = LaneMaterials::new(scene, view, follows_bodies);
         self.media = LaneMedia::new(scene);
         self.area_lights = AreaLights::new(scene);
         Ok(())

@@ -4,7 +4,6 @@
 //! is in [`Paths`](super::paths::Paths). So rays are read, and paths written, without gathers and
 //! scatters, which take several times as long.
 
-use film::FirstEvent;
 use geometry::{PatchPoints, RayColumns};
 use lanes::{Each, Int, MAX_LANES, Mask, Real};
 use math::{CameraEnd, Differentials, Point3Error, Ray, RayDifferential, Vec3};
@@ -15,6 +14,7 @@ use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Columns, Rows, fill, grow};
 use super::media::{MediaColumns, SegmentInMedia};
+use super::paths::Paths;
 use super::spectra::Spectra;
 use crate::transport::path_state::{Origin, PathState};
 
@@ -81,8 +81,9 @@ impl Segments {
         self.depth.resize(len, 0);
         fill(&mut self.are_differentials, if besides.differentials { len } else { 0 }, 0);
         self.differentials.grow(self.are_differentials.len());
-        if besides.media {
-            self.media.get_or_insert_default().grow(len);
+        match besides.media {
+            true => self.media.get_or_insert_default().grow(len),
+            false => self.media = None,
         }
     }
 
@@ -118,7 +119,18 @@ impl Segments {
         Ray { camera: self.camera, ..Ray::new(o, d, self.time[turn]) }
     }
 
-    /// A path.
+    /// A path, with what the batch has of it.
+    pub fn path(&self, paths: &Paths, turn: usize) -> PathState {
+        let row = self.rows[turn] as usize;
+        PathState {
+            medium: self.media.as_ref().and_then(|media| media.medium(turn)),
+            rough_before: paths.rough_before[row],
+            spectral: self.media.as_ref().map(|media| media.spectral(turn, paths.heroes(row))),
+            ..self.state(turn)
+        }
+    }
+
+    /// A path without that.
     pub fn state(&self, turn: usize) -> PathState {
         let has_differentials = self.has_differentials(turn as u32);
         let differentials = has_differentials.then(|| differentials_of(self.differentials.row(turn)));
@@ -126,13 +138,10 @@ impl Segments {
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[turn] };
         let pdf = self.pdf[turn];
         PathState {
-            medium: None,
-            ray: RayDifferential { ray: self.ray(turn), differentials },
             beta: self.beta.row(turn),
-            depth: self.depth[turn],
             origin: (pdf > 0.0).then_some(Origin { context, pdf }),
             eta_scale: self.eta_scale[turn],
-            first: FirstEvent::None,
+            ..PathState::new(RayDifferential { ray: self.ray(turn), differentials }, self.depth[turn])
         }
     }
 
@@ -154,6 +163,9 @@ impl Segments {
             let vectors = [context.p.p, context.p.error, context.n, context.ns];
             self.vertex.iter_mut().zip(vectors).for_each(|(columns, v)| columns.set_row(turn, v.to_array()));
         }
+        if let (Some(media), Some(spectral)) = (&mut self.media, &state.spectral) {
+            media.set(turn, state.medium, spectral);
+        }
     }
 
     /// Changes the differentials of a ray.
@@ -169,11 +181,6 @@ impl Segments {
     /// What the paths of an algorithm that knows media have besides.
     pub fn media(&self) -> &MediaColumns {
         self.media.as_ref().expect("invariant: the algorithm knows media")
-    }
-
-    /// The same, to be changed.
-    pub fn media_mut(&mut self) -> &mut MediaColumns {
-        self.media.as_mut().expect("invariant: the algorithm knows media")
     }
 
     /// Appends a path of others.

@@ -1,6 +1,6 @@
 //! Participating media against closed forms: Beer's law, emission, single scattering, furnaces.
 
-use alhazen_integrators::{RayCasting, RayIntegrator, VolPath, Whitted, build};
+use alhazen_integrators::{Path, RayCasting, RayIntegrator, Whitted, build};
 use description::schema::Settings;
 use description::{
     AmbientOcclusionDesc, BdptDesc, CoefficientsDesc, Handle, IntegratorDesc, LightKind, MaterialKind,
@@ -8,7 +8,7 @@ use description::{
     SimpleVolPathDesc, SpectrumDesc, WhittedDesc,
 };
 use math::Point3;
-use scene::Scene;
+use scene::{Interfaces, Scene};
 
 use crate::support::{assert_mean, at, compile, radiance, sphere, v, white_sky};
 
@@ -30,8 +30,8 @@ fn ball(desc: &mut SceneDesc, kind: MediumKind, g: f32, centre: Point3) {
     desc.shapes.push(ShapeDesc { material, medium_interface, ..at(sphere(1.0), centre) });
 }
 
-fn vol_path(max_depth: u32) -> VolPath {
-    VolPath::new(PathDesc { max_depth, ..PathDesc::default() })
+fn vol_path(max_depth: u32) -> Path {
+    Path::new(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass)
 }
 
 /// The radiance along a ray at a distance of 0.6 from the centre of a ball at the origin, of which
@@ -50,7 +50,12 @@ fn absorption_is_beers_law() {
     assert_mean(&past_the_centre(&mut RayCasting, &scene, 10), expected, 1, "ray casting");
     assert_mean(&past_the_centre(&mut Whitted::default(), &scene, 10), expected, 1, "Whitted");
     assert_mean(&past_the_centre(&mut vol_path(5), &scene, 40_000), expected, 2, "vol-path");
-    assert_mean(&past_the_centre(&mut VolPath::simple(5), &scene, 40_000), expected, 2, "simple-vol-path");
+    assert_mean(
+        &past_the_centre(&mut Path::without_light_sampling(5), &scene, 40_000),
+        expected,
+        2,
+        "simple-vol-path",
+    );
 }
 
 #[test]
@@ -78,7 +83,12 @@ fn a_medium_that_does_not_absorb_is_invisible_in_a_furnace() {
         ball(&mut desc, fog(0.0, 2.0, 0.0), g, Point3::ZERO);
         let scene = compile(&desc);
         assert_mean(&past_the_centre(&mut vol_path(1000), &scene, 10_000), 1.0, 6, "vol-path");
-        assert_mean(&past_the_centre(&mut VolPath::simple(1000), &scene, 10_000), 1.0, 6, "simple-vol-path");
+        assert_mean(
+            &past_the_centre(&mut Path::without_light_sampling(1000), &scene, 10_000),
+            1.0,
+            6,
+            "simple-vol-path",
+        );
     }
 }
 

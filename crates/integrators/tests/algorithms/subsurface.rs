@@ -1,6 +1,6 @@
 //! Scattering under surfaces against closed forms, and between algorithms.
 
-use alhazen_integrators::{Path, RayIntegrator, SimplePath, VolPath, build};
+use alhazen_integrators::{Path, RayIntegrator, SimplePath, build};
 use description::{
     BdptDesc, CoefficientsDesc, IntegratorDesc, LightKind, MaterialKind, MediumDesc, MediumInterface,
     MediumKind, PathDesc, RadiosityDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc,
@@ -32,6 +32,23 @@ fn scene(light: impl Fn(&mut SceneDesc), shape: ShapeKind, material: MaterialKin
     compile(&desc)
 }
 
+/// A homogeneous medium.
+fn medium([sigma_a, sigma_s]: [f32; 2], g: f32) -> MediumDesc {
+    let coefficients =
+        CoefficientsDesc::Given { sigma_a: sigma_a.into(), sigma_s: sigma_s.into(), scale: 1.0 };
+    let kind = MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 };
+    MediumDesc { name: "m".into(), kind, world_from_medium: Default::default(), g }
+}
+
+/// The same scene with a medium, which no ray meets, so that paths have heroes from their start.
+fn with_heroes(light: impl Fn(&mut SceneDesc), shape: ShapeKind, material: MaterialKind) -> Scene {
+    let with_medium = |desc: &mut SceneDesc| {
+        light(desc);
+        desc.media.push(medium([1.0; 2], 0.0));
+    };
+    scene(with_medium, shape, material)
+}
+
 fn sun(desc: &mut SceneDesc) {
     let (from, to) = (v(1.0, -2.0, 3.0), Point3::ZERO);
     desc.lights.push(LightKind::Distant { radiance: 1.0.into(), illuminance: None, from, to }.into());
@@ -41,23 +58,20 @@ fn path(max_depth: u32) -> Path {
     Path::new(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass)
 }
 
-fn vol_path(max_depth: u32) -> VolPath {
-    VolPath::new(PathDesc { max_depth, ..PathDesc::default() })
-}
-
 /// The boundary reflects its Fresnel reflectance, and the effective albedo of the rest leaves
 /// again, but for the thousandth that probes do not reach.
 #[test]
 fn a_plane_under_a_white_sky_shows_its_effective_albedo() {
-    let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
-    let scene = scene(white_sky, plane, body(0.6, 0.1, 0.0));
+    let plane = || quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
+    let with_heroes = with_heroes(white_sky, plane(), body(0.6, 0.1, 0.0));
+    let scene = scene(white_sky, plane(), body(0.6, 0.1, 0.0));
     let (o, d) = (v(3.0, 0.0, 2.0), v(-1.5, 0.5, -2.0));
     let reflected = f64::from(fr_dielectric(-d.normalize().z, ETA));
     let expected = reflected + (1.0 - reflected) * 0.6 * 0.999;
     for depth in [1, 5] {
         assert_mean(&radiance(&mut path(depth), &scene, o, d, 20_000), expected, 6, "path");
-        assert_mean(&radiance(&mut vol_path(depth), &scene, o, d, 20_000), expected, 6, "vol-path");
-        let mut simple = VolPath::simple(depth);
+        assert_mean(&radiance(&mut path(depth), &with_heroes, o, d, 20_000), expected, 6, "vol-path");
+        let mut simple = Path::without_light_sampling(depth);
         assert_mean(&radiance(&mut simple, &scene, o, d, 20_000), expected, 6, "simple-vol-path");
     }
 }
@@ -69,9 +83,10 @@ fn of_ball(rays: &mut impl RayIntegrator, scene: &Scene, count: usize) -> Moment
 
 #[test]
 fn algorithms_agree_on_a_ball_in_the_sun() {
+    let with_heroes = with_heroes(sun, sphere(1.0), body(0.8, 0.3, 0.3));
     let scene = scene(sun, sphere(1.0), body(0.8, 0.3, 0.3));
     let of_path = of_ball(&mut path(6), &scene, 60_000);
-    welch_test(&of_path, &of_ball(&mut vol_path(6), &scene, 60_000), 1).unwrap();
+    welch_test(&of_path, &of_ball(&mut path(6), &with_heroes, 60_000), 1).unwrap();
     assert!(of_path.mean > 0.0);
 }
 
@@ -102,28 +117,26 @@ fn walk([sigma_a, sigma_s]: [f32; 2], g: f32, roughness: f32) -> MaterialKind {
 fn a_walk_in_a_ball_is_a_path_through_its_medium() {
     let ([sigma_a, sigma_s], g) = ([0.1, 2.0], 0.4);
     let walked = scene(white_sky, sphere(1.0), walk([sigma_a, sigma_s], g, 0.0));
+    let with_heroes = with_heroes(white_sky, sphere(1.0), walk([sigma_a, sigma_s], g, 0.0));
     let mut desc = SceneDesc::default();
     white_sky(&mut desc);
-    let coefficients =
-        CoefficientsDesc::Given { sigma_a: sigma_a.into(), sigma_s: sigma_s.into(), scale: 1.0 };
-    let kind = MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 };
-    let medium = MediumDesc { name: "m".into(), kind, world_from_medium: Default::default(), g };
-    let inside = Some(desc.media.push(medium));
+    let inside = Some(desc.media.push(medium([sigma_a, sigma_s], g)));
     let boundary = MaterialKind::Dielectric { eta: ETA.into(), roughness: RoughnessDesc::default() };
     let material = Some(desc.materials.push(boundary.into()));
     let medium_interface = Some(MediumInterface { inside, outside: None });
     desc.shapes.push(ShapeDesc { material, medium_interface, ..sphere(1.0).into() });
-    let exact = of_ball(&mut vol_path(400), &compile(&desc), 40_000);
-    for found in [of_ball(&mut path(3), &walked, 40_000), of_ball(&mut vol_path(3), &walked, 40_000)] {
-        welch_test(&found, &exact, 2).unwrap();
+    let exact = of_ball(&mut path(400), &compile(&desc), 40_000);
+    for scene in [walked, with_heroes] {
+        welch_test(&of_ball(&mut path(3), &scene, 40_000), &exact, 2).unwrap();
     }
 }
 
 #[test]
 fn algorithms_agree_on_a_walk_in_the_sun() {
+    let with_heroes = with_heroes(sun, sphere(1.0), walk([0.5, 3.0], 0.0, 0.3));
     let scene = scene(sun, sphere(1.0), walk([0.5, 3.0], 0.0, 0.3));
     let of_path = of_ball(&mut path(6), &scene, 60_000);
-    welch_test(&of_path, &of_ball(&mut vol_path(6), &scene, 60_000), 1).unwrap();
+    welch_test(&of_path, &of_ball(&mut path(6), &with_heroes, 60_000), 1).unwrap();
     assert!(of_path.mean > 0.0);
 }
 

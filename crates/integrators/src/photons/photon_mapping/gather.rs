@@ -35,7 +35,7 @@ use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap, Space};
 use crate::transport::Tracer;
-use crate::transport::direct::{DirectLighting, MediumVertex, light_context};
+use crate::transport::direct::{DirectLighting, MediumVertex, Vertex, light_context};
 use crate::transport::media::FlightEnd;
 use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
 use crate::transport::subsurface::entered;
@@ -239,8 +239,8 @@ impl Gather<'_> {
         let mut l = SampledSpectrum::ZERO;
         if sought == Sought::Radiance && flags.is_non_specular() {
             let context = light_context(surface, flags);
-            let found = self.direct.connect(tracer.scene, tracer.sampler, (surface, &context), bsdf, lambda);
-            if let Some(light) = found {
+            let vertex = Vertex::Surface(surface, &context, bsdf);
+            if let Some(light) = self.direct.connect(tracer, &vertex, lambda) {
                 let medium = surface.medium_towards(light.ray.d, path.medium);
                 l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
             }
@@ -269,7 +269,7 @@ impl Gather<'_> {
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let mut l = SampledSpectrum::ZERO;
-        if let Some(light) = self.direct.connect_medium(tracer.scene, tracer.sampler, vertex, lambda) {
+        if let Some(light) = self.direct.connect(tracer, &Vertex::Medium(vertex), lambda) {
             l += known(path.beta * light.arriving(path.medium, lambda, tracer), lambda);
         }
         l += path.beta * self.scattered(&self.maps.caustic, vertex, path.depth, lambda);

@@ -29,9 +29,9 @@ mod tests;
 mod throughput;
 
 pub(crate) use arrival::Arrival;
-pub(crate) use flight::FlightEnd;
+pub(crate) use flight::{Flight, FlightEnd};
 pub(crate) use passage::Passage;
-pub(crate) use throughput::{Heroes, Throughput};
+pub(crate) use throughput::{Heroes, SpectralMis, Throughput};
 
 use lanes::exp;
 use sampling::{Rng, hash};

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{FlightEnd, Heroes, Throughput};
+use super::{FlightEnd, Heroes, SpectralMis, Throughput};
+use crate::transport::path_state::PathState;
 use crate::{Control, Tracer};
 use description::{
     CoefficientsDesc, ColorSpaceDesc, GridDesc, MediumDesc, MediumKind, SceneDesc, SpectrumDesc, Stated,
@@ -220,18 +221,19 @@ fn the_first_wavelength_goes_on_alone() {
         let [transmittance, ..] = expected(&scene.0, medium, &lambda);
         let twice = [transmittance[0] * transmittance[0]; 4];
         assert_means(name, &scene, [twice], |tracer| {
-            let mut heroes = Heroes::any(tracer.sampler.get_1d());
-            let mut path = Throughput::ONE;
+            let spectral = Some(SpectralMis::new(Heroes::any(tracer.sampler.get_1d())));
+            let path = PathState::new(ray().into(), 0);
+            let mut path = PathState { medium: Some(medium), spectral, ..path };
             for flights in 0..2 {
                 if flights == 1 {
-                    path.keep_first(&mut heroes);
+                    path.keep_first();
                 }
-                let flight = tracer.fly(medium, &ray(), LENGTH, &lambda, &heroes, &mut path);
+                let flight = path.fly(tracer, LENGTH, &lambda).unwrap();
                 if !matches!(flight.end, FlightEnd::Passed) {
                     return [SampledSpectrum::ZERO];
                 }
             }
-            [SampledSpectrum::splat(path.estimate(SampledSpectrum::ONE, &heroes)[0])]
+            [SampledSpectrum::splat(path.beta[0])]
         });
     }
 }

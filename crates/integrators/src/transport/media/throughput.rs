@@ -31,18 +31,25 @@ impl Throughput {
         self.r_l *= by_shadow_rays / sampled;
     }
 
-    /// Goes on with the first wavelength as the hero, and the only one.
-    pub fn keep_first(&mut self, heroes: &mut Heroes) {
-        let density = heroes.mean(self.r_u);
-        self.beta /= density;
-        self.r_l /= density;
-        self.r_u = SampledSpectrum::ONE;
-        *heroes = Heroes::first();
-    }
-
     /// The estimate of light that only this path's own sampling finds.
     pub fn estimate(&self, l: SampledSpectrum, heroes: &Heroes) -> SampledSpectrum {
         self.beta * l / heroes.mean(self.r_u)
+    }
+}
+
+/// What spectral MIS knows of a path between two vertices, whose β is its estimate: densities as in
+/// [`Throughput`], but over the mean of r_u.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpectralMis {
+    pub heroes: Heroes,
+    pub r_u: SampledSpectrum,
+    pub r_l: SampledSpectrum,
+}
+
+impl SpectralMis {
+    /// Of a path that has not flown.
+    pub fn new(heroes: Heroes) -> Self {
+        Self { heroes, r_u: SampledSpectrum::ONE, r_l: SampledSpectrum::ONE }
     }
 }
 

@@ -155,10 +155,21 @@ impl PathState {
         (body, wi): (Body, Vector3),
         lambda: &SampledWavelengths,
     ) -> Option<Left> {
-        let u = tracer.sampler.get_1d();
-        let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
+        let (heroes, r_u) = match &self.spectral {
+            Some(spectral) => (spectral.heroes, spectral.r_u),
+            None => {
+                let u = tracer.sampler.get_1d();
+                let heroes = Heroes::by_throughput(self.beta, lambda.secondary_terminated(), u);
+                (heroes, SampledSpectrum::ONE)
+            }
+        };
         let left = tracer.leave(entry, body, wi, &heroes)?;
-        self.beta *= left.value / heroes.mean(left.density);
+        let density = r_u * left.density;
+        let mean = heroes.mean(density);
+        self.beta *= left.value / mean;
+        if let Some(spectral) = &mut self.spectral {
+            spectral.r_u = density / mean;
+        }
         self.eta_scale /= body.eta() * body.eta();
         Some(left)
     }
