@@ -37,8 +37,8 @@ impl Throughput {
     }
 }
 
-/// What spectral MIS knows of a path between two vertices, whose β is its estimate: densities as in
-/// [`Throughput`], but over the mean of r_u.
+/// The densities of spectral MIS of a path between two vertices, whose β is its estimate: those of
+/// [`Throughput`] over the mean of r_u.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpectralMis {
     pub heroes: Heroes,
