@@ -38,7 +38,7 @@ const MASKED: u32 = 3;
 /// The most pixels of a side.
 const MAX_SIDE: u32 = u16::MAX as u32;
 
-/// What precedes the pixels.
+/// The headers before the pixels.
 struct Header {
     size: [u32; 2],
     is_from_top: bool,

@@ -32,7 +32,7 @@ const ATTRIBUTE_BITS: u8 = 0b1111;
 /// The most pixels of a packet.
 const MAX_PACKED: usize = 128;
 
-/// What precedes the pixels.
+/// The header before the pixels.
 struct Header {
     size: [u16; 2],
     kind: u8,

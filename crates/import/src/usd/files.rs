@@ -87,7 +87,7 @@ impl<'a> Files<'a> {
                         layer::check(&bytes).map_err(invalid)?;
                         Ok(bytes)
                     });
-                    // What is refused unread is not parsed to find its faults, either.
+                    // A file refused unread is not parsed to find its faults, either.
                     if checked.is_ok() {
                         lock(&self.layers).push(name);
                     }

@@ -250,6 +250,11 @@ pub(crate) struct Connection {
 }
 
 impl Connection {
+    /// To a light that scattering does not look for; interfaces let its shadow ray pass.
+    fn unweighted((light, wi): (LightId, Vector3), (ray, t_max): (Ray, f32), l: SampledSpectrum) -> Self {
+        Self { light, wi, ray, t_max, interfaces: Interfaces::Pass, l, ratio: 0.0 }
+    }
+
     /// The light that the vertex scatters, weighted against what scattering finds.
     pub fn weighted(&self) -> SampledSpectrum {
         self.l * power_heuristic(1.0, self.ratio)
@@ -283,15 +288,7 @@ pub(crate) fn connect_all_in_medium(
         let l = sample.l * (vertex.phase.p(vertex.wo, sample.wi) / sample.pdf);
         if !l.is_black() {
             let (ray, t_max) = vertex.shadow_ray(&sample);
-            connect(Connection {
-                light,
-                wi: sample.wi,
-                ray,
-                t_max,
-                interfaces: Interfaces::Pass,
-                l,
-                ratio: 0.0,
-            });
+            connect(Connection::unweighted((light, sample.wi), (ray, t_max), l));
         }
     }
 }
@@ -327,15 +324,7 @@ pub(crate) fn connect_all(
         if !l.is_black() {
             let (ray, t_max) = sample.shadow_ray(&surface.surface);
             let l = l / sample.pdf;
-            connect(Connection {
-                light,
-                wi: sample.wi,
-                ray,
-                t_max,
-                interfaces: Interfaces::Pass,
-                l,
-                ratio: 0.0,
-            });
+            connect(Connection::unweighted((light, sample.wi), (ray, t_max), l));
         }
     }
     around

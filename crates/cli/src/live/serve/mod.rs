@@ -89,7 +89,7 @@ impl Server {
         Ok(server)
     }
 
-    /// What a browser opens.
+    /// The address that a browser opens.
     pub fn url(&self) -> &str {
         &self.url
     }
