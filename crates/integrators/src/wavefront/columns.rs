@@ -70,17 +70,21 @@ impl<const C: usize> Columns<C> {
     }
 
     /// A row.
+    #[inline]
     pub fn row(&self, row: usize) -> [f32; C] {
         let mut values = [0.0; C];
-        for (value, column) in values.iter_mut().zip(&self.0) {
-            *value = column[row];
+        for (c, value) in values.iter_mut().enumerate() {
+            *value = self.0[c][row];
         }
         values
     }
 
     /// Changes a row.
+    #[inline]
     pub fn set_row(&mut self, row: usize, values: [f32; C]) {
-        self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
+        for (c, value) in values.into_iter().enumerate() {
+            self.0[c][row] = value;
+        }
     }
 
     /// Changes successive rows.
@@ -112,6 +116,7 @@ impl<const C: usize> Columns<C> {
 
 impl Columns<3> {
     /// The columns.
+    #[inline]
     pub fn slices(&self) -> [&[f32]; 3] {
         let [x, y, z] = &self.0;
         [x, y, z]

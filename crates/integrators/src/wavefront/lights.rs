@@ -159,9 +159,10 @@ impl Samples {
     }
 
     /// Sets numbers of one lane.
+    #[inline]
     fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
-        for (column, &value) in self.columns[first..].iter_mut().zip(values) {
-            column[lane] = value;
+        for (i, &value) in values.iter().enumerate() {
+            self.columns[first + i][lane] = value;
         }
     }
 }
@@ -301,7 +302,9 @@ impl Sample<'_, '_> {
         let passes = self.direct.interfaces(light) == Interfaces::Pass;
         let is = [true, light.is_delta(), p.is_none(), passes];
         let samples = &mut *self.samples;
-        samples.masks.iter_mut().zip(is).for_each(|(mask, is)| *mask |= if is { bit } else { 0 });
+        for (i, is) in is.into_iter().enumerate() {
+            samples.masks[i] |= if is { bit } else { 0 };
+        }
         samples.set(lane, 0, &l.0);
         samples.set(lane, Samples::WI, &wi.to_array());
         samples.set(lane, Samples::PDF, &[pdf]);

@@ -85,6 +85,7 @@ impl Paths {
     }
 
     /// The pixel of a path.
+    #[inline]
     pub fn pixel(&self, row: usize) -> [i32; 2] {
         self.pixels[row].each(|x| x as i32)
     }
@@ -96,6 +97,7 @@ impl Paths {
     }
 
     /// Lets a sampler go on with a path, at the sample of an index.
+    #[inline]
     pub fn resume(&self, sampler: &mut Sampler, row: usize, index: u32) {
         sampler.start_pixel_sample(self.pixel(row), index, self.dimension[row]);
     }
@@ -123,12 +125,14 @@ impl Paths {
     }
 
     /// The wavelengths of a path.
+    #[inline]
     pub fn lambda(&self, row: usize) -> SampledWavelengths {
         let [lambda, pdf] = &self.wavelengths;
         SampledWavelengths::new(lambda.row(row).0, pdf.row(row).0)
     }
 
     /// Changes the wavelengths of a path.
+    #[inline]
     pub fn set_lambda(&mut self, row: usize, wavelengths: &SampledWavelengths) {
         let [lambda, pdf] = &mut self.wavelengths;
         lambda.set_row(row, SampledSpectrum(*wavelengths.lambda()));
@@ -143,6 +147,7 @@ impl Paths {
     }
 
     /// The wavelengths of a path that choose collisions with media.
+    #[inline]
     pub fn heroes(&self, row: usize) -> Heroes {
         if self.lambda(row).secondary_terminated() {
             Heroes::first()

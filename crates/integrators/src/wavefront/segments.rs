@@ -120,6 +120,7 @@ impl Segments {
     }
 
     /// A path, with what the batch has of it.
+    #[inline]
     pub fn path(&self, paths: &Paths, turn: usize) -> PathState {
         let row = self.rows[turn] as usize;
         PathState {
@@ -131,6 +132,7 @@ impl Segments {
     }
 
     /// A path without that.
+    #[inline]
     pub fn state(&self, turn: usize) -> PathState {
         let has_differentials = self.has_differentials(turn as u32);
         let differentials = has_differentials.then(|| differentials_of(self.differentials.row(turn)));
@@ -169,6 +171,7 @@ impl Segments {
     }
 
     /// Changes the differentials of a ray.
+    #[inline]
     pub fn set_differentials(&mut self, turn: usize, differentials: Option<&Differentials>) {
         if let Some(is) = self.are_differentials.get_mut(turn) {
             *is = differentials.is_some().into();
@@ -179,6 +182,7 @@ impl Segments {
     }
 
     /// What the paths of an algorithm that knows media have besides.
+    #[inline]
     pub fn media(&self) -> &MediaColumns {
         self.media.as_ref().expect("invariant: the algorithm knows media")
     }

@@ -17,6 +17,7 @@ pub(crate) struct Arrival {
 
 impl Arrival {
     /// The light after a passage, weighted against that of scattering.
+    #[inline]
     pub fn through(&self, passage: &Passage, heroes: &Heroes) -> SampledSpectrum {
         let by_light = heroes.mean(self.r_u * passage.r_l);
         let by_scattering = heroes.mean(self.r_u * passage.r_u) * self.ratio;

@@ -41,11 +41,13 @@ use super::Tracer;
 
 impl Tracer<'_> {
     /// The random numbers of a flight.
+    #[inline]
     pub(super) fn collisions(&mut self) -> (f32, Rng) {
         collisions(self.two_numbers())
     }
 
     /// The coordinates of the sample that a flight or shadow ray takes.
+    #[inline]
     pub(crate) fn two_numbers(&mut self) -> [f32; 2] {
         [self.sampler.get_1d(), self.sampler.get_1d()]
     }
@@ -53,11 +55,13 @@ impl Tracer<'_> {
 
 /// The random numbers of a flight or shadow ray: the first is a coordinate of the sample, the
 /// others follow from two of them.
+#[inline]
 fn collisions([first, seed]: [f32; 2]) -> (f32, Rng) {
     (first, Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])))
 }
 
 /// exp(−σ·d).
+#[inline]
 pub(super) fn attenuation(sigma: SampledSpectrum, distance: f32) -> SampledSpectrum {
     sigma.map(|sigma| exp(-sigma * distance))
 }

@@ -29,12 +29,14 @@ impl Passage {
         Self { t: SampledSpectrum::ONE, r_u: SampledSpectrum::ONE, r_l: SampledSpectrum::ONE };
 
     /// The transmittance, weighted over the wavelengths that could have chosen the collisions.
+    #[inline]
     pub fn estimate(&self, heroes: &Heroes) -> SampledSpectrum {
         self.t / heroes.mean(self.r_l)
     }
 
     /// Passes null collisions or empty distance: `null` is the factor of flights, `all` that of
     /// ratio tracking.
+    #[inline]
     fn scale(&mut self, null: SampledSpectrum, all: SampledSpectrum) {
         self.t *= null;
         self.r_u *= null;
@@ -63,6 +65,7 @@ impl Tracer<'_> {
     }
 
     /// [`transmittance`](Self::transmittance) of a ray that meets neither surfaces nor interfaces.
+    #[inline]
     pub(crate) fn transmittance_within(
         &mut self,
         (ray, t_max): (&Ray, f32),
@@ -82,6 +85,7 @@ impl Tracer<'_> {
     }
 
     /// [`transmittance`](Self::transmittance) in a scene with media.
+    #[inline]
     fn passage(
         &mut self,
         (ray, t_max): (&Ray, f32),
@@ -141,6 +145,7 @@ impl Tracer<'_> {
 
     /// The transmittance of one medium along a ray of unit direction that carries `l`; `None` if
     /// nothing is left.
+    #[inline]
     pub(crate) fn attenuation(
         &mut self,
         medium: MediumId,
@@ -158,6 +163,7 @@ impl Tracer<'_> {
     }
 
     /// Multiplies the transmittance of a part of a ray; `None` if nothing is left.
+    #[inline]
     fn attenuate(
         &mut self,
         medium: &Medium,

@@ -20,6 +20,7 @@ impl Throughput {
 
     /// Passes a distance with the given transmittance, with the density `sampled`. Shadow rays pass
     /// it with the density `by_shadow_rays`.
+    #[inline]
     pub(super) fn pass(
         &mut self,
         transmittance: SampledSpectrum,
@@ -32,6 +33,7 @@ impl Throughput {
     }
 
     /// The estimate of light that only this path's own sampling finds.
+    #[inline]
     pub fn estimate(&self, l: SampledSpectrum, heroes: &Heroes) -> SampledSpectrum {
         self.beta * l / heroes.mean(self.r_u)
     }
@@ -101,6 +103,7 @@ impl Heroes {
     }
 
     /// The mean of densities over the wavelengths that could have chosen the path.
+    #[inline]
     pub fn mean(&self, densities: SampledSpectrum) -> f32 {
         (densities * self.probabilities).average() * spectrum::N as f32
     }
