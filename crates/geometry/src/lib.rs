@@ -37,7 +37,7 @@ pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
-    AcceptAll, Filter, Geometry, GeometryId, GroupId, Hit, HitColumns, Instance, InstanceId, InstancePath,
-    PlainChild, PlainItem, PlainTree, PlainTriangle, PointColumns, RayBuffer, RayColumns, RayStats,
-    RefitError, World, WorldBuilder,
+    Filter, Geometry, GeometryId, GroupId, Hit, HitColumns, Instance, InstanceId, InstancePath, PlainChild,
+    PlainItem, PlainTree, PlainTriangle, PointColumns, RayBuffer, RayColumns, RayStats, RefitError, World,
+    WorldBuilder,
 };

@@ -127,9 +127,9 @@ impl InstructionSet {
     }
 
     /// Runs a task with it; with `Scalar` instead of `Portable`, because the vectors that tasks
-    /// name are arrays in both, and each set is one more copy of the ray engine. Builds that need
-    /// AVX2 have the sets below it only with assertions, for tests; without, AVX2 stands in, with
-    /// the same results.
+    /// name are arrays in both, and each set is one more copy of the ray engine. In builds that need
+    /// AVX2, that set stands in for those below it where a task is not compiled for
+    /// [every set](Task::EVERY_SET).
     ///
     /// # Safety
     /// The processor must have it.
@@ -141,7 +141,7 @@ impl InstructionSet {
                 #[cfg(target_arch = "x86_64")]
                 Self::Avx512 => avx512::run(task),
                 #[cfg(target_arch = "x86_64")]
-                _ if cfg!(target_feature = "avx2") && !cfg!(debug_assertions) => avx2::run(task),
+                _ if const { cfg!(target_feature = "avx2") && !T::EVERY_SET } => avx2::run(task),
                 #[cfg(target_arch = "x86_64")]
                 Self::Avx2 => avx2::run(task),
                 #[cfg(target_arch = "x86_64")]

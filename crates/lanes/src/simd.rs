@@ -102,6 +102,10 @@ pub trait Task {
     /// The result.
     type Output;
 
+    /// Whether builds that need AVX2 have it for the sets below, too. Where they have not, AVX2
+    /// stands in, with the same results.
+    const EVERY_SET: bool = cfg!(debug_assertions);
+
     /// Computes it. This and everything it calls must be `#[inline(always)]`: a function that is
     /// called instead is compiled without the instruction set.
     ///

@@ -146,6 +146,8 @@ struct TraceFew<'a, Q> {
 }
 
 impl<Q: Query> Task for TraceFew<'_, Q> {
+    const EVERY_SET: bool = Q::EVERY_SET;
+
     /// Whether they are coherent.
     type Output = bool;
 

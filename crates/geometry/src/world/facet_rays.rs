@@ -25,6 +25,8 @@ pub(super) struct FacetRay<'a, Q> {
 }
 
 impl<Q: Query> Task for FacetRay<'_, Q> {
+    const EVERY_SET: bool = Q::EVERY_SET;
+
     type Output = ();
 
     #[inline(always)]
@@ -289,6 +291,8 @@ impl FoundArrays {
 pub(super) struct NearestHits<'a, 'b, F>(pub FacetRays<'a, F>, pub &'b mut HitColumns);
 
 impl<F: Filter> Task for NearestHits<'_, '_, F> {
+    const EVERY_SET: bool = F::EVERY_SET;
+
     type Output = ();
 
     #[inline(always)]
@@ -314,6 +318,8 @@ fn nearest<R: Real, F: Filter>(rays: &FacetRays<F>, hits: &mut HitColumns) {
 pub(super) struct AnyHits<'a, 'b, F>(pub FacetRays<'a, F>, pub &'b mut [bool]);
 
 impl<F: Filter> Task for AnyHits<'_, '_, F> {
+    const EVERY_SET: bool = F::EVERY_SET;
+
     type Output = ();
 
     #[inline(always)]

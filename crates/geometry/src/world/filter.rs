@@ -6,6 +6,10 @@ use math::Ray;
 
 /// Accepts or rejects hits, always in the same way. A closure is a filter that may reject any.
 pub trait Filter {
+    /// Whether rays with this filter are traced by [every set](lanes::Task::EVERY_SET): what tests
+    /// compare.
+    const EVERY_SET: bool = false;
+
     /// Whether a hit counts.
     fn accepts(&self, hit: &Hit, ray: &Ray) -> bool;
 
@@ -22,21 +26,5 @@ impl<F: Fn(&Hit, &Ray) -> bool> Filter for F {
     #[inline(always)]
     fn concerns(&self, _: GeometryId) -> bool {
         true
-    }
-}
-
-/// The filter that accepts all hits.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AcceptAll;
-
-impl Filter for AcceptAll {
-    #[inline(always)]
-    fn accepts(&self, _: &Hit, _: &Ray) -> bool {
-        true
-    }
-
-    #[inline(always)]
-    fn concerns(&self, _: GeometryId) -> bool {
-        false
     }
 }

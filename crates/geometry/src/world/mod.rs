@@ -42,7 +42,7 @@ use trace::Trace;
 
 pub use builder::WorldBuilder;
 pub use columns::{HitColumns, RayBuffer, RayColumns};
-pub use filter::{AcceptAll, Filter};
+pub use filter::Filter;
 pub use geometry::{Geometry, GeometryId};
 pub use hit::Hit;
 pub use instance::{GroupId, Instance, InstanceId, InstancePath};

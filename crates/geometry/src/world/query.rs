@@ -12,6 +12,9 @@ pub(super) trait Query {
     /// Whether any hit answers the query, not only the nearest.
     const ANY: bool;
 
+    /// [`Filter::EVERY_SET`].
+    const EVERY_SET: bool;
+
     /// Whether the query is finished.
     fn is_answered(&self) -> bool;
 
@@ -64,6 +67,8 @@ impl<'a, F: Filter> Nearest<'a, F> {
 
 impl<F: Filter> Query for Nearest<'_, F> {
     const ANY: bool = false;
+
+    const EVERY_SET: bool = F::EVERY_SET;
 
     type Answer = Option<Hit>;
 
@@ -121,6 +126,8 @@ impl<'a, F: Filter> Any<'a, F> {
 
 impl<F: Filter> Query for Any<'_, F> {
     const ANY: bool = true;
+
+    const EVERY_SET: bool = F::EVERY_SET;
 
     type Answer = bool;
 

@@ -165,6 +165,8 @@ struct TraceTriangles<'a, 'b, Q> {
 }
 
 impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
+    const EVERY_SET: bool = Q::EVERY_SET;
+
     type Output = (u64, u64, bool);
 
     #[inline(always)]
@@ -338,6 +340,8 @@ struct TraceItems<'a, 'b, Q> {
 }
 
 impl<Q: Query> Task for TraceItems<'_, '_, Q> {
+    const EVERY_SET: bool = Q::EVERY_SET;
+
     type Output = (u64, bool);
 
     #[inline(always)]
@@ -389,6 +393,8 @@ struct TraceSpheres<'a, 'b, Q> {
 }
 
 impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
+    const EVERY_SET: bool = Q::EVERY_SET;
+
     type Output = (u64, u64, bool);
 
     #[inline(always)]

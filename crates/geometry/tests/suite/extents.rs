@@ -48,7 +48,7 @@ fn brute_force_finds_the_same_hits() {
         let (with, without) = (builder.clone().build(), builder.extents(false).build());
         let [mut fewer, mut all] = [RayStats::default(); 2];
         // A filter rejects some candidates.
-        let filter = Accepts(&|hit| !hit.primitive.is_multiple_of(7));
+        let filter = Accepts::Some(&|hit| !hit.primitive.is_multiple_of(7));
         for _ in 0..300 {
             let ray = Ray::new(point_in(rng, 3.0), direction(rng), rng.uniform_f32());
             let t_max = if rng.uniform_f32() < 0.3 { between(rng, 0.0, 3.0) } else { f32::INFINITY };

@@ -69,8 +69,8 @@ fn hits_are_those_of_the_shapes() {
                         }
                     }
                 }
-                let hit = world.intersect(&ray, t_max, &AcceptAll, &mut RayStats::default());
-                let occluded = world.occluded(&ray, t_max, &AcceptAll, &mut RayStats::default());
+                let hit = world.intersect(&ray, t_max, &Accepts::All, &mut RayStats::default());
+                let occluded = world.occluded(&ray, t_max, &Accepts::All, &mut RayStats::default());
                 assert_eq!(hit.is_some(), expected.is_some(), "{ray:?} {hit:?} {expected:?}");
                 assert_eq!(occluded, expected.is_some(), "{ray:?}");
                 let (Some(hit), Some((t, geometry, primitive))) = (hit, expected) else { continue };
@@ -94,7 +94,8 @@ fn parameters_are_those_of_the_hit_point() {
         let geometries = few(rng);
         let world = world(geometries.clone());
         for ray in rays(rng, &geometries, 1000) {
-            let Some(hit) = world.intersect(&ray, f32::INFINITY, &AcceptAll, &mut RayStats::default()) else {
+            let Some(hit) = world.intersect(&ray, f32::INFINITY, &Accepts::All, &mut RayStats::default())
+            else {
                 continue;
             };
             let surface = world.surface(&ray, &hit);
@@ -121,7 +122,7 @@ fn rays_do_not_hit_the_surface_that_they_leave() {
             left.push((hit.geometry.0, hit.primitive));
         }
         let mut hits = HitColumns::default();
-        world.intersect_batch(spawned.columns(), &AcceptAll, &mut hits, &mut RayStats::default());
+        world.intersect_batch(spawned.columns(), &Accepts::All, &mut hits, &mut RayStats::default());
         for (place, left) in left.into_iter().enumerate() {
             let Some(hit) = hits.get(place) else { continue };
             // A curved patch can be hit again from its hollow side.
@@ -149,7 +150,7 @@ fn turned_boxes_are_closed() {
             }
         }
         let mut occluded = vec![false; rays.columns().len()];
-        world.occluded_batch(rays.columns(), &AcceptAll, &mut occluded, &mut RayStats::default());
+        world.occluded_batch(rays.columns(), &Accepts::All, &mut occluded, &mut RayStats::default());
         assert!(!occluded.contains(&false));
     }
 }
@@ -158,7 +159,7 @@ fn turned_boxes_are_closed() {
 #[test]
 fn batches_and_instruction_sets_agree() {
     let rng = &mut Rng::new(5, 0);
-    let most = Accepts(&|hit| !(hit.geometry.0 + hit.primitive).is_multiple_of(5));
+    let most = Accepts::Some(&|hit| !(hit.geometry.0 + hit.primitive).is_multiple_of(5));
     for _ in 0..5 {
         let geometries = few(rng);
         let rays: Vec<(Ray, f32)> = rays(rng, &geometries, 2003)
@@ -167,28 +168,22 @@ fn batches_and_instruction_sets_agree() {
             .collect();
         let batch: RayBuffer = rays.iter().copied().collect();
         let mut world = world(geometries);
-        let expected: Vec<_> = rays.iter().map(|(ray, t)| alone(&world, ray, *t, &AcceptAll)).collect();
+        let expected: Vec<_> = rays.iter().map(|(ray, t)| alone(&world, ray, *t, &Accepts::All)).collect();
         let filtered: Vec<_> = rays.iter().map(|(ray, t)| alone(&world, ray, *t, &most)).collect();
         assert_ne!(expected, filtered);
         for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
             world.set_instruction_set(set);
-            check(&world, &rays, &batch, &AcceptAll, &expected);
+            check(&world, &rays, &batch, &Accepts::All, &expected);
             check(&world, &rays, &batch, &most, &filtered);
         }
     }
 }
 
-fn alone(world: &World, ray: &Ray, t_max: f32, filter: &impl Filter) -> Option<Hit> {
+fn alone(world: &World, ray: &Ray, t_max: f32, filter: &Accepts) -> Option<Hit> {
     world.intersect(ray, t_max, filter, &mut RayStats::default())
 }
 
-fn check(
-    world: &World,
-    rays: &[(Ray, f32)],
-    batch: &RayBuffer,
-    filter: &impl Filter,
-    expected: &[Option<Hit>],
-) {
+fn check(world: &World, rays: &[(Ray, f32)], batch: &RayBuffer, filter: &Accepts, expected: &[Option<Hit>]) {
     let stats = &mut RayStats::default();
     let mut hits = HitColumns::default();
     world.intersect_batch(batch.columns(), filter, &mut hits, stats);

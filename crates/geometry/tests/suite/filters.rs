@@ -25,7 +25,7 @@ fn bodies(m: &Transform) -> Vec<(&'static str, Geometry)> {
 /// All hits along a ray, by a filter that rejects each of them.
 fn hits(world: &World, ray: &Ray, t_max: f32) -> Vec<f32> {
     let found = RefCell::new(Vec::new());
-    let reject = Accepts(&|hit| {
+    let reject = Accepts::Some(&|hit| {
         found.borrow_mut().push(hit.t);
         false
     });
@@ -63,7 +63,7 @@ fn rejected_hits_do_not_hide_others() {
             most = most.max(there.len());
             twice += (there.len() > 1) as i32;
             for &t in &there {
-                let only = Accepts(&|hit| hit.t == t);
+                let only = Accepts::Some(&|hit| hit.t == t);
                 let stats = &mut RayStats::default();
                 assert_eq!(world.intersect(&ray, 1.0, &only, stats).map(|hit| hit.t), Some(t), "{name}");
                 assert!(world.occluded(&ray, 1.0, &only, stats), "{name}");

@@ -158,7 +158,7 @@ fn batches_call_filters() {
         )
         .into()
     };
-    let below_four = Accepts(&|hit| hit.geometry.0 < 4);
+    let below_four = Accepts::Some(&|hit| hit.geometry.0 < 4);
     let rays: RayBuffer = (0..64)
         .map(|i| (Ray::new(Vec3::Z * 20.0, Vec3::new(i as f32 * 1e-3, 0.01, -1.0), 0.0), 40.0))
         .collect();
@@ -169,7 +169,7 @@ fn batches_call_filters() {
         let mut occluded = vec![false; 64];
         world.occluded_batch(
             rays.columns(),
-            &Accepts(&|hit| hit.geometry.0 > 9),
+            &Accepts::Some(&|hit| hit.geometry.0 > 9),
             &mut occluded,
             &mut RayStats::default(),
         );

@@ -38,7 +38,7 @@ fn compare(world: &World, rng: &mut Rng) -> usize {
         (0..5003).map(|_| (Ray::new(point_in(rng, 3.0), direction(rng), 0.0), f32::INFINITY)).collect();
     let rays = rays.columns();
     let mut hits = HitColumns::default();
-    world.intersect_batch(rays, &AcceptAll, &mut hits, &mut RayStats::default());
+    world.intersect_batch(rays, &Accepts::All, &mut hits, &mut RayStats::default());
     let places: Vec<u32> =
         (0..rays.len() as u32).rev().filter(|&place| hits.get(place as usize).is_some()).collect();
     let mut points = PointColumns::default();
@@ -117,7 +117,7 @@ fn spheres_of_sets() {
     rays.push(&Ray::new(Vec3::new(2.5, 0.0, 30.0), -Vec3::Z, 0.0), f32::INFINITY);
     let rays = rays.columns();
     let mut hits = HitColumns::default();
-    world.intersect_batch(rays, &AcceptAll, &mut hits, &mut RayStats::default());
+    world.intersect_batch(rays, &Accepts::All, &mut hits, &mut RayStats::default());
     let is_hit = |place: &u32| hits.get(*place as usize).is_some();
     let places: Vec<u32> = (0..rays.len() as u32).rev().filter(is_hit).collect();
     let mut points = PointColumns::default();

@@ -36,7 +36,7 @@ fn points(unit: f32, are_few: bool) -> Vec<Option<(Hit, SurfacePoint, [Vec3; 5])
         .collect();
     let rays = rays.columns();
     let mut hits = HitColumns::default();
-    world.intersect_batch(rays, &AcceptAll, &mut hits, &mut RayStats::default());
+    world.intersect_batch(rays, &Accepts::All, &mut hits, &mut RayStats::default());
     let places: Vec<u32> = (0..rays.len() as u32).filter(|&i| hits.get(i as usize).is_some()).collect();
     let mut points = PointColumns::default();
     world.points(rays, &hits, &places, &mut points);

@@ -285,7 +285,7 @@ fn spheres_that_have_moved_are_hit_as_in_a_new_world_and_by_brute_force() {
         for _ in 0..1500 {
             let ray = Ray::new(point_in(rng, 3.0), direction(rng), 0.0);
             let hit = |world: &World| {
-                let hit = world.intersect(&ray, f32::INFINITY, &AcceptAll, &mut RayStats::default());
+                let hit = world.intersect(&ray, f32::INFINITY, &Accepts::All, &mut RayStats::default());
                 hit.map(|hit| (hit.t, hit.primitive as usize))
             };
             assert_eq!(hit(&world), hit(&new));

@@ -169,7 +169,7 @@ fn rejected_candidates_are_passed_through() {
         .collect();
     let world = world(layers);
     let ray = Ray::new(Vec3::new(0.1, 0.1, 20.0), -Vec3::Z, 0.0);
-    let below_four = Accepts(&|hit| hit.geometry.0 < 4);
+    let below_four = Accepts::Some(&|hit| hit.geometry.0 < 4);
     let hit = world.intersect(&ray, f32::INFINITY, &below_four, &mut RayStats::default());
     assert_eq!(hit.map(|hit| hit.geometry), Some(GeometryId(3)));
     assert!(!world.occluded(&ray, 16.5, &below_four, &mut RayStats::default()));

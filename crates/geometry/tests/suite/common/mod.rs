@@ -22,21 +22,29 @@ pub fn direction(rng: &mut Rng) -> Vec3 {
     sample_uniform_sphere(uniform_2d(rng))
 }
 
-/// A filter that may reject any hit. All filters of tests have this type, since each type is one
-/// more copy of the ray engine to compile.
-pub struct Accepts<'a>(pub &'a dyn Fn(&Hit) -> bool);
+/// A filter that may reject any hit, or accepts all unasked. All filters of tests have this type,
+/// since each type is one more copy of the ray engine to compile, for each instruction set.
+pub enum Accepts<'a> {
+    All,
+    Some(&'a dyn Fn(&Hit) -> bool),
+}
 
 impl Filter for Accepts<'_> {
+    const EVERY_SET: bool = true;
+
     fn accepts(&self, hit: &Hit, _: &Ray) -> bool {
-        self.0(hit)
+        match self {
+            Self::All => true,
+            Self::Some(accepts) => accepts(hit),
+        }
     }
 
     fn concerns(&self, _: GeometryId) -> bool {
-        true
+        matches!(self, Self::Some(_))
     }
 }
 
-pub const KEEP_ALL: Accepts = Accepts(&|_| true);
+pub const KEEP_ALL: Accepts = Accepts::Some(&|_| true);
 
 pub fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>, transform: &Transform) -> TriangleMesh {
     TriangleMesh::new(positions.into(), indices.into(), MeshAttributes::default(), transform, false)
