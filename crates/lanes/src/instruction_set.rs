@@ -127,8 +127,8 @@ impl InstructionSet {
     }
 
     /// Runs a task with it; with `Scalar` instead of `Portable`, because the vectors that tasks
-    /// name are arrays in both, and each set is one more copy of the ray engine. In builds that need
-    /// AVX2, that set stands in for those below it where a task is not compiled for
+    /// name are arrays in both, and each set is one more copy of the ray engine. In builds that
+    /// need AVX2, that set stands in for those below it where a task is not compiled for
     /// [every set](Task::EVERY_SET).
     ///
     /// # Safety

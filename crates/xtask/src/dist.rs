@@ -54,8 +54,10 @@ pub fn run(root: &Path, arguments: &[&str]) -> Result<(), String> {
     io(&folder, || assemble(root, &folder, &program))?;
     describe(&own, &folder)?;
 
-    let archive = format!("{name}.tar.gz");
-    succeed(Command::new("tar").current_dir(&packages).args(["-czf", &archive, &name]))?;
+    // Windows' own tar knows no xz, and picks the kind of archive by its name.
+    let (kind, options) = if triple.contains("windows") { ("zip", "-acf") } else { ("tar.xz", "-cJf") };
+    let archive = format!("{name}.{kind}");
+    succeed(Command::new("tar").current_dir(&packages).args([options, &archive, &name]))?;
     println!("{}", packages.join(archive).display());
     if triple.contains("linux") && !is_static {
         debian(&folder, triple, &packages)?;
