@@ -1,6 +1,7 @@
 //! No input makes the readers panic, hang or take much memory.
 
 use std::io::Write;
+use std::sync::LazyLock;
 
 use alhazen_import::{MemoryAssets, import, read_obj, read_ply, read_stl};
 use proptest::prelude::*;
@@ -281,8 +282,9 @@ proptest! {
         let places = [0..volumes::ROOT + 96, volumes::UPPER..volumes::UPPER + 8300, volumes::LOWER..volumes::LOWER + 1200,
             volumes::LEAF - 3000..volumes::LEAF + 200];
         let places: Vec<usize> = places.into_iter().flatten().collect();
-        let mut grid = volumes::grid("density", 0.0);
-        let mut file = volumes::file(codec);
+        static GRID: LazyLock<Vec<u8>> = LazyLock::new(|| volumes::grid("density", 0.0));
+        static FILES: LazyLock<[Vec<u8>; 3]> = LazyLock::new(|| [0, 1, 2].map(volumes::file));
+        let (mut grid, mut file) = (GRID.clone(), FILES[usize::from(codec)].clone());
         for (at, bit) in flips {
             grid[places[at.index(places.len())]] ^= 1_u8 << bit;
             let at = at.index(file.len().min(4000));
