@@ -237,7 +237,8 @@ fn algorithms_agree_on_a_smooth_ball() {
 
 #[test]
 fn algorithms_agree_on_walks_in_a_smooth_ball() {
-    assert_agreement(&ball(RandomWalk), &BALL);
+    // More of them leave by a walk.
+    assert_agreement(&ball(RandomWalk), &Samples { light_tracing: 100, ..BALL });
 }
 
 #[test]
