@@ -146,8 +146,7 @@ impl Chi2 {
             let [low, high] = bounds[axis];
             low + (high - low) * i as f64 / self.bins[axis] as f64
         };
-        // A twentieth of a count is nothing beside the noise of the five or more that are expected.
-        let tolerance = 5e-2 / self.samples as f64;
+        let tolerance = 1e-2 / self.samples as f64;
         let mut total = 0.0;
         let mut cells = Vec::with_capacity(observed.len() + 1);
         for (i, observed) in observed.into_iter().enumerate() {

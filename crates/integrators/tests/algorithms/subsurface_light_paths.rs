@@ -224,13 +224,13 @@ fn algorithms_agree_on_a_ball_and_a_slab() {
 }
 
 #[test]
-#[ignore = "slow: ten seconds; each of its parts is in a test that is not"]
+#[ignore = "slow: ten seconds; other tests have each method, boundary and surface"]
 fn algorithms_agree_on_walks_in_a_ball_and_a_slab() {
     assert_agreement(&room(body(RandomWalk, 0.4)), &ROOM);
 }
 
 #[test]
-#[ignore = "slow: ten seconds; each of its parts is in a test that is not"]
+#[ignore = "slow: ten seconds; other tests have each method, boundary and surface"]
 fn algorithms_agree_on_a_smooth_ball() {
     assert_agreement(&ball(Diffusion), &BALL);
 }
@@ -241,13 +241,13 @@ fn algorithms_agree_on_walks_in_a_smooth_ball() {
 }
 
 #[test]
-#[ignore = "slow: ten seconds; each of its parts is in a test that is not"]
+#[ignore = "slow: ten seconds; other tests have each method, boundary and surface"]
 fn algorithms_agree_behind_a_surface() {
     assert_agreement(&behind(body(Diffusion, 0.4)), &BEHIND);
 }
 
 #[test]
-#[ignore = "slow: ten seconds; each of its parts is in a test that is not"]
+#[ignore = "slow: ten seconds; other tests have each method, boundary and surface"]
 fn algorithms_agree_on_principled_bodies() {
     assert_agreement(&room(principled()), &ROOM);
 }
