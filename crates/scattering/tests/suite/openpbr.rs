@@ -232,8 +232,9 @@ fn strokes_lose_nothing() {
                 let strokes =
                     OpenPbrParameters { specular_roughness, specular_roughness_anisotropy, ..parameters };
                 let bxdf = surface(strokes);
-                for cosine in COSINES {
-                    for phi in [0.0, 0.5, 1.1, 1.5] {
+                for (i, cosine) in COSINES.into_iter().enumerate() {
+                    // Neighbouring cosines have different azimuths.
+                    for phi in [[0.0, 1.1], [0.5, 1.5]][i % 2] {
                         let albedo = albedo_from(&bxdf, cosine, phi)[0];
                         let case = format!("{name} {specular_roughness} {specular_roughness_anisotropy}");
                         assert!((albedo - 1.0).abs() < tolerance, "{case} from {cosine} {phi}: {albedo}");
@@ -276,7 +277,7 @@ fn surfaces_of_numbers_that_vary_are_those_of_constant_ones() {
     for (name, least, most, tolerance) in cases {
         let table = OpenPbrTable::new(&least, &most);
         for metalness in [0.0, 1.0] {
-            for _ in 0..12 {
+            for _ in 0..6 {
                 let mut between = |number: fn(&OpenPbrParameters) -> f32| {
                     math::lerp(random.get_1d(), number(&least), number(&most))
                 };
@@ -353,7 +354,7 @@ fn thin_walls_reflect_and_transmit_as_the_specification_says() {
 #[test]
 fn nothing_gains_light() {
     let mut random = Random::new(3);
-    for _ in 0..40 {
+    for _ in 0..24 {
         let mut weight = || if random.get_1d() < 0.3 { 0.0 } else { random.get_1d() };
         let bxdf = surface(OpenPbrParameters {
             base_metalness: weight(),
