@@ -37,7 +37,7 @@ pub static PARTS: [Part; 7] = [
     Part { name: "options", members: members::<OptionsDesc>, of: |desc| split(&mut desc.options) },
 ];
 
-fn members<T: Settings + Clone>() -> Vec<Group> {
+fn members<T: Settings + Clone + Default>() -> Vec<Group> {
     T::members().iter().map(|desc| Group { member: desc.member(), settings: desc.settings() }).collect()
 }
 
@@ -72,14 +72,14 @@ pub fn integrator_names() -> Vec<&'static str> {
 }
 
 /// The names of the members of a set that can be chosen.
-pub(crate) fn drawn<T: Settings>() -> Vec<&'static str> {
+pub(crate) fn drawn<T: Settings + Default>() -> Vec<&'static str> {
     let members = T::members();
     let drawn = members.iter().filter_map(Settings::member).filter(|member| member.is_drawn);
     drawn.map(|member| member.names[0]).collect()
 }
 
 /// The member of a set that has the name, with default settings, if it can be chosen.
-pub(crate) fn called<T: Settings>(name: &str) -> Option<T> {
+pub(crate) fn called<T: Settings + Default>(name: &str) -> Option<T> {
     T::called(name).filter(|desc| desc.member().is_some_and(|member| member.is_drawn))
 }
 
@@ -178,7 +178,7 @@ pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Re
 }
 
 /// Names and values of the settings of a part for reports; first, as `name`, the member of its set.
-pub(crate) fn listed<T: Settings + Clone>(desc: &T) -> Vec<(&'static str, Value)> {
+pub(crate) fn listed<T: Settings + Clone + Default>(desc: &T) -> Vec<(&'static str, Value)> {
     let member = desc.member().map(|member| ("name", Value::Text(member.names[0].to_owned())));
     let settings = desc.settings().into_iter().map(|setting| (setting.field.name, setting.value));
     member.into_iter().chain(settings).collect()

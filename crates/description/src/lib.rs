@@ -17,10 +17,12 @@ mod diagnostic;
 mod film;
 mod filter;
 mod image;
+mod inside;
 mod integrator;
 mod light;
 mod material;
 mod medium;
+mod microsurface;
 mod names;
 mod open_pbr;
 mod options;
@@ -46,6 +48,7 @@ pub use color::{ColorSpaceDesc, SpectrumDesc};
 pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
+pub use inside::{HairColor, SubsurfaceScattering};
 pub use integrator::{
     AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
     LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc,
@@ -54,12 +57,12 @@ pub use integrator::{
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{
-    CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, HairColor, LayersDesc,
-    MaterialDesc, MaterialKind, MaterialType, RoughnessDesc, SubsurfaceScattering,
+    CoatedConductorDesc, CoatedDiffuseDesc, LayersDesc, MaterialDesc, MaterialKind, MaterialType,
 };
 pub use medium::{
     CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, MediumType, TemperatureDesc,
 };
+pub use microsurface::{ConductorDesc, ConductorReflectance, RoughnessDesc};
 pub use open_pbr::{OpenPbrDesc, OpenPbrNumber};
 pub use options::{Engine, OptionsDesc, RenderSpace};
 pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};

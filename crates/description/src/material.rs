@@ -4,8 +4,12 @@ use std::sync::Arc;
 
 use scattering::{MeasuredTable, SubsurfaceMethod};
 
-use crate::names::names;
-use crate::{FloatParameter, Handle, OpenPbrDesc, SpectrumDesc, SpectrumParameter, UvImageDesc};
+use crate::microsurface::{REMAP, conductor_fields, roughness_fields};
+use crate::schema::{Field, Settings, Visitor, at_least, index_of_refraction, members, settings};
+use crate::{
+    ConductorDesc, FloatParameter, HairColor, Handle, OpenPbrDesc, RoughnessDesc, SpectrumDesc,
+    SpectrumParameter, SubsurfaceScattering, UvImageDesc,
+};
 
 /// A material.
 #[derive(Clone, Debug)]
@@ -29,153 +33,90 @@ impl From<MaterialKind> for MaterialDesc {
 
 impl Default for MaterialDesc {
     fn default() -> Self {
-        MaterialKind::Diffuse { reflectance: 0.5.into() }.into()
+        MaterialKind::default().into()
     }
 }
 
-/// Roughness of a microfacet surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoughnessDesc {
-    /// Along the surface's u direction.
-    pub u: FloatParameter,
-    /// Along v.
-    pub v: FloatParameter,
-    /// The values are perceptual: α is their square root.
-    pub remap: bool,
-}
-
-impl RoughnessDesc {
-    /// The same roughness both ways, remapped.
-    pub fn isotropic(roughness: f32) -> Self {
-        Self { u: roughness.into(), v: roughness.into(), remap: true }
-    }
-}
-
-impl Default for RoughnessDesc {
-    fn default() -> Self {
-        Self::isotropic(0.0)
-    }
-}
-
-/// Reflectance of a conductor.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ConductorReflectance {
-    /// By its complex index of refraction.
-    Index {
-        /// Real part.
-        eta: SpectrumParameter,
-        /// Imaginary part.
-        k: SpectrumParameter,
-    },
-    /// By its reflectance at normal incidence.
-    Reflectance(SpectrumParameter),
-}
-
-impl Default for ConductorReflectance {
-    fn default() -> Self {
-        Self::Index {
-            eta: SpectrumDesc::Named("metal-Cu-eta".into()).into(),
-            k: SpectrumDesc::Named("metal-Cu-k".into()).into(),
-        }
-    }
-}
-
-/// The materials of the format.
-#[derive(Clone, Debug)]
-pub enum MaterialKind {
-    /// Lambertian reflection.
-    Diffuse {
-        /// Albedo.
-        reflectance: SpectrumParameter,
-    },
-    /// Lambertian reflection and transmission.
-    DiffuseTransmission {
-        /// Reflected share.
-        reflectance: SpectrumParameter,
-        /// Transmitted share.
-        transmittance: SpectrumParameter,
-        /// Factor on both.
-        scale: f32,
-    },
-    /// Metal.
-    Conductor(ConductorDesc),
-    /// Glass, water.
-    Dielectric {
-        /// Index of refraction.
-        eta: SpectrumDesc,
-        /// Roughness of the interface.
-        roughness: RoughnessDesc,
-    },
-    /// A thin sheet of glass, both interfaces in one surface.
-    ThinDielectric {
-        /// Index of refraction.
-        eta: SpectrumDesc,
-    },
-    /// A diffuse surface under a dielectric coat.
-    CoatedDiffuse(CoatedDiffuseDesc),
-    /// A metal under a dielectric coat.
-    CoatedConductor(CoatedConductorDesc),
-    /// A fibre.
-    Hair {
-        /// Its absorption, given in one of three ways.
-        color: HairColor,
-        /// Index of refraction.
-        eta: FloatParameter,
-        /// Longitudinal roughness.
-        beta_m: FloatParameter,
-        /// Azimuthal roughness.
-        beta_n: FloatParameter,
-        /// Angle of the scales in degrees.
-        alpha: FloatParameter,
-    },
-    /// A dielectric surface with subsurface scattering.
-    Subsurface {
-        /// The scattering inside, given in one of three ways.
-        scattering: SubsurfaceScattering,
-        /// Factor on the coefficients (1/scene unit for coefficients in 1/mm).
-        scale: f32,
-        /// Index of refraction.
-        eta: f32,
-        /// Henyey–Greenstein asymmetry.
-        g: f32,
-        /// Roughness of the interface.
-        roughness: RoughnessDesc,
-        /// How light is followed.
-        method: SubsurfaceMethod,
-    },
-    /// A measured surface.
-    Measured {
-        /// The measurements.
-        table: Arc<MeasuredTable>,
-    },
-    /// A principled surface.
-    OpenPbr(Box<OpenPbrDesc>),
-    /// One of two materials, chosen at random.
-    Mix {
-        /// The two materials.
-        materials: [Handle<MaterialDesc>; 2],
-        /// Probability of the second.
-        amount: FloatParameter,
-    },
-    /// An interface between media, which does not scatter.
-    Interface,
-}
-
-names! {
-    /// The names of materials.
-    MaterialType of MaterialKind {
-        Diffuse = "diffuse",
-        CoatedDiffuse = "coateddiffuse",
-        CoatedConductor = "coatedconductor",
-        Conductor = "conductor",
-        Dielectric = "dielectric",
-        ThinDielectric = "thindielectric",
-        DiffuseTransmission = "diffusetransmission",
-        Hair = "hair",
-        Subsurface = "subsurface",
-        Measured = "measured",
-        OpenPbr = "openpbr",
-        Mix = "mix",
+members! {
+    /// The materials of the format.
+    #[derive(Clone, Debug)]
+    pub enum MaterialKind: MaterialType = Diffuse {
+        /// Lambertian reflection.
+        Diffuse = "diffuse" {
+            /// Reflected share, 0 to 1.
+            reflectance: SpectrumParameter = 0.5.into() => ["reflectance"];
+        },
+        /// A diffuse surface under a dielectric coat.
+        CoatedDiffuse(CoatedDiffuseDesc) = "coateddiffuse",
+        /// A metal under a dielectric coat.
+        CoatedConductor(CoatedConductorDesc) = "coatedconductor",
+        /// A metal.
+        Conductor(ConductorDesc) = "conductor",
+        /// Glass, water.
+        Dielectric = "dielectric" {
+            /// Index of refraction.
+            eta: SpectrumDesc = 1.5.into() => ["eta": index_of_refraction()];
+            /// Roughness of the interface.
+            roughness: RoughnessDesc = RoughnessDesc::default() => ..;
+        },
+        /// A thin sheet of glass, both its sides in one surface.
+        ThinDielectric = "thindielectric" {
+            /// Index of refraction.
+            eta: SpectrumDesc = 1.5.into() => ["eta": index_of_refraction()];
+        },
+        /// Lambertian reflection and transmission.
+        DiffuseTransmission = "diffusetransmission" {
+            /// Reflected share, 0 to 1.
+            reflectance: SpectrumParameter = 0.25.into() => ["reflectance"];
+            /// Transmitted share, 0 to 1.
+            transmittance: SpectrumParameter = 0.25.into() => ["transmittance"];
+            /// Factor on both.
+            scale: f32 = 1.0 => ["scale"];
+        },
+        /// A fibre. `sigma_a` takes precedence over `reflectance`, and that over melanin.
+        Hair = "hair" {
+            /// Its absorption, given in one of three ways.
+            color: HairColor = HairColor::default() => ..;
+            /// Index of refraction.
+            eta: FloatParameter = 1.55.into() => ["eta"];
+            /// Longitudinal roughness, 0 to 1.
+            beta_m: FloatParameter = 0.3.into() => ["beta_m"];
+            /// Azimuthal roughness, 0 to 1.
+            beta_n: FloatParameter = 0.3.into() => ["beta_n"];
+            /// Tilt of the scales, degrees.
+            alpha: FloatParameter = 2.0.into() => ["alpha"];
+        },
+        /// A translucent substance, by tabulated photon beam diffusion or a random walk.
+        Subsurface = "subsurface" {
+            /// The scattering inside, given in one of three ways.
+            scattering: SubsurfaceScattering = SubsurfaceScattering::default() => ..;
+            /// Factor on the coefficients (1/scene unit for coefficients in 1/mm).
+            scale: f32 = 1.0 => ["scale"];
+            /// Index of refraction.
+            eta: f32 = 1.33 => ["eta"];
+            /// Henyey–Greenstein asymmetry, −1 to 1.
+            g: f32 = 0.0 => ["g"];
+            /// Roughness of the interface.
+            roughness: RoughnessDesc = RoughnessDesc::default() => ..;
+            /// How light is followed under the surface: by a diffusion profile, which holds for
+            /// flat and thick bodies, or by a random walk.
+            method: SubsurfaceMethod = SubsurfaceMethod::Diffusion => ["method"];
+        },
+        /// A measured surface of the RGL database.
+        Measured = "measured" by hand {
+            /// The measurements.
+            table: Arc<MeasuredTable>;
+        },
+        /// A principled surface after OpenPBR Surface 1.1, with its names of parameters.
+        OpenPbr(Box<OpenPbrDesc>) = "openpbr",
+        /// One of two materials at each point, chosen at random.
+        Mix = "mix" by hand {
+            /// The two materials.
+            materials: [Handle<MaterialDesc>; 2];
+            /// Probability of the second.
+            amount: FloatParameter;
+        },
+        /// No surface at all: a border of media.
         Interface = "interface",
     }
 }
@@ -201,57 +142,35 @@ impl MaterialKind {
     }
 }
 
-/// A metal.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ConductorDesc {
-    /// Its reflectance.
-    pub reflectance: ConductorReflectance,
-    /// Its roughness.
-    pub roughness: RoughnessDesc,
-}
-
-/// Simulation of the layers of a coated material.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LayersDesc {
-    /// Thickness of the coat.
-    pub thickness: FloatParameter,
-    /// Single-scattering albedo of the medium in it; 0 for no medium.
-    pub albedo: SpectrumParameter,
-    /// Henyey–Greenstein asymmetry of that medium.
-    pub g: FloatParameter,
-    /// Maximum number of events of a random walk.
-    pub max_depth: i32,
-    /// Random walks averaged per evaluation.
-    pub samples: i32,
-}
-
-impl Default for LayersDesc {
-    fn default() -> Self {
-        Self { thickness: 0.01.into(), albedo: 0.0.into(), g: 0.0.into(), max_depth: 10, samples: 1 }
+settings! {
+    /// Simulation of the layers of a coated material.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct LayersDesc {
+        /// Optical thickness of the coat, 0 or more.
+        thickness: FloatParameter = 0.01.into() => ["thickness"];
+        /// Single-scattering albedo of the medium in the coat; with 0 it only absorbs.
+        albedo: SpectrumParameter = 0.0.into() => ["albedo"];
+        /// Henyey–Greenstein asymmetry of that medium, −1 to 1.
+        g: FloatParameter = 0.0.into() => ["g"];
+        /// Maximum number of events of a random walk in the coat.
+        max_depth: i32 = 10 => ["maxdepth": at_least(1.0)];
+        /// Random walks averaged for each value.
+        samples: i32 = 1 => ["nsamples": at_least(1.0)];
     }
 }
 
-/// A diffuse surface under a dielectric coat.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CoatedDiffuseDesc {
-    /// Albedo of the surface.
-    pub reflectance: SpectrumParameter,
-    /// Index of refraction of the coat.
-    pub eta: SpectrumDesc,
-    /// Roughness of the coat.
-    pub roughness: RoughnessDesc,
-    /// The inside of the coat.
-    pub layers: LayersDesc,
-}
-
-impl Default for CoatedDiffuseDesc {
-    fn default() -> Self {
-        Self {
-            reflectance: 0.5.into(),
-            eta: SpectrumDesc::Constant(1.5),
-            roughness: RoughnessDesc::default(),
-            layers: LayersDesc::default(),
-        }
+settings! {
+    /// A diffuse surface under a dielectric coat.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct CoatedDiffuseDesc {
+        /// Reflected share of the surface, 0 to 1.
+        reflectance: SpectrumParameter = 0.5.into() => ["reflectance"];
+        /// Index of refraction of the coat.
+        eta: SpectrumDesc = 1.5.into() => ["eta": index_of_refraction()];
+        /// Roughness of the coat.
+        roughness: RoughnessDesc = RoughnessDesc::default() => ..;
+        /// The inside of the coat.
+        layers: LayersDesc = LayersDesc::default() => ..;
     }
 }
 
@@ -272,46 +191,32 @@ impl Default for CoatedConductorDesc {
     fn default() -> Self {
         Self {
             conductor: ConductorDesc::default(),
-            eta: SpectrumDesc::Constant(1.5),
+            eta: 1.5.into(),
             roughness: RoughnessDesc::default(),
             layers: LayersDesc::default(),
         }
     }
 }
 
-/// The absorption in a fibre.
-#[derive(Clone, Debug, PartialEq)]
-pub enum HairColor {
-    /// Coefficient per fibre diameter.
-    SigmaA(SpectrumParameter),
-    /// The colour of a volume of hair.
-    Reflectance(SpectrumParameter),
-    /// Concentrations of pigment.
-    Melanin {
-        /// Brown.
-        eumelanin: FloatParameter,
-        /// Red.
-        pheomelanin: FloatParameter,
-    },
-}
-
-/// The scattering inside a subsurface material.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SubsurfaceScattering {
-    /// A predefined measured substance of the format.
-    Named(String),
-    /// Coefficients in 1/mm.
-    Coefficients {
-        /// Absorption.
-        sigma_a: SpectrumParameter,
-        /// Scattering.
-        sigma_s: SpectrumParameter,
-    },
-    /// Effective reflectance.
-    Reflectance {
-        /// The colour.
-        reflectance: SpectrumParameter,
-        /// Mean free path in mm.
-        mfp: SpectrumParameter,
-    },
+/// The parameters of metal and coat have prefixes; one `remaproughness` is that of both.
+impl Settings for CoatedConductorDesc {
+    fn visit(&mut self, visitor: Visitor) {
+        const METAL: &[Field; 3] = &conductor_fields!("conductor.");
+        const ROUGHNESS: &[Field; 3] = &roughness_fields!("conductor.", " of the metal");
+        const COAT: &[Field; 3] = &roughness_fields!("interface.", " of the coat");
+        const ETA: &Field = &Field {
+            domain: index_of_refraction(),
+            ..Field::new("interface.eta", "Index of refraction of the coat.")
+        };
+        let Self { conductor, eta, roughness, layers } = self;
+        conductor.reflectance.visit_as(METAL, visitor);
+        conductor.roughness.visit_axes(ROUGHNESS, visitor);
+        visitor(ETA, eta);
+        roughness.visit_axes(COAT, visitor);
+        let mut remap =
+            if conductor.roughness.is_smooth() { roughness.remap } else { conductor.roughness.remap };
+        visitor(REMAP, &mut remap);
+        (conductor.roughness.remap, roughness.remap) = (remap, remap);
+        layers.visit(visitor);
+    }
 }

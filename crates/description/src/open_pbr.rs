@@ -1,20 +1,21 @@
 //! The principled surface: its parameters have the names of OpenPBR Surface.
 
+use crate::schema::{Field, Settings, Visitor};
 use crate::{FloatParameter, SpectrumDesc, SpectrumParameter, UvImageDesc};
 
 /// A number of [`OpenPbrDesc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenPbrNumber {
-    /// Its name.
-    pub name: &'static str,
+    /// Its name and meaning.
+    pub field: Field,
     /// If it is not given.
     pub default: f32,
     /// The least and the largest value.
     pub range: [f32; 2],
 }
 
-const fn number(name: &'static str, default: f32, [least, most]: [f32; 2]) -> OpenPbrNumber {
-    OpenPbrNumber { name, default, range: [least, most] }
+const fn number(name: &'static str, default: f32, range: [f32; 2], help: &'static str) -> OpenPbrNumber {
+    OpenPbrNumber { field: Field::new(name, help), default, range }
 }
 
 const SHARE: [f32; 2] = [0.0, 1.0];
@@ -43,48 +44,119 @@ pub struct OpenPbrDesc {
 impl OpenPbrDesc {
     /// All numbers but the emitted luminance.
     pub const NUMBERS: [OpenPbrNumber; 24] = [
-        number("base_weight", 1.0, SHARE),
-        number("base_diffuse_roughness", 0.0, SHARE),
-        number("base_metalness", 0.0, SHARE),
-        number("specular_weight", 1.0, POSITIVE),
-        number("specular_roughness", 0.3, SHARE),
-        number("specular_roughness_anisotropy", 0.0, SHARE),
-        number("specular_ior", 1.5, INDEX),
-        number("transmission_weight", 0.0, SHARE),
-        number("transmission_depth", 0.0, POSITIVE),
-        number("transmission_dispersion_scale", 0.0, SHARE),
-        number("transmission_dispersion_abbe_number", 20.0, [1.0, 1000.0]),
-        number("subsurface_weight", 0.0, SHARE),
-        number("subsurface_radius", 1.0, POSITIVE),
-        number("subsurface_scatter_anisotropy", 0.0, [-1.0, 1.0]),
-        number("coat_weight", 0.0, SHARE),
-        number("coat_roughness", 0.0, SHARE),
-        number("coat_roughness_anisotropy", 0.0, SHARE),
-        number("coat_ior", 1.6, INDEX),
-        number("coat_darkening", 1.0, SHARE),
-        number("fuzz_weight", 0.0, SHARE),
-        number("fuzz_roughness", 0.5, SHARE),
-        number("thin_film_weight", 0.0, SHARE),
-        number("thin_film_thickness", 0.5, POSITIVE),
-        number("thin_film_ior", 1.4, INDEX),
+        number("base_weight", 1.0, SHARE, "Factor on `base_color`, 0 to 1."),
+        number("base_diffuse_roughness", 0.0, SHARE, "Roughness of the diffuse base, 0 to 1."),
+        number("base_metalness", 0.0, SHARE, "The share of metal, 0 to 1."),
+        number("specular_weight", 1.0, POSITIVE, "Factor on the base's reflectance along the normal."),
+        number(
+            "specular_roughness",
+            0.3,
+            SHARE,
+            "Roughness of the base's boundary, 0 to 1; α is its square.",
+        ),
+        number(
+            "specular_roughness_anisotropy",
+            0.0,
+            SHARE,
+            "From a round highlight, 0, to a stroke along u, 1.",
+        ),
+        number("specular_ior", 1.5, INDEX, "Index of refraction of the dielectric base, 1 to 3."),
+        number(
+            "transmission_weight",
+            0.0,
+            SHARE,
+            "The share of the dielectric base that is transparent, 0 to 1.",
+        ),
+        number(
+            "transmission_depth",
+            0.0,
+            POSITIVE,
+            "If above 0, the boundary does not tint; what is inside absorbs by its medium.",
+        ),
+        number(
+            "transmission_dispersion_scale",
+            0.0,
+            SHARE,
+            "Dispersion, 0 to 1: 1 over it is a factor on the Abbe number.",
+        ),
+        number("transmission_dispersion_abbe_number", 20.0, [1.0, 1000.0], "The Abbe number."),
+        number(
+            "subsurface_weight",
+            0.0,
+            SHARE,
+            "The share of the opaque dielectric base that has `subsurface_color`, 0 to 1.",
+        ),
+        number(
+            "subsurface_radius",
+            1.0,
+            POSITIVE,
+            "Mean free path under the surface, by which light leaves elsewhere; 0: where it entered.",
+        ),
+        number(
+            "subsurface_scatter_anisotropy",
+            0.0,
+            [-1.0, 1.0],
+            "Mean cosine of scattering under the surface; with `geometry_thin_walled`: from all that is scattered reflected, -1, to all of it transmitted, 1.",
+        ),
+        number("coat_weight", 0.0, SHARE, "Presence of the coat, 0 to 1."),
+        number("coat_roughness", 0.0, SHARE, "Roughness of the coat, 0 to 1."),
+        number("coat_roughness_anisotropy", 0.0, SHARE, "Its anisotropy, 0 to 1."),
+        number("coat_ior", 1.6, INDEX, "Its index of refraction, 1 to 3."),
+        number("coat_darkening", 1.0, SHARE, "How far reflections inside the coat darken the base, 0 to 1."),
+        number("fuzz_weight", 0.0, SHARE, "Presence of fuzz, 0 to 1."),
+        number(
+            "fuzz_roughness",
+            0.5,
+            SHARE,
+            "From fibres along the normal, 0, to flakes of any direction, 1.",
+        ),
+        number("thin_film_weight", 0.0, SHARE, "Presence of a thin film on the base, 0 to 1."),
+        number("thin_film_thickness", 0.5, POSITIVE, "Its thickness in micrometres."),
+        number("thin_film_ior", 1.4, INDEX, "Its index of refraction, 1 to 3."),
     ];
 
     /// All colours but that of emission, with what they are if they are not given.
-    pub const COLORS: [(&'static str, f32); 6] = [
-        ("base_color", 0.8),
-        ("specular_color", 1.0),
-        ("transmission_color", 1.0),
-        ("subsurface_color", 0.8),
-        ("coat_color", 1.0),
-        ("fuzz_color", 1.0),
+    pub const COLORS: [(Field, f32); 6] = [
+        (Field::new("base_color", "Albedo of the diffuse base; reflectance of metal along the normal."), 0.8),
+        (
+            Field::new(
+                "specular_color",
+                "Tint of the reflection by the base's boundary; of metal, near grazing angles.",
+            ),
+            1.0,
+        ),
+        (
+            Field::new(
+                "transmission_color",
+                "Factor on transmitted light at each boundary, unless `transmission_depth` is above 0; with `geometry_thin_walled`, of a crossing of the sheet.",
+            ),
+            1.0,
+        ),
+        (
+            Field::new(
+                "subsurface_color",
+                "Albedo, under uniform light, of what scatters under its surface.",
+            ),
+            0.8,
+        ),
+        (Field::new("coat_color", "Factor on light that crosses the coat twice along the normal."), 1.0),
+        (Field::new("fuzz_color", "Albedo of its fibres."), 1.0),
     ];
+
+    /// The index of a number by its name.
+    pub fn number(name: &str) -> Option<usize> {
+        Self::NUMBERS.iter().position(|number| number.field.name == name)
+    }
+
+    /// The index of a colour by its name.
+    pub fn color(name: &str) -> Option<usize> {
+        Self::COLORS.iter().position(|(field, _)| field.name == name)
+    }
 
     /// Whether paths may be followed under the surface.
     pub fn scatters_under(&self) -> bool {
-        let is_zero = |name| {
-            let index = Self::NUMBERS.iter().position(|number| number.name == name);
-            index.is_some_and(|index| self.numbers[index].value() == Some(&0.0))
-        };
+        let is_zero =
+            |name| Self::number(name).is_some_and(|index| self.numbers[index].value() == Some(&0.0));
         !(self.thin_walled || is_zero("subsurface_weight") || is_zero("subsurface_radius"))
     }
 }
@@ -100,5 +172,29 @@ impl Default for OpenPbrDesc {
             emission_luminance: 0.0,
             emission_color: SpectrumDesc::rgb(1.0, 1.0, 1.0),
         }
+    }
+}
+
+impl Settings for OpenPbrDesc {
+    fn visit(&mut self, visitor: Visitor) {
+        const NUMBERS: &[OpenPbrNumber] = &OpenPbrDesc::NUMBERS;
+        const COLORS: &[(Field, f32)] = &OpenPbrDesc::COLORS;
+        const FIELDS: &[Field; 3] = &[
+            Field::new("subsurface_radius_scale", "Factors on `subsurface_radius`."),
+            Field::new("geometry_thin_walled", "Whether the surface is a sheet without an inside."),
+            Field::new(
+                "emission_luminance",
+                "Luminance that shapes emit, cd/m², unless they have an area light.",
+            ),
+        ];
+        for (number, value) in NUMBERS.iter().zip(&mut self.numbers) {
+            visitor(&number.field, value);
+        }
+        for ((field, _), value) in COLORS.iter().zip(&mut self.colors) {
+            visitor(field, value);
+        }
+        visitor(&FIELDS[0], &mut self.subsurface_radius_scale);
+        visitor(&FIELDS[1], &mut self.thin_walled);
+        visitor(&FIELDS[2], &mut self.emission_luminance);
     }
 }

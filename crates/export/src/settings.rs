@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use description::schema::{Setting, Settings, Value};
-use description::{OptionsDesc, SceneDesc};
+use description::schema::{Field, Setting, Settings, Value};
+use description::{OptionsDesc, SceneDesc, SpectrumDesc};
 
+use crate::names::Names;
 use crate::number::decimal;
 use crate::statement::{Statement, quoted};
 use crate::text::Text;
@@ -57,16 +58,42 @@ pub(crate) fn statement<T: Settings + Clone + Default>(
     }
     let mut statement = Statement::new(directive, kind);
     for Setting { field, value, .. } in changed(desc) {
-        let Some((kind, values)) = written(&value) else {
-            statement.fail(format!("`{}` cannot be {value}", field.name));
-            continue;
-        };
         if OWN_SETTINGS.contains(&field.name) && !is_own {
             extensions.insert(format!("{} {}", directive.to_lowercase(), field.name));
         }
-        statement.push(kind, field.name, values);
+        write(&mut statement, field, &value, None);
     }
     statement
+}
+
+/// The parameters of a member of a scene that differ from its defaults.
+pub(crate) fn parameters<T: Settings + Clone + Default>(to: &mut Statement, desc: &T, names: &Names) {
+    for Setting { field, value, .. } in changed(desc) {
+        write(to, field, &value, Some(names));
+    }
+}
+
+/// A parameter with its value.
+fn write(to: &mut Statement, field: &Field, value: &Value, names: Option<&Names>) {
+    let name = field.name;
+    match (value, names) {
+        (Value::Spectrum(SpectrumDesc::Constant(value)), _) if field.domain.takes_numbers => {
+            to.floats(name, [*value]);
+        }
+        (Value::Spectrum(spectrum), _) => to.spectrum(name, spectrum),
+        (Value::FloatTexture(texture), Some(names)) => {
+            to.push("texture", name, vec![quoted(names.float_texture(*texture))]);
+        }
+        (Value::SpectrumTexture(texture), Some(names)) => {
+            to.push("texture", name, vec![quoted(names.spectrum_texture(*texture))]);
+        }
+        // The value of an alternative that is not the one chosen.
+        (Value::Automatic, Some(_)) => (),
+        (value, _) => match written(value) {
+            Some((kind, values)) => to.push(kind, name, values),
+            None => to.fail(format!("`{name}` cannot be {value}")),
+        },
+    }
 }
 
 /// The settings that differ from those of the same member with its defaults.
@@ -88,7 +115,9 @@ fn written(value: &Value) -> Option<(&'static str, Vec<String>)> {
             let kind = values.first().map_or("float", |(kind, _)| kind);
             (kind, values.into_iter().flat_map(|(_, values)| values).collect())
         }
-        Value::Automatic => return None,
+        Value::Spectrum(_) | Value::FloatTexture(_) | Value::SpectrumTexture(_) | Value::Automatic => {
+            return None;
+        }
     })
 }
 

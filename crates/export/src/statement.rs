@@ -211,14 +211,6 @@ impl Statement {
         }
     }
 
-    /// An index of refraction, which may be a number.
-    pub(crate) fn index_of_refraction(&mut self, name: &str, eta: &SpectrumDesc, default: f32) {
-        match eta {
-            SpectrumDesc::Constant(value) => self.float(name, *value, default),
-            eta => self.spectrum(name, eta),
-        }
-    }
-
     /// A number or a texture.
     pub(crate) fn float_parameter(
         &mut self,

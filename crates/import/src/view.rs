@@ -93,9 +93,7 @@ pub(crate) fn complete(
     }
     let is_transparent = desc.materials.iter().any(|(_, material)| match &material.kind {
         description::MaterialKind::OpenPbr(surface) => {
-            let weight = description::OpenPbrDesc::NUMBERS
-                .iter()
-                .position(|number| number.name == "transmission_weight");
+            let weight = description::OpenPbrDesc::number("transmission_weight");
             weight.is_some_and(|index| surface.numbers[index].value() != Some(&0.0))
         }
         _ => false,

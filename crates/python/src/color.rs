@@ -12,8 +12,9 @@ const MOST: f32 = 1.001;
 
 /// Refuses reflectances of a material that are not from 0 to 1.
 pub fn check_material(arguments: &[Argument]) -> PyResult<()> {
-    let is_reflectance =
-        |name: &str| REFLECTANCES.contains(&name) || OpenPbrDesc::COLORS.iter().any(|color| color.0 == name);
+    let is_reflectance = |name: &str| {
+        REFLECTANCES.contains(&name) || OpenPbrDesc::COLORS.iter().any(|color| color.0.name == name)
+    };
     arguments.iter().filter(|argument| is_reflectance(&argument.name)).try_for_each(|argument| {
         let values = components(argument).unwrap_or_default();
         match values.iter().all(|value| (0.0..=MOST).contains(value)) {

@@ -5,13 +5,14 @@
 //! `[f32; 3]` and `f64`, so that every crate can use them.
 //!
 //! [`lanes_agree`] runs a [`LaneFunction`] on every instruction set. [`data`] finds files of other
-//! authors.
+//! authors. [`check_generated`] compares a page with the code that it is made of.
 //!
 //! Every test has a generator with a fixed seed ([`Random`]), so that its result is reproducible,
 //! and corrects its significance for the number of tests (Šidák's correction).
 
 mod chi2;
 mod data;
+mod generated;
 mod lane_function;
 mod means;
 mod quadrature;
@@ -20,6 +21,7 @@ mod special;
 
 pub use chi2::Chi2;
 pub use data::{data, skip};
+pub use generated::check_generated;
 pub use lane_function::{LaneFunction, lanes_agree};
 pub use means::{Moments, t_test, welch_test, z_test};
 pub use quadrature::integrate;

@@ -152,14 +152,17 @@ fn material_knobs(kind: &mut MaterialKind) -> Vec<Knob<'_>> {
         }
         MaterialKind::OpenPbr(principled) => {
             let OpenPbrDesc { numbers, colors, .. } = &mut **principled;
-            for ((label, _), value) in OpenPbrDesc::COLORS.iter().zip(colors) {
-                if *label == "base_color" {
-                    color(&mut knobs, label, value);
+            for ((field, _), value) in OpenPbrDesc::COLORS.iter().zip(colors) {
+                if field.name == "base_color" {
+                    color(&mut knobs, field.name, value);
                 }
             }
             for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(numbers) {
-                if matches!(number.name, "base_metalness" | "specular_roughness" | "transmission_weight") {
-                    share(&mut knobs, number.name, value);
+                if matches!(
+                    number.field.name,
+                    "base_metalness" | "specular_roughness" | "transmission_weight"
+                ) {
+                    share(&mut knobs, number.field.name, value);
                 }
             }
         }

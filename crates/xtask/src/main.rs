@@ -21,6 +21,7 @@ usage: cargo xtask TASK
   ci         all checks: format, source rules, lints, documentation, the gallery, and
              the tests that `cargo test` leaves out
   tidy       the source rules alone, in a second
+  docs       write the pages that are made of the code
   bench rays [--help | OPTIONS]
              the ray engine beside Embree, on a million triangles
   bench render [--help | OPTIONS]
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
         ["bench", "gpu", ref arguments @ ..] => bench::gpu(workspace(), arguments),
         ["bench", "forest"] => bench::forest(workspace()),
+        ["docs"] => docs(workspace()),
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
         ["gallery", ref names @ ..] => gallery::make(workspace(), names),
@@ -69,6 +71,16 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Writes what is generated: the tests that compare the pages with the code write them instead.
+fn docs(root: &Path) -> Result<(), String> {
+    let mut tests = command::cargo(root);
+    tests.args(["test", "--package", "alhazen-import", "--lib", "is_generated"]);
+    command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))?;
+    let mut tests = command::cargo(root);
+    tests.args(["test", "--package", "alhazen", "--test", "suite", "is_generated"]);
+    command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))
 }
 
 /// The root of the workspace: two folders above this crate.

@@ -42,7 +42,9 @@ fn json_value(value: &Value) -> Json {
             let text = value.to_string();
             serde_json::from_str(&text).unwrap_or(Json::String(text))
         }
-        Value::Text(text) => text.as_str().into(),
+        Value::Text(_) | Value::Spectrum(_) | Value::FloatTexture(_) | Value::SpectrumTexture(_) => {
+            value.to_string().into()
+        }
         Value::List(values) => values.iter().map(json_value).collect(),
         Value::Automatic => Json::Null,
     }

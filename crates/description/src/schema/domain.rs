@@ -16,6 +16,8 @@ pub struct Domain {
     pub names: &'static [&'static str],
     /// The ending of texts.
     extension: &'static str,
+    /// Whether a number may be given for a spectrum, as for indices of refraction.
+    pub takes_numbers: bool,
 }
 
 /// Numbers from `least` on.
@@ -43,6 +45,11 @@ pub(crate) const fn one_of(names: &'static [&'static str]) -> Domain {
     Domain { names, ..Domain::ANY }
 }
 
+/// Spectra and numbers.
+pub(crate) const fn index_of_refraction() -> Domain {
+    Domain { takes_numbers: true, ..Domain::ANY }
+}
+
 /// Names of files with an extension, including the dot.
 pub(crate) const fn with_extension(extension: &'static str) -> Domain {
     Domain { extension, ..Domain::ANY }
@@ -58,7 +65,13 @@ impl Domain {
         unit: "",
         names: &[],
         extension: "",
+        takes_numbers: false,
     };
+
+    /// Whether it excludes no value.
+    pub fn is_any(&self) -> bool {
+        Self { unit: "", takes_numbers: false, ..*self } == Self::ANY
+    }
 
     /// Excludes numbers above `most`, which may be infinity.
     pub(crate) const fn at_most(self, most: f64) -> Self {
@@ -80,7 +93,11 @@ impl Domain {
                     && text.to_ascii_lowercase().ends_with(self.extension)
             }
             Value::List(values) => values.iter().all(|value| self.contains(value)),
-            Value::Bool(_) | Value::Automatic => true,
+            Value::Bool(_)
+            | Value::Spectrum(_)
+            | Value::FloatTexture(_)
+            | Value::SpectrumTexture(_)
+            | Value::Automatic => true,
         }
     }
 
@@ -96,12 +113,13 @@ impl Domain {
         match kind {
             Kind::Bool => "true or false".into(),
             Kind::Integer | Kind::Count => format!("a whole number{range}"),
-            Kind::Number if range.is_empty() => "a finite number".into(),
-            Kind::Number => format!("a number{range}"),
+            Kind::Number | Kind::FloatParameter if range.is_empty() => "a finite number".into(),
+            Kind::Number | Kind::FloatParameter => format!("a number{range}"),
             Kind::Choice(names) => format!("one of {}", names.join(", ")),
             Kind::Text if !self.names.is_empty() => format!("one of {}", self.names.join(", ")),
             Kind::Text if !self.extension.is_empty() => format!("a name that ends in {}", self.extension),
             Kind::Text => "a text".into(),
+            Kind::Spectrum | Kind::SpectrumParameter => "a spectrum".into(),
             Kind::List(kind, count) => {
                 format!("{count} values separated by commas, each {}", self.describe(*kind))
             }

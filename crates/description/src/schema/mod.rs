@@ -4,17 +4,19 @@
 
 mod declare;
 mod domain;
+mod members;
 mod value;
 
 pub(crate) use declare::{choices, settings};
 pub use domain::Domain;
-pub(crate) use domain::{above, at_least, between, from, one_of, with_extension};
+pub(crate) use domain::{above, at_least, between, from, index_of_refraction, one_of, with_extension};
+pub(crate) use members::members;
 pub use value::{Kind, SettingType, Slot, Value};
 
 use crate::{Diagnostic, Origin};
 
 /// The declaration of a setting, without its type and value.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// Its name; that of the pbrt-v4 format, if the format has the setting.
     pub name: &'static str,
@@ -27,6 +29,11 @@ pub struct Field {
 }
 
 impl Field {
+    /// A parameter with any value.
+    pub(crate) const fn new(name: &'static str, help: &'static str) -> Self {
+        Self { name, aliases: &[], help, domain: Domain::ANY }
+    }
+
     /// Whether the name or an alias equals `name`.
     pub fn is_called(&self, name: &str) -> bool {
         self.name == name || self.aliases.contains(&name)
@@ -80,17 +87,22 @@ pub trait Settings {
     fn visit(&mut self, visitor: Visitor);
 
     /// The member of the set; `None` if the type is not a set.
-    fn member(&self) -> Option<&'static Member>;
+    fn member(&self) -> Option<&'static Member> {
+        None
+    }
 
     /// Every member of the set with default settings; one default value if the type is not a set.
     fn members() -> Vec<Self>
     where
-        Self: Sized;
+        Self: Sized + Default,
+    {
+        vec![Self::default()]
+    }
 
     /// The member of that name with default settings.
     fn called(name: &str) -> Option<Self>
     where
-        Self: Sized,
+        Self: Sized + Default,
     {
         Self::members()
             .into_iter()
@@ -137,6 +149,20 @@ pub trait Settings {
             Diagnostic::error("invalid-value", message, origin.parameter(field.name))
         };
         self.settings().into_iter().filter(wrong).map(error).collect()
+    }
+}
+
+impl<T: Settings + Default> Settings for Box<T> {
+    fn visit(&mut self, visitor: Visitor) {
+        T::visit(self, visitor);
+    }
+
+    fn member(&self) -> Option<&'static Member> {
+        T::member(self)
+    }
+
+    fn members() -> Vec<Self> {
+        T::members().into_iter().map(Box::new).collect()
     }
 }
 

@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use crate::{
+    FloatParameter, FloatTextureDesc, Handle, Parameter, SpectrumDesc, SpectrumParameter, SpectrumTextureDesc,
+};
+
 /// A value of a setting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -13,6 +17,12 @@ pub enum Value {
     Number(f32),
     /// A text, or the name of a choice.
     Text(String),
+    /// A spectrum.
+    Spectrum(SpectrumDesc),
+    /// A texture in place of a number.
+    FloatTexture(Handle<FloatTextureDesc>),
+    /// A texture in place of a spectrum.
+    SpectrumTexture(Handle<SpectrumTextureDesc>),
     /// Several values.
     List(Vec<Value>),
     /// Chosen by the renderer.
@@ -27,6 +37,11 @@ impl fmt::Display for Value {
             Self::Integer(value) => value.fmt(f),
             Self::Number(value) => value.fmt(f),
             Self::Text(value) => value.fmt(f),
+            Self::Spectrum(SpectrumDesc::Constant(value)) => value.fmt(f),
+            Self::Spectrum(SpectrumDesc::Rgb { rgb: [r, g, b], .. }) => write!(f, "{r} {g} {b}"),
+            Self::Spectrum(SpectrumDesc::Named(name)) => name.fmt(f),
+            Self::Spectrum(_) => "a spectrum".fmt(f),
+            Self::FloatTexture(_) | Self::SpectrumTexture(_) => "a texture".fmt(f),
             Self::List(values) => {
                 let texts: Vec<String> = values.iter().map(ToString::to_string).collect();
                 texts.join(",").fmt(f)
@@ -51,6 +66,12 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// A text.
     Text,
+    /// A spectrum.
+    Spectrum,
+    /// A number or a texture.
+    FloatParameter,
+    /// A spectrum or a texture.
+    SpectrumParameter,
     /// A fixed count of values.
     List(&'static Kind, usize),
 }
@@ -62,7 +83,10 @@ impl Kind {
         match self {
             Self::Bool => text.parse().ok().map(Value::Bool),
             Self::Integer | Self::Count => text.parse::<i32>().ok().map(|value| Value::Integer(value.into())),
-            Self::Number => text.parse().ok().map(Value::Number),
+            Self::Number | Self::FloatParameter => text.parse().ok().map(Value::Number),
+            Self::Spectrum | Self::SpectrumParameter => {
+                text.parse().ok().map(|value| Value::Spectrum(SpectrumDesc::Constant(value)))
+            }
             Self::Choice(names) => names.contains(&text).then(|| Value::Text(text.to_owned())),
             Self::Text => Some(Value::Text(text.to_owned())),
             Self::List(kind, count) => {
@@ -135,7 +159,45 @@ setting_types! {
     i32: Integer = Integer(|&value: &i32| value.into(), |&value: &i64| value.try_into().ok()),
     u32: Count = Integer(|&value: &u32| value.into(), |&value: &i64| value.try_into().ok()),
     f32: Number = Number(|&value: &f32| value, |&value: &f32| Some(value)),
+    SpectrumDesc: Spectrum = Spectrum(SpectrumDesc::clone, |value: &SpectrumDesc| Some(value.clone())),
     String: Text = Text(String::clone, |value: &String| Some(value.clone())),
+}
+
+impl SettingType for FloatParameter {
+    const KIND: Kind = Kind::FloatParameter;
+
+    fn to_value(&self) -> Value {
+        match self {
+            Parameter::Value(value) => Value::Number(*value),
+            Parameter::Texture(texture) => Value::FloatTexture(*texture),
+        }
+    }
+
+    fn from_value(value: &Value) -> Option<Self> {
+        match value {
+            Value::Number(value) => Some(Parameter::Value(*value)),
+            Value::FloatTexture(texture) => Some(Parameter::Texture(*texture)),
+            _ => None,
+        }
+    }
+}
+
+impl SettingType for SpectrumParameter {
+    const KIND: Kind = Kind::SpectrumParameter;
+
+    fn to_value(&self) -> Value {
+        match self {
+            Parameter::Value(value) => value.to_value(),
+            Parameter::Texture(texture) => Value::SpectrumTexture(*texture),
+        }
+    }
+
+    fn from_value(value: &Value) -> Option<Self> {
+        match value {
+            Value::SpectrumTexture(texture) => Some(Parameter::Texture(*texture)),
+            value => SpectrumDesc::from_value(value).map(Parameter::Value),
+        }
+    }
 }
 
 impl<T: SettingType> SettingType for Option<T> {

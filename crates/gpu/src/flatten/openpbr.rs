@@ -42,9 +42,8 @@ impl Flattener<'_> {
         self.parts.subsurface |= is_followed;
         let PlainOpenPbr { constants, varying, colors, radius_scale, is_thin, coat_normals, table } =
             surface.plain();
-        let position = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
         let is_seen = |name: &str| {
-            let Some(number) = position(name) else { return true };
+            let Some(number) = OpenPbrDesc::number(name) else { return true };
             constants[number] > 0.0 || varying.iter().any(|(varies, _)| *varies == number)
         };
         let mut used: Vec<u32> = varying.iter().map(|(_, id)| self.number_texture(*id, span)).collect();

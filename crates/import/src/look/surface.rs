@@ -36,12 +36,12 @@ pub(crate) struct Principled {
 
 impl Principled {
     pub fn number(&mut self, name: &str, value: FloatParameter) {
-        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+        let index = OpenPbrDesc::number(name);
         self.desc.numbers[index.expect("invariant: a name of OpenPBR")] = value;
     }
 
     pub fn color(&mut self, name: &str, value: SpectrumParameter) {
-        let index = OpenPbrDesc::COLORS.iter().position(|(known, _)| *known == name);
+        let index = OpenPbrDesc::color(name);
         self.desc.colors[index.expect("invariant: a name of OpenPBR")] = value;
     }
 }

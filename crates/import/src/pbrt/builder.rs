@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use description::schema::{Kind, Settings};
+use description::schema::Settings;
 use description::{ColorSpaceDesc, FileId, OptionsDesc, SourceMap, Span, Spanned, TransformDesc};
 use math::DMat4;
 
@@ -115,12 +115,7 @@ impl SceneBuilder {
             let help = did_you_mean(name, options.iter().map(|option| option.field.name));
             return Err(format!("there is no option `{name}` {}", help.unwrap_or_default()));
         };
-        let types: &[ParameterType] = match option.kind {
-            Kind::Bool => &[ParameterType::Bool],
-            Kind::Integer | Kind::Count => &[ParameterType::Integer],
-            Kind::Number | Kind::List(..) => &[ParameterType::Float],
-            Kind::Choice(_) | Kind::Text => &[ParameterType::String],
-        };
+        let types = ParameterType::of(option.kind);
         self.begin("Option");
         let mut parameter =
             self.parameter(Argument { name: name.into(), type_name: None, values, row: None });

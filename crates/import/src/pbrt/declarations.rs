@@ -4,7 +4,7 @@
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
-use description::schema::{Kind, Settings};
+use description::schema::Settings;
 use description::{ColorSpaceDesc, Diagnostic, OptionsDesc, Span, Spanned};
 
 use super::interpreter::{Abandoned, Interpreter, Step};
@@ -83,12 +83,7 @@ impl Interpreter<'_> {
             return Err(Abandoned);
         };
         let known = option.field.name;
-        let kind = match option.kind {
-            Kind::Bool => ParameterType::Bool,
-            Kind::Integer | Kind::Count => ParameterType::Integer,
-            Kind::Number | Kind::List(..) => ParameterType::Float,
-            Kind::Choice(_) | Kind::Text => ParameterType::String,
-        };
+        let kind = ParameterType::of(option.kind)[0];
         let (values, end) =
             parameter::values(tokens, kind, known, name.span, &mut self.report).ok_or(Abandoned)?;
         self.statements.options.retain(|earlier| earlier.name != known);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use description::schema::Kind;
 use description::{ColorSpaceDesc, Diagnostic, Span, Spanned};
 
 use super::names;
@@ -29,6 +30,20 @@ pub(crate) enum ParameterType {
 }
 
 impl ParameterType {
+    /// The types of the parameters that settings of a kind have; the usual one first.
+    pub(super) fn of(kind: Kind) -> &'static [Self] {
+        match kind {
+            Kind::Bool => &[Self::Bool],
+            Kind::Integer | Kind::Count => &[Self::Integer],
+            Kind::Number => &[Self::Float],
+            Kind::List(kind, _) => Self::of(*kind),
+            Kind::Choice(_) | Kind::Text => &[Self::String],
+            Kind::Spectrum => &[Self::Rgb, Self::Spectrum, Self::Blackbody],
+            Kind::FloatParameter => &[Self::Float, Self::Texture],
+            Kind::SpectrumParameter => &[Self::Rgb, Self::Spectrum, Self::Blackbody, Self::Texture],
+        }
+    }
+
     pub(super) const ALL: [(Self, &str); 13] = [
         (Self::Integer, "integer"),
         (Self::Float, "float"),

@@ -396,12 +396,12 @@ fn principled_materials_have_the_parameters_of_the_specification() {
     let (plain, messages) = openpbr("");
     assert_eq!((&plain.numbers, &plain.colors, messages.len()), (&defaults.numbers, &defaults.colors, 0));
     for (i, number) in OpenPbrDesc::NUMBERS.iter().enumerate() {
-        let (given, messages) = openpbr(&format!("\"float {}\" 0.625", number.name));
-        assert_eq!((&given.numbers[i], messages.len()), (&0.625.into(), 0), "{}", number.name);
+        let (given, messages) = openpbr(&format!("\"float {}\" 0.625", number.field.name));
+        assert_eq!((&given.numbers[i], messages.len()), (&0.625.into(), 0), "{}", number.field.name);
     }
-    for (i, (name, _)) in OpenPbrDesc::COLORS.iter().enumerate() {
-        let (given, messages) = openpbr(&format!("\"rgb {name}\" [0.1 0.2 0.3]"));
-        assert_eq!(given.colors[i], SpectrumDesc::rgb(0.1, 0.2, 0.3).into(), "{name}");
+    for (i, (field, _)) in OpenPbrDesc::COLORS.iter().enumerate() {
+        let (given, messages) = openpbr(&format!("\"rgb {}\" [0.1 0.2 0.3]", field.name));
+        assert_eq!(given.colors[i], SpectrumDesc::rgb(0.1, 0.2, 0.3).into(), "{}", field.name);
         assert!(messages.is_empty(), "{messages:?}");
     }
     let (glowing, _) = openpbr("\"float emission_luminance\" 40 \"rgb emission_color\" [1 0.5 0]");

@@ -280,7 +280,7 @@ fn parameters_of_principled_surfaces_are_read() {
         plain("Kd 1 0 0\nPr 0.25\nPm 1\nPs 0.125\nPc 0.5\nPcr 0.75\naniso 0.5\nanisor 0\nmap_Pm hole.png\n");
     let MaterialKind::OpenPbr(surface) = &first(&desc).1.kind else { panic!("not principled") };
     let number = |name: &str| {
-        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name).unwrap();
+        let index = OpenPbrDesc::number(name).unwrap();
         surface.numbers[index].clone()
     };
     for (name, value) in [

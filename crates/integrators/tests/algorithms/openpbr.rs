@@ -17,7 +17,7 @@ use crate::support::{
 fn material(numbers: &[(&str, f32)]) -> MaterialKind {
     let mut desc = OpenPbrDesc::default();
     for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(&mut desc.numbers) {
-        if let Some((_, given)) = numbers.iter().find(|(name, _)| *name == number.name) {
+        if let Some((_, given)) = numbers.iter().find(|(name, _)| *name == number.field.name) {
             *value = (*given).into();
         }
     }
@@ -61,7 +61,7 @@ fn half_spaces_show_their_colour() {
         let mut desc = SceneDesc::default();
         white_sky(&mut desc);
         let MaterialKind::OpenPbr(mut surface) = material(numbers) else { unreachable!() };
-        let position = OpenPbrDesc::COLORS.iter().position(|(name, _)| *name == "subsurface_color");
+        let position = OpenPbrDesc::color("subsurface_color");
         surface.colors[position.unwrap()] = color.into();
         let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
         let material = Some(desc.materials.push(MaterialKind::OpenPbr(surface).into()));

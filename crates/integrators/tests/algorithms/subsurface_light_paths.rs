@@ -68,7 +68,7 @@ fn principled() -> MaterialKind {
         ("fuzz_weight", 0.3),
     ];
     for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(&mut desc.numbers) {
-        if let Some((_, given)) = given.iter().find(|(name, _)| *name == number.name) {
+        if let Some((_, given)) = given.iter().find(|(name, _)| *name == number.field.name) {
             *value = (*given).into();
         }
     }

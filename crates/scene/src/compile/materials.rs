@@ -181,21 +181,26 @@ impl Compiler<'_> {
         let coat = self.normal_map(desc.geometry_coat_normal, "geometry_coat_normal", origin);
         let normals = CoatNormals::new(coat, normal_map);
         let numbers = std::array::from_fn(|i| {
-            let (number, span) = (OpenPbrDesc::NUMBERS[i], origin.parameter(OpenPbrDesc::NUMBERS[i].name));
+            let (number, span) =
+                (OpenPbrDesc::NUMBERS[i], origin.parameter(OpenPbrDesc::NUMBERS[i].field.name));
             let texture = self.float_texture(&desc.numbers[i], span);
             let [least, most] = number.range;
             if let Some(value) = self.textures.textures().constant(texture)
                 && !(least..=most).contains(&value)
             {
                 let message = match most {
-                    f32::MAX => format!("`{}` cannot be negative, as {value} is", number.name),
-                    _ => format!("`{}` lies between {least} and {most}, as {value} does not", number.name),
+                    f32::MAX => format!("`{}` cannot be negative, as {value} is", number.field.name),
+                    _ => format!(
+                        "`{}` lies between {least} and {most}, as {value} does not",
+                        number.field.name
+                    ),
                 };
                 self.error("invalid-value", message, span);
             }
             texture
         });
-        let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
+        let colors =
+            std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0.name, origin));
         let scale = self.albedo(&desc.subsurface_radius_scale, "subsurface_radius_scale", origin);
         let textures = self.textures.textures();
         let surface = OpenPbrMaterial::new(textures, numbers, colors, scale, desc.thin_walled, normals);

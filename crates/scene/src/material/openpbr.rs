@@ -207,7 +207,7 @@ struct Transmission<R> {
 
 /// The index of a number.
 fn position(name: &str) -> usize {
-    let found = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+    let found = OpenPbrDesc::number(name);
     found.expect("invariant: names are those of the description")
 }
 

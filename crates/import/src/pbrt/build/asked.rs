@@ -52,14 +52,20 @@ impl Asked {
     pub(super) fn note_setting(&mut self, field: &Field, slot: &dyn Slot) {
         #[cfg(test)]
         {
-            use description::schema::Value;
+            use description::schema::{Kind, Value};
             let default = match slot.get() {
                 Value::Automatic => String::new(),
                 Value::List(values) => values.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
                 value => value.to_string(),
             };
-            let unit = if field.domain.unit.is_empty() { "" } else { ", " };
-            let values = field.domain.describe(slot.kind()) + unit + field.domain.unit;
+            let values = match slot.kind() {
+                Kind::Choice(_) | Kind::Count | Kind::List(..) => field.domain.describe(slot.kind()),
+                // The type of the parameter says it already.
+                _ if field.domain.is_any() => String::new(),
+                kind => field.domain.describe(kind),
+            };
+            let unit = if values.is_empty() || field.domain.unit.is_empty() { "" } else { ", " };
+            let values = values + unit + field.domain.unit;
             self.reference = Reference { default, values, help: field.help, ..self.reference };
         }
     }

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use bytemuck::allocation::try_cast_slice_arc;
-use description::schema::{Field, Kind, Settings, Value};
+use description::schema::{Field, Kind, SettingType, Settings, Value};
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span,
     Spanned, SpectrumDesc, SpectrumParameter,
@@ -194,6 +194,11 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.builder.report.error("parameter-count", message, span);
     }
 
+    /// The place of a parameter that was read.
+    pub(crate) fn place(&self, name: &str) -> Span {
+        self.origin.parameter(name)
+    }
+
     /// Reports an invalid value.
     pub(crate) fn refuse(&mut self, name: &str, message: impl Into<String>) {
         let span = self.origin.parameter(name);
@@ -224,7 +229,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// The member of a set that the statement's type names, with its settings.
-    pub(crate) fn member<T: Settings>(&mut self, set: &str, what: &str) -> Option<T> {
+    pub(crate) fn member<T: Settings + Default>(&mut self, set: &str, what: &str) -> Option<T> {
         let Some(mut desc) = T::called(&self.kind.value) else {
             let members = T::members();
             let known: Vec<&str> = members
@@ -270,6 +275,10 @@ impl<'b, 'a> Reader<'b, 'a> {
                 self.name_of(name, field.domain.names).map(Value::Text)
             }
             Kind::Text => self.string(name).map(|text| Value::Text(text.value)),
+            Kind::Spectrum if field.domain.takes_numbers => self.index_or_spectrum(name).map(Value::Spectrum),
+            Kind::Spectrum => self.spectrum(name).map(Value::Spectrum),
+            Kind::FloatParameter => self.optional_float_parameter(name).map(|value| value.to_value()),
+            Kind::SpectrumParameter => self.optional_spectrum_parameter(name).map(|value| value.to_value()),
             Kind::List(kind, count) => {
                 let values: Vec<Value> = match kind {
                     Kind::Number => self.floats(name)?.iter().map(|&value| Value::Number(value)).collect(),
@@ -493,21 +502,19 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// A spectrum that may be absent.
     pub(crate) fn spectrum(&mut self, name: &'static str) -> Option<SpectrumDesc> {
-        self.spectrum_of(name, &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody])
+        self.spectrum_of(name, ParameterType::of(Kind::Spectrum))
     }
 
     /// An index of refraction: a number or a spectrum.
-    pub(crate) fn index_of_refraction(&mut self, name: &'static str, default: f32) -> SpectrumDesc {
+    fn index_or_spectrum(&mut self, name: &'static str) -> Option<SpectrumDesc> {
         const TYPES: &[ParameterType] =
             &[ParameterType::Float, ParameterType::Spectrum, ParameterType::Rgb, ParameterType::Blackbody];
-        let value = self.spectrum_of(name, TYPES).unwrap_or(default.into());
-        self.note(default, "");
-        value
+        self.spectrum_of(name, TYPES)
     }
 
     /// A number or a texture of numbers, which may be absent.
     pub(crate) fn optional_float_parameter(&mut self, name: &'static str) -> Option<FloatParameter> {
-        match self.take(name, &[ParameterType::Float, ParameterType::Texture])? {
+        match self.take(name, ParameterType::of(Kind::FloatParameter))? {
             (_, Values::Floats(values), _) if values.len() == 1 => Some(FloatParameter::Value(values[0])),
             (_, Values::Strings(names), _) if names.len() == 1 => {
                 self.builder.float_texture(&names[0]).map(Parameter::Texture)
@@ -528,9 +535,7 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// A spectrum or a texture of spectra, which may be absent.
     pub(crate) fn optional_spectrum_parameter(&mut self, name: &'static str) -> Option<SpectrumParameter> {
-        const TYPES: &[ParameterType] =
-            &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody, ParameterType::Texture];
-        let index = self.find(name, TYPES)?;
+        let index = self.find(name, ParameterType::of(Kind::SpectrumParameter))?;
         if self.given[index].parameter.kind != ParameterType::Texture {
             return self.spectrum_at(index, name).map(Parameter::Value);
         }

@@ -17,7 +17,7 @@ fn surface(desc: &SceneDesc) -> &OpenPbrDesc {
 }
 
 fn parameter<'a>(desc: &'a SceneDesc, name: &str) -> &'a FloatParameter {
-    let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name);
+    let index = OpenPbrDesc::number(name);
     &surface(desc).numbers[index.expect("a name")]
 }
 
@@ -26,7 +26,7 @@ fn number(desc: &SceneDesc, name: &str) -> f32 {
 }
 
 fn color(desc: &SceneDesc, name: &str) -> [f32; 3] {
-    let index = OpenPbrDesc::COLORS.iter().position(|(known, _)| *known == name);
+    let index = OpenPbrDesc::color(name);
     match &surface(desc).colors[index.expect("a name")] {
         SpectrumParameter::Value(SpectrumDesc::Rgb { rgb, .. }) => *rgb,
         SpectrumParameter::Value(SpectrumDesc::Constant(value)) => [*value; 3],
@@ -237,7 +237,7 @@ fn textures_of_several_sets_are_placed_by_each() {
         let MaterialKind::OpenPbr(surface) = &desc.materials[shape.material.expect("one")].kind else {
             panic!("another material")
         };
-        let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == "specular_roughness");
+        let index = OpenPbrDesc::number("specular_roughness");
         let MappingDesc::Affine { columns: [x, y, delta] } =
             texture(&desc, &surface.numbers[index.expect("a name")]).mapping
         else {

@@ -108,6 +108,6 @@ pub fn corners(shape: &ShapeDesc) -> Vec<[i64; 3]> {
 
 /// A number of a principled surface.
 pub fn number(surface: &OpenPbrDesc, name: &str) -> description::FloatParameter {
-    let index = OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name).unwrap();
+    let index = OpenPbrDesc::number(name).unwrap();
     surface.numbers[index].clone()
 }

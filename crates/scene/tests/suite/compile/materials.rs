@@ -104,7 +104,7 @@ fn wrong_values_of_principled_materials_are_errors() {
         let kind = MaterialKind::OpenPbr(Box::new(openpbr));
         with(|desc| desc.materials.push_stated(with_parameter(kind.into(), name, 4)))
     };
-    let number = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name).unwrap();
+    let number = |name: &str| OpenPbrDesc::number(name).unwrap();
     for (name, value, message) in [
         ("base_metalness", 1.5, "`base_metalness` lies between 0 and 1, as 1.5 does not"),
         ("specular_ior", 0.7, "`specular_ior` lies between 1 and 3, as 0.7 does not"),
