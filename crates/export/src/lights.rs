@@ -7,10 +7,11 @@ use description::{
     WrapMode,
 };
 use image::ColorEncoding;
-use math::{DMat4, Vec3};
+use math::DMat4;
 
 use crate::files::Files;
 use crate::names::Names;
+use crate::settings::parameters;
 use crate::statement::{Statement, quoted};
 use crate::text::Text;
 use crate::textures::uv_lookup;
@@ -31,7 +32,7 @@ pub(crate) fn lights(
     for (_, light) in desc.lights.iter() {
         let LightDesc { kind, world_from_light, scale, medium, group } = &light.value;
         let mut statement = Statement::new("LightSource", kind.name()).target("light");
-        write(&mut statement, kind, desc, files, extensions);
+        write(&mut statement, kind, desc, names, files, extensions);
         statement.float("scale", *scale, 1.0);
         write_group(&mut statement, group.as_deref(), extensions);
         // The medium of the camera is in force.
@@ -52,57 +53,28 @@ fn write(
     to: &mut Statement,
     kind: &LightKind,
     desc: &SceneDesc,
+    names: &Names,
     files: &mut Files,
     extensions: &mut BTreeSet<String>,
 ) {
+    parameters(to, kind, names);
     match kind {
-        LightKind::Point { intensity, power, from } => {
-            to.white_or("I", intensity);
-            to.optional_float("power", *power);
-            to.triple("point3", "from", *from, Vec3::ZERO);
-        }
-        LightKind::Spot { intensity, power, from, to: target, cone_angle, cone_delta_angle } => {
-            to.white_or("I", intensity);
-            to.optional_float("power", *power);
-            to.triple("point3", "from", *from, Vec3::ZERO);
-            to.triple("point3", "to", *target, Vec3::Z);
-            to.float("coneangle", *cone_angle, 30.0);
-            to.float("conedeltaangle", *cone_delta_angle, 5.0);
-        }
-        LightKind::Distant { radiance, illuminance, from, to: target } => {
-            to.white_or("L", radiance);
-            to.optional_float("illuminance", *illuminance);
-            to.triple("point3", "from", *from, Vec3::ZERO);
-            to.triple("point3", "to", *target, Vec3::Z);
-        }
-        LightKind::Goniometric { intensity, power, image: table } => {
-            to.white_or("I", intensity);
-            to.optional_float("power", *power);
-            if let Some(table) = table {
-                to.text("filename", &image(desc, *table, files));
+        LightKind::Goniometric { image: picture, .. } | LightKind::Projection { image: picture, .. } => {
+            if let Some(picture) = picture {
+                to.text("filename", &image(desc, *picture, files));
             }
         }
-        LightKind::Projection { image: slide, power, fov } => {
-            to.text("filename", &image(desc, *slide, files));
-            to.optional_float("power", *power);
-            to.float("fov", *fov, 90.0);
-        }
-        LightKind::Infinite { radiance, illuminance, portal } => {
-            match radiance {
-                InfiniteRadiance::Constant(color) => to.white_or("L", color),
-                InfiniteRadiance::Image(sky) => {
-                    let picture = &desc.images[*sky].image;
-                    if picture.width() != picture.height() {
-                        extensions.insert("latitude-longitude images".into());
-                    }
-                    to.text("filename", &image(desc, *sky, files));
-                }
+        LightKind::Infinite { radiance: InfiniteRadiance::Image(sky), .. } => {
+            let picture = &desc.images[*sky].image;
+            if picture.width() != picture.height() {
+                extensions.insert("latitude-longitude images".into());
             }
-            to.optional_float("illuminance", *illuminance);
-            if let Some(portal) = portal {
-                to.triples("point3", "portal", portal);
-            }
+            to.text("filename", &image(desc, *sky, files));
         }
+        LightKind::Infinite { .. }
+        | LightKind::Point { .. }
+        | LightKind::Spot { .. }
+        | LightKind::Distant { .. } => (),
     }
 }
 
@@ -110,22 +82,20 @@ fn write(
 pub(crate) fn area_light(
     desc: &SceneDesc,
     light: &AreaLightDesc,
+    names: &Names,
     files: &mut Files,
     extensions: &mut BTreeSet<String>,
 ) -> Statement {
-    let AreaLightDesc { radiance, image: picture, scale, power, two_sided, group } = light;
     let mut statement = Statement::new("AreaLightSource", "diffuse").target("light");
-    match picture {
-        Some(picture) => {
-            let name = image(desc, picture.image, files);
-            statement.text("filename", &name);
-            uv_lookup(&mut statement, picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
-        }
-        None => statement.white_or("L", radiance),
+    let mut light = light.clone();
+    let group = light.group.take();
+    if let Some(picture) = light.image {
+        light.radiance = AreaLightDesc::default().radiance;
+        let name = image(desc, picture.image, files);
+        statement.text("filename", &name);
+        uv_lookup(&mut statement, &picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
     }
-    statement.float("scale", *scale, 1.0);
-    statement.optional_float("power", *power);
-    statement.flag("twosided", *two_sided, false);
+    parameters(&mut statement, &light, names);
     write_group(&mut statement, group.as_deref(), extensions);
     statement
 }

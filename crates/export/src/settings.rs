@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use description::schema::{Field, Setting, Settings, Value};
+use description::schema::{Field, Setting, SettingType, Settings, Value};
 use description::{OptionsDesc, SceneDesc, SpectrumDesc};
+use math::Point3;
 
 use crate::names::Names;
 use crate::number::decimal;
@@ -68,6 +69,11 @@ pub(crate) fn statement<T: Settings + Clone + Default>(
 
 /// The parameters of a member of a scene that differ from its defaults.
 pub(crate) fn parameters<T: Settings + Clone + Default>(to: &mut Statement, desc: &T, names: &Names) {
+    for Setting { value, .. } in desc.settings() {
+        if let Value::Spectrum(SpectrumDesc::Illuminant(space)) = value {
+            to.space = Some(space);
+        }
+    }
     for Setting { field, value, .. } in changed(desc) {
         write(to, field, &value, Some(names));
     }
@@ -79,6 +85,13 @@ fn write(to: &mut Statement, field: &Field, value: &Value, names: Option<&Names>
     match (value, names) {
         (Value::Spectrum(SpectrumDesc::Constant(value)), _) if field.domain.takes_numbers => {
             to.floats(name, [*value]);
+        }
+        // The white of the colour space in force is the default.
+        (Value::Spectrum(SpectrumDesc::Illuminant(_)), _) => (),
+        (Value::Point(point), _) => to.triples("point3", name, &[*point]),
+        (Value::List(values), _) if matches!(values[..], [Value::Point(_), ..]) => {
+            let points: Vec<Point3> = values.iter().filter_map(Point3::from_value).collect();
+            to.triples("point3", name, &points);
         }
         (Value::Spectrum(spectrum), _) => to.spectrum(name, spectrum),
         (Value::FloatTexture(texture), Some(names)) => {
@@ -115,7 +128,11 @@ fn written(value: &Value) -> Option<(&'static str, Vec<String>)> {
             let kind = values.first().map_or("float", |(kind, _)| kind);
             (kind, values.into_iter().flat_map(|(_, values)| values).collect())
         }
-        Value::Spectrum(_) | Value::FloatTexture(_) | Value::SpectrumTexture(_) | Value::Automatic => {
+        Value::Point(_)
+        | Value::Spectrum(_)
+        | Value::FloatTexture(_)
+        | Value::SpectrumTexture(_)
+        | Value::Automatic => {
             return None;
         }
     })

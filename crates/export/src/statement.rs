@@ -121,12 +121,6 @@ impl Statement {
         }
     }
 
-    pub(crate) fn optional_float(&mut self, name: &str, value: Option<f32>) {
-        if let Some(value) = value {
-            self.floats(name, [value]);
-        }
-    }
-
     pub(crate) fn floats(&mut self, name: &str, values: impl IntoIterator<Item = f32>) {
         self.numbers("float", name, values);
     }

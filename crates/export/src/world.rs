@@ -88,7 +88,7 @@ impl World<'_, '_> {
             directives.iter().for_each(|line| self.text.line(line));
             if let Some(light) = run[0].area_light {
                 let light = &self.desc.area_lights[light];
-                let light = area_light(self.desc, light, self.files, self.extensions);
+                let light = area_light(self.desc, light, self.names, self.files, self.extensions);
                 self.text.statement(light);
             }
             for desc in run {

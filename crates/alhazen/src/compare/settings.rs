@@ -42,9 +42,11 @@ fn json_value(value: &Value) -> Json {
             let text = value.to_string();
             serde_json::from_str(&text).unwrap_or(Json::String(text))
         }
-        Value::Text(_) | Value::Spectrum(_) | Value::FloatTexture(_) | Value::SpectrumTexture(_) => {
-            value.to_string().into()
-        }
+        Value::Text(_)
+        | Value::Point(_)
+        | Value::Spectrum(_)
+        | Value::FloatTexture(_)
+        | Value::SpectrumTexture(_) => value.to_string().into(),
         Value::List(values) => values.iter().map(json_value).collect(),
         Value::Automatic => Json::Null,
     }

@@ -53,7 +53,7 @@ fn type_of(kind: Kind, names: &[&str]) -> String {
         Kind::Choice(names) => choice(names),
         Kind::Text if !names.is_empty() => choice(names),
         Kind::Text => "str".into(),
-        Kind::Spectrum | Kind::FloatParameter | Kind::SpectrumParameter => {
+        Kind::Point | Kind::Spectrum | Kind::FloatParameter | Kind::SpectrumParameter => {
             unreachable!("settings have no colours or textures")
         }
         Kind::List(kind, _) => format!("Sequence[{}]", type_of(*kind, names)),

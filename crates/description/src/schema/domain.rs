@@ -94,6 +94,7 @@ impl Domain {
             }
             Value::List(values) => values.iter().all(|value| self.contains(value)),
             Value::Bool(_)
+            | Value::Point(_)
             | Value::Spectrum(_)
             | Value::FloatTexture(_)
             | Value::SpectrumTexture(_)
@@ -119,6 +120,7 @@ impl Domain {
             Kind::Text if !self.names.is_empty() => format!("one of {}", self.names.join(", ")),
             Kind::Text if !self.extension.is_empty() => format!("a name that ends in {}", self.extension),
             Kind::Text => "a text".into(),
+            Kind::Point => "a point".into(),
             Kind::Spectrum | Kind::SpectrumParameter => "a spectrum".into(),
             Kind::List(kind, count) => {
                 format!("{count} values separated by commas, each {}", self.describe(*kind))

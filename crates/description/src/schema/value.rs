@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use math::Point3;
+
 use crate::{
     FloatParameter, FloatTextureDesc, Handle, Parameter, SpectrumDesc, SpectrumParameter, SpectrumTextureDesc,
 };
@@ -17,6 +19,8 @@ pub enum Value {
     Number(f32),
     /// A text, or the name of a choice.
     Text(String),
+    /// A point.
+    Point(Point3),
     /// A spectrum.
     Spectrum(SpectrumDesc),
     /// A texture in place of a number.
@@ -37,7 +41,9 @@ impl fmt::Display for Value {
             Self::Integer(value) => value.fmt(f),
             Self::Number(value) => value.fmt(f),
             Self::Text(value) => value.fmt(f),
+            Self::Point(Point3 { x, y, z }) => write!(f, "{x} {y} {z}"),
             Self::Spectrum(SpectrumDesc::Constant(value)) => value.fmt(f),
+            Self::Spectrum(SpectrumDesc::Illuminant(_)) => "white".fmt(f),
             Self::Spectrum(SpectrumDesc::Rgb { rgb: [r, g, b], .. }) => write!(f, "{r} {g} {b}"),
             Self::Spectrum(SpectrumDesc::Named(name)) => name.fmt(f),
             Self::Spectrum(_) => "a spectrum".fmt(f),
@@ -66,6 +72,8 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// A text.
     Text,
+    /// A point.
+    Point,
     /// A spectrum.
     Spectrum,
     /// A number or a texture.
@@ -86,6 +94,11 @@ impl Kind {
             Self::Number | Self::FloatParameter => text.parse().ok().map(Value::Number),
             Self::Spectrum | Self::SpectrumParameter => {
                 text.parse().ok().map(|value| Value::Spectrum(SpectrumDesc::Constant(value)))
+            }
+            Self::Point => {
+                let numbers: Option<Vec<f32>> = text.split(' ').map(|number| number.parse().ok()).collect();
+                let &[x, y, z] = numbers?.as_slice() else { return None };
+                Some(Value::Point(Point3::new(x, y, z)))
             }
             Self::Choice(names) => names.contains(&text).then(|| Value::Text(text.to_owned())),
             Self::Text => Some(Value::Text(text.to_owned())),
@@ -159,6 +172,7 @@ setting_types! {
     i32: Integer = Integer(|&value: &i32| value.into(), |&value: &i64| value.try_into().ok()),
     u32: Count = Integer(|&value: &u32| value.into(), |&value: &i64| value.try_into().ok()),
     f32: Number = Number(|&value: &f32| value, |&value: &f32| Some(value)),
+    Point3: Point = Point(|&value: &Point3| value, |&value: &Point3| Some(value)),
     SpectrumDesc: Spectrum = Spectrum(SpectrumDesc::clone, |value: &SpectrumDesc| Some(value.clone())),
     String: Text = Text(String::clone, |value: &String| Some(value.clone())),
 }

@@ -156,7 +156,7 @@ fn plain(desc: &SceneDesc) -> SceneDesc {
         still(&mut light.world_from_light);
         match &mut light.kind {
             LightKind::Goniometric { image: Some(image), .. }
-            | LightKind::Projection { image, .. }
+            | LightKind::Projection { image: Some(image), .. }
             | LightKind::Infinite { radiance: InfiniteRadiance::Image(image), .. } => fixed(image),
             _ => (),
         }

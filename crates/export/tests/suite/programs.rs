@@ -80,7 +80,11 @@ fn images_are_kept_with_their_codes_and_values() {
             normal_map: Some(UvImageDesc::new(image, WrapMode::Repeat)),
             ..kind.into()
         });
-        desc.lights.push(LightDesc::from(LightKind::Projection { image, power: None, fov: 45.0 }));
+        desc.lights.push(LightDesc::from(LightKind::Projection {
+            image: Some(image),
+            power: None,
+            fov: 45.0,
+        }));
     }
     let text = check(&desc);
     assert!(text.contains(r#""string encoding" "gamma 1.7""#), "{text}");
@@ -173,7 +177,7 @@ fn a_file_that_cannot_be_written_ends_the_export() {
     for size in [2, 3] {
         let image = Arc::new(Image::from_fn(size, size, ["R", "G", "B"], |_, _| [1.0; 3]));
         let image = desc.images.push(ImageDesc { name: "any".into(), image });
-        desc.lights.push(LightKind::Projection { image, power: None, fov: 45.0 }.into());
+        desc.lights.push(LightKind::Projection { image: Some(image), power: None, fov: 45.0 }.into());
     }
     let mut calls = 0;
     let result = export(&desc, "files", &mut |_, _| {

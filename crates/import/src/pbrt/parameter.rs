@@ -38,6 +38,7 @@ impl ParameterType {
             Kind::Number => &[Self::Float],
             Kind::List(kind, _) => Self::of(*kind),
             Kind::Choice(_) | Kind::Text => &[Self::String],
+            Kind::Point => &[Self::Point3],
             Kind::Spectrum => &[Self::Rgb, Self::Spectrum, Self::Blackbody],
             Kind::FloatParameter => &[Self::Float, Self::Texture],
             Kind::SpectrumParameter => &[Self::Rgb, Self::Spectrum, Self::Blackbody, Self::Texture],

@@ -317,7 +317,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     (r#"LightSource "point" "float scale" -2"#, "1:21 error[parameter-value] `scale` cannot be negative"),
     (
         r#"AreaLightSource "diffuse" "float scale" -2"#,
-        "1:27 error[parameter-value] `scale` cannot be negative",
+        "1:27 error[parameter-value] `scale` is a number of 0 or more, not -2",
     ),
     (
         r#"LightSource "point" "float power" 0"#,
@@ -329,11 +329,11 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"LightSource "spot" "float coneangle" 0"#,
-        "1:20 error[parameter-value] `coneangle` must be above 0 and at most 180 degrees",
+        "1:20 error[parameter-value] `coneangle` is a number above 0 and at most 180, not 0",
     ),
     (
         r#"LightSource "spot" "float conedeltaangle" -1"#,
-        "1:20 error[parameter-value] `conedeltaangle` must lie between 0 and 180 degrees",
+        "1:20 error[parameter-value] `conedeltaangle` is a number from 0 to 180, not -1",
     ),
     (r#"Shape "spheres" "float radius" 2"#, "1:7 error[missing-parameter] `spheres` needs the parameter `P`"),
     (

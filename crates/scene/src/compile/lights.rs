@@ -144,7 +144,8 @@ impl Compiler<'_> {
                 let emission = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
                 self.goniometric(emission, power.is_some(), *handle, render_from_light, origin)?
             }
-            LightKind::Projection { image, power, fov } => {
+            LightKind::Projection { image: None, .. } => return None,
+            LightKind::Projection { image: Some(image), power, fov } => {
                 let span = origin.parameter("filename");
                 let (image, mut scale) = self.emission_image(*image, desc.scale, span)?;
                 let bytes = image.image.width() as usize * image.image.height() as usize;

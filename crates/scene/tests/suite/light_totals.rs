@@ -170,7 +170,9 @@ fn irradiance_of_delta_lights_in_closed_form() {
         power: None,
         image: Some(image),
     });
-    let slide = |power| free_with_image(even(3.0), |image| LightKind::Projection { image, power, fov: 90.0 });
+    let slide = |power| {
+        free_with_image(even(3.0), |image| LightKind::Projection { image: Some(image), power, fov: 90.0 })
+    };
     let illuminant = spectrum::RgbColorSpace::srgb();
     let day = spectrum::Spectrum::rgb_illuminant(illuminant, spectrum::Rgb::new(3.0, 3.0, 3.0));
     let day = day.sample(&lambda())[0] / day.to_photometric();

@@ -248,6 +248,10 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// Reads those settings that are given.
     pub(crate) fn settings(&mut self, desc: &mut impl Settings) {
         desc.visit(&mut |field, slot| {
+            // The white of the colour space in force.
+            if let Value::Spectrum(SpectrumDesc::Illuminant(_)) = slot.get() {
+                slot.set(&Value::Spectrum(SpectrumDesc::Illuminant(self.color_space)));
+            }
             let value = self.setting(field, slot.kind());
             self.asked.last_mut().into_iter().for_each(|asked| asked.note_setting(field, slot));
             let Some(value) = value else { return };
@@ -275,12 +279,21 @@ impl<'b, 'a> Reader<'b, 'a> {
                 self.name_of(name, field.domain.names).map(Value::Text)
             }
             Kind::Text => self.string(name).map(|text| Value::Text(text.value)),
+            Kind::Point => {
+                let points = self.points3(name)?;
+                let &[point] = &*points else {
+                    self.count(name, 3, 3 * points.len(), self.origin.parameter(name));
+                    return None;
+                };
+                Some(Value::Point(point))
+            }
             Kind::Spectrum if field.domain.takes_numbers => self.index_or_spectrum(name).map(Value::Spectrum),
             Kind::Spectrum => self.spectrum(name).map(Value::Spectrum),
             Kind::FloatParameter => self.optional_float_parameter(name).map(|value| value.to_value()),
             Kind::SpectrumParameter => self.optional_spectrum_parameter(name).map(|value| value.to_value()),
             Kind::List(kind, count) => {
                 let values: Vec<Value> = match kind {
+                    Kind::Point => self.points3(name)?.iter().map(|&point| Value::Point(point)).collect(),
                     Kind::Number => self.floats(name)?.iter().map(|&value| Value::Number(value)).collect(),
                     _ => self.integers(name)?.iter().map(|&value| Value::Integer(value.into())).collect(),
                 };

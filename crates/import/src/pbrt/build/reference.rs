@@ -277,7 +277,7 @@ fn tables() -> String {
     textures.retain(|kind| seen.insert(*kind));
     let textures: Vec<_> = textures.into_iter().map(|kind| (vec![kind], "", texture_rows(kind))).collect();
     text += &meanings.section("Textures", "Texture", &textures);
-    text += &meanings.named("Lights", "LightSource", "LightSource", LightType::NAMES);
+    text += &meanings.members("Lights", "LightSource", LightType::MEMBERS);
     text += &meanings.named("Area lights", "AreaLightSource", "AreaLightSource", &["diffuse"]);
     text += &meanings.named("Media", "MakeNamedMedium", "MakeNamedMedium \"a\"", MediumType::NAMES);
     let list = |names: Vec<&str>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");

@@ -136,7 +136,11 @@ pub fn goniometric(power: Option<f32>) -> SceneDesc {
 
 pub fn projection(power: Option<f32>) -> SceneDesc {
     let pixel = |x, y| if (x, y) == (2, 1) { [0.0; 3] } else { colours(x, y) };
-    free_with_image(rgb_image(6, 4, pixel), |image| LightKind::Projection { image, power, fov: 70.0 })
+    free_with_image(rgb_image(6, 4, pixel), |image| LightKind::Projection {
+        image: Some(image),
+        power,
+        fov: 70.0,
+    })
 }
 
 /// A tilted portal above the reference points.

@@ -441,7 +441,7 @@ fn images_of_lights_are_checked() {
     let projection = |image, power| {
         with(|desc| {
             let image = desc.images.push(image);
-            let kind = LightKind::Projection { image, power, fov: 60.0 };
+            let kind = LightKind::Projection { image: Some(image), power, fov: 60.0 };
             desc.lights.push_stated(with_parameter(kind.into(), "filename", 4));
         })
     };
