@@ -21,6 +21,20 @@ pub struct VoxelsDesc {
     pub world_from_index: [[f64; 4]; 3],
 }
 
+impl Default for VoxelsDesc {
+    /// A grid without active voxels, of the value 0.
+    fn default() -> Self {
+        Self {
+            origin: [0; 3],
+            bricks: [0; 3],
+            table: Arc::new([]),
+            values: Arc::new([0.0; 512]),
+            active: [[0; 3], [-1; 3]],
+            world_from_index: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
+        }
+    }
+}
+
 impl VoxelsDesc {
     /// The value of a voxel; outside of all bricks, of the background.
     pub fn value(&self, index: [i32; 3]) -> f32 {

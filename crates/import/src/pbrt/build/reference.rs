@@ -217,8 +217,8 @@ impl Meanings {
     }
 
     /// The members of a scene's set.
-    fn members(&mut self, title: &str, directive: &str, members: &'static [Member]) -> String {
-        let rows = |kind| rows(directive, kind);
+    fn members(&mut self, title: &str, directive: &str, statement: &str, members: &[Member]) -> String {
+        let rows = |kind| rows(statement, kind);
         let types: Vec<_> = members
             .iter()
             .map(|member| (member.names.to_vec(), member.help, rows(member.names[0])))
@@ -270,16 +270,16 @@ fn tables() -> String {
     text += &meanings.settings::<AcceleratorDesc>("Accelerators", "Accelerator");
     let shapes = [ShapeType::NAMES, &["polygon"]].concat();
     text += &meanings.named("Shapes", "Shape", "Shape", &shapes);
-    text += &meanings.members("Materials", "Material", MaterialType::MEMBERS);
+    text += &meanings.members("Materials", "Material", "Material", MaterialType::MEMBERS);
     let numbers = <f32 as TextureValue>::TYPES.iter();
     let mut textures: Vec<&str> = numbers.chain(<SpectrumDesc as TextureValue>::TYPES).copied().collect();
     let mut seen = BTreeSet::new();
     textures.retain(|kind| seen.insert(*kind));
     let textures: Vec<_> = textures.into_iter().map(|kind| (vec![kind], "", texture_rows(kind))).collect();
     text += &meanings.section("Textures", "Texture", &textures);
-    text += &meanings.members("Lights", "LightSource", LightType::MEMBERS);
+    text += &meanings.members("Lights", "LightSource", "LightSource", LightType::MEMBERS);
     text += &meanings.named("Area lights", "AreaLightSource", "AreaLightSource", &["diffuse"]);
-    text += &meanings.named("Media", "MakeNamedMedium", "MakeNamedMedium \"a\"", MediumType::NAMES);
+    text += &meanings.members("Media", "MakeNamedMedium", "MakeNamedMedium \"a\"", MediumType::MEMBERS);
     let list = |names: Vec<&str>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     text += &format!("## Names of spectra\n\n{}\n\n", list(spectrum::names().collect()));
     text += &format!("## Names of substances\n\n{}\n", list(Substance::names().collect()));
