@@ -74,7 +74,10 @@ impl Algorithm {
             }
             IntegratorDesc::Mlt(settings) => bounded(settings.max_depth).map(|()| Self::Mlt(settings, seed)),
             IntegratorDesc::Sppm(settings) => Ok(Self::Sppm(settings, seed)),
-            _ => Err(format!("integrator `{name}`")),
+            IntegratorDesc::PhotonMapping(_)
+            | IntegratorDesc::Vcm(_)
+            | IntegratorDesc::Radiosity(_)
+            | IntegratorDesc::Function(_) => Err(format!("integrator `{name}`")),
         }
     }
 
@@ -95,39 +98,40 @@ impl Algorithm {
 
     /// The number of passes that are planned, given the sampler of camera rays.
     pub fn passes(&self, sampler: &Sampler) -> u32 {
-        match self {
-            Self::Mlt(desc, _) => desc.mutations_per_pixel,
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::AmbientOcclusion(..)
-            | Self::Path(_)
-            | Self::VolPath(_)
-            | Self::SimpleVolPath(_)
-            | Self::SimplePath(_)
-            | Self::RandomWalk(_)
-            | Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::Sppm(..) => sampler.samples_per_pixel(),
-        }
+        if let Self::Mlt(desc, _) = self { desc.mutations_per_pixel } else { sampler.samples_per_pixel() }
     }
 
     /// Whether paths begin at lights, so that there are pictures only as a whole.
     pub fn begins_at_lights(&self) -> bool {
-        match self {
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::AmbientOcclusion(..)
-            | Self::Path(_)
-            | Self::VolPath(_)
-            | Self::SimpleVolPath(_)
-            | Self::SimplePath(_)
-            | Self::RandomWalk(_) => false,
-            Self::LightTracing(_) | Self::Bdpt(_) | Self::Mlt(..) | Self::Sppm(..) => true,
-        }
+        self.traits().light_paths
     }
 
     /// Whether paths add light to any pixel of the film.
     pub fn splats(&self) -> bool {
-        self.begins_at_lights() && !matches!(self, Self::Sppm(..))
+        self.traits().splats
     }
+
+    /// The facts of the algorithm.
+    pub(crate) fn traits(&self) -> Traits {
+        let [media, bodies, light_paths, splats] = match self {
+            Self::RayCasting | Self::Whitted(_) | Self::AmbientOcclusion(..) => [false; 4],
+            Self::SimplePath(_) | Self::RandomWalk(_) => [true, false, false, false],
+            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) => [true, true, false, false],
+            Self::LightTracing(_) | Self::Bdpt(_) | Self::Mlt(..) => [false, false, true, true],
+            Self::Sppm(..) => [false, false, true, false],
+        };
+        Traits { media, bodies, light_paths, splats }
+    }
+}
+
+/// Facts of an algorithm.
+pub(crate) struct Traits {
+    /// Paths pass interfaces, and are scattered by media or ignore them.
+    pub media: bool,
+    /// Paths go on under the surface of bodies.
+    pub bodies: bool,
+    /// Paths begin at lights.
+    pub light_paths: bool,
+    /// Paths add light to any pixel of the film.
+    pub splats: bool,
 }

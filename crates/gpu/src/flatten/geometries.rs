@@ -7,6 +7,7 @@
 //! ribbons are the normals at both ends of each primitive, four words each.
 
 use geometry::{CurveKind, Curves, Geometry, GeometryId, PlainShape, Triangle, TriangleMesh};
+use scene::GeometryEntry;
 
 use super::Flattener;
 use super::slab::padded;
@@ -32,21 +33,14 @@ impl Flattener<'_> {
                     self.parts.curves = true;
                 }
             }
-            let alpha = entry.alpha.map_or(0, |alpha| self.number_texture(alpha, entry.span));
-            self.parts.holes |= entry.alpha.is_some();
-            let light = entry.first_light.map_or(0, |light| light + 1);
-            let single_sided = entry.single_sided;
+            // Media have a table of their own.
+            let &GeometryEntry { material, alpha, single_sided, first_light, media: _, span } = entry;
+            self.parts.holes |= alpha.is_some();
             self.parts.single_sided |= single_sided;
-            rows.extend([
-                entry.material.0,
-                light,
-                attributes,
-                flips.into(),
-                alpha,
-                single_sided.into(),
-                0,
-                0,
-            ]);
+            let alpha = alpha.map_or(0, |alpha| self.number_texture(alpha, span));
+            let light = first_light.map_or(0, |light| light + 1);
+            let sides = [flips, single_sided].map(u32::from);
+            rows.extend([material.0, light, attributes, sides[0], alpha, sides[1], 0, 0]);
         }
         self.slab.add(rows)
     }

@@ -32,7 +32,8 @@ use geometry::{PlainShape, RevolvedKind, Shape};
 use image::{Image, Projection};
 use math::{AnimatedTransform, DVec3};
 use scene::light::{
-    AreaEmission, AreaLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef, ProjectionLight,
+    AreaEmission, AreaLight, DistantLight, Emission, EmissionImage, ImageInfiniteLight, Light, LightRef,
+    PointLight, ProjectionLight, SpotLight, UniformInfiniteLight,
 };
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 
@@ -73,23 +74,25 @@ impl Flattener<'_> {
     fn light(&mut self, light: &LightRef, shared: &mut Option<[u32; 2]>) -> u32 {
         let span = light.span();
         match light.row() {
-            Light::Point(l) => {
+            Light::Point(PointLight { p, motion, intensity }) => {
                 self.parts.point_lights = true;
-                let motion = self.motion(l.motion.as_deref(), span);
-                self.emitter(POINT, &l.intensity, motion, &padded([l.p.to_array()]))
+                let motion = self.motion(motion.as_deref(), span);
+                self.emitter(POINT, intensity, motion, &padded([p.to_array()]))
             }
-            Light::Spot(l) => {
+            Light::Spot(SpotLight { p, axis, motion, intensity, cos_falloff_start, cos_falloff_end }) => {
                 self.parts.point_lights = true;
-                let motion = self.motion(l.motion.as_deref(), span);
-                let vectors = padded([l.p, l.axis].map(|v| v.to_array()));
-                let numbers = [&vectors[..], &[l.cos_falloff_start, l.cos_falloff_end]];
-                self.emitter(SPOT, &l.intensity, motion, &numbers.concat())
+                let motion = self.motion(motion.as_deref(), span);
+                let vectors = padded([p, axis].map(|v| v.to_array()));
+                let numbers = [&vectors[..], &[*cos_falloff_start, *cos_falloff_end]];
+                self.emitter(SPOT, intensity, motion, &numbers.concat())
             }
-            Light::Distant(l) => {
-                let motion = self.motion(l.motion.as_deref(), span);
-                self.emitter(DISTANT, &l.radiance, motion, &padded([l.w.to_array()]))
+            Light::Distant(DistantLight { w, motion, radiance, scene: _ }) => {
+                let motion = self.motion(motion.as_deref(), span);
+                self.emitter(DISTANT, radiance, motion, &padded([w.to_array()]))
             }
-            Light::UniformInfinite(l) => self.emitter(UNIFORM_INFINITE, &l.radiance, 0, &[]),
+            Light::UniformInfinite(UniformInfiniteLight { radiance, scene: _ }) => {
+                self.emitter(UNIFORM_INFINITE, radiance, 0, &[])
+            }
             Light::Area(area) => {
                 if light.primitive() == 0 {
                     *shared = None;
@@ -133,8 +136,9 @@ impl Flattener<'_> {
 
     /// A light without a surface, with the offset of its motion.
     pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, motion: u32, numbers: &[f32]) -> u32 {
-        let spectrum = self.spectrum(&emission.spectrum);
-        let at = self.slab.add([kind, spectrum, emission.scale.to_bits(), 4 * motion]);
+        let Emission { spectrum, scale } = emission;
+        let at = [kind, self.spectrum(spectrum), scale.to_bits(), 4 * motion];
+        let at = self.slab.add(at);
         self.slab.extend_numbers(numbers.iter().copied());
         at
     }
@@ -194,21 +198,22 @@ impl Flattener<'_> {
         shared: &mut Option<[u32; 2]>,
     ) -> u32 {
         self.parts.surface_lights = true;
-        let emission = &self.scene.emissions()[area.emission.0 as usize];
+        let AreaLight { geometry, instance, emission, alpha: _, invisible, scales } = area;
+        let emission = &self.scene.emissions()[emission.0 as usize];
         let [spectrum, more] = *shared.get_or_insert_with(|| self.emission(area, emission, span));
-        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
-        let flags = u32::from(emission.two_sided) + 2 * u32::from(area.invisible);
+        let scale = scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
+        let flags = u32::from(emission.two_sided) + 2 * u32::from(*invisible);
         let words = [spectrum, scale.to_bits(), flags + 4 * more];
-        if area.instance.is_top() {
+        if instance.is_top() {
             return self.surface(area, primitive, words, span);
         }
         // Instances share the surface.
-        let id = (area.geometry.0, primitive);
+        let id = (geometry.0, primitive);
         let known = self.surfaces.get(&id).copied();
         let surface = known.unwrap_or_else(|| self.surface(area, primitive, [0; 3], span));
         self.surfaces.insert(id, surface);
         // There are no instances where the world is refused.
-        let item = self.instances.get(&area.instance).copied().unwrap_or(0);
+        let item = self.instances.get(instance).copied().unwrap_or(0);
         self.slab.add([PLACED].into_iter().chain(words).chain([surface, item]))
     }
 

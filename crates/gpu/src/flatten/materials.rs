@@ -21,8 +21,9 @@
 use description::Span;
 use scene::GeometryEntry;
 use scene::material::{
-    Coat, ConductorIndex, ConductorMaterial, HairAbsorption, HairMaterial, Material, MaterialEntry,
-    MaterialId, NormalMap, Roughness,
+    BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
+    DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
+    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use spectrum::{RgbColorSpace, Spectrum};
 
@@ -72,59 +73,69 @@ impl Flattener<'_> {
     }
 
     fn entry(&mut self, entry: &MaterialEntry) -> u32 {
-        let span = entry.span;
-        let (kind, words, textures) = self.material(&entry.material, span);
-        let normals = entry.normal_map.as_ref().map_or(0, |map| self.normal_map(map, span));
-        let height = entry.bump_map.map_or(0, |map| self.number_texture(map.displacement, span));
-        self.parts.bumps |= entry.normal_map.is_some() || entry.bump_map.is_some();
+        let &MaterialEntry { ref material, ref normal_map, bump_map, span } = entry;
+        let (kind, words, textures) = self.material(material, span);
+        let normals = normal_map.as_ref().map_or(0, |map| self.normal_map(map, span));
+        let height = bump_map.map_or(0, |BumpMap { displacement }| self.number_texture(displacement, span));
+        self.parts.bumps |= normal_map.is_some() || bump_map.is_some();
         let head = [kind, normals, height, textures.len() as u32];
         self.slab.add(head.into_iter().chain(words).chain(textures))
     }
 
     /// The image of normals.
     pub(super) fn normal_map(&mut self, map: &NormalMap, span: Span) -> u32 {
-        self.uv_image(&map.image, &map.lookup, span)
+        let NormalMap { image, lookup } = map;
+        self.uv_image(image, lookup, span)
     }
 
     fn material(&mut self, material: &Material, span: Span) -> Record {
         match material {
-            Material::Diffuse(m) => (DIFFUSE, [0; 8], vec![self.spectrum_texture(m.reflectance, span)]),
-            Material::DiffuseTransmission(m) => {
-                let textures = [m.reflectance, m.transmittance].map(|id| self.spectrum_texture(id, span));
-                (DIFFUSE_TRANSMISSION, words([m.scale.to_bits()]), textures.to_vec())
+            Material::Diffuse(DiffuseMaterial { reflectance }) => {
+                (DIFFUSE, [0; 8], vec![self.spectrum_texture(*reflectance, span)])
+            }
+            Material::DiffuseTransmission(DiffuseTransmissionMaterial {
+                reflectance,
+                transmittance,
+                scale,
+            }) => {
+                let textures = [reflectance, transmittance].map(|id| self.spectrum_texture(*id, span));
+                (DIFFUSE_TRANSMISSION, words([scale.to_bits()]), textures.to_vec())
             }
             Material::Conductor(m) => {
                 let (remap, is_reflectance, textures) = self.conductor(m, span);
                 (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures)
             }
-            Material::Dielectric(m) => {
+            Material::Dielectric(DielectricMaterial { eta, roughness }) => {
                 self.parts.facets = true;
-                let (remap, textures) = self.roughness(&m.roughness, span);
-                let [eta, varies] = self.index(&m.eta);
+                let (remap, textures) = self.roughness(roughness, span);
+                let [eta, varies] = self.index(eta);
                 (DIELECTRIC, words([remap, eta, varies]), textures)
             }
-            Material::ThinDielectric(m) => {
+            Material::ThinDielectric(ThinDielectricMaterial { eta }) => {
                 self.parts.facets = true;
-                let [eta, varies] = self.index(&m.eta);
+                let [eta, varies] = self.index(eta);
                 (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new())
             }
-            Material::Mix(m) => {
+            Material::Mix(MixMaterial { materials, amount }) => {
                 let is_interface = |id: &MaterialId| {
                     matches!(self.scene.materials()[id.0 as usize].material, Material::Interface)
                 };
-                if m.materials.iter().any(is_interface) {
+                if materials.iter().any(is_interface) {
                     self.refuse("mixes with material `interface`", span);
                 }
-                let pair = m.materials.map(|material| material.0);
-                (MIX, words(pair), vec![self.number_texture(m.amount, span)])
+                let pair = materials.map(|material| material.0);
+                (MIX, words(pair), vec![self.number_texture(*amount, span)])
             }
-            Material::CoatedDiffuse(m) => {
-                let base = vec![self.spectrum_texture(m.base.reflectance, span)];
-                self.coated(COATED_DIFFUSE, &m.coat, [0, 0], base, span)
+            Material::CoatedDiffuse(CoatedDiffuseMaterial {
+                base: DiffuseMaterial { reflectance },
+                coat,
+            }) => {
+                let base = vec![self.spectrum_texture(*reflectance, span)];
+                self.coated(COATED_DIFFUSE, coat, [0, 0], base, span)
             }
-            Material::CoatedConductor(m) => {
-                let (remap, is_reflectance, base) = self.conductor(&m.base, span);
-                self.coated(COATED_CONDUCTOR, &m.coat, [remap, is_reflectance], base, span)
+            Material::CoatedConductor(CoatedConductorMaterial { base, coat }) => {
+                let (remap, is_reflectance, base) = self.conductor(base, span);
+                self.coated(COATED_CONDUCTOR, coat, [remap, is_reflectance], base, span)
             }
             Material::OpenPbr(m) => {
                 let (record, textures) = self.principled(m, span);
@@ -132,9 +143,9 @@ impl Flattener<'_> {
             }
             Material::Interface => (INTERFACE, [0; 8], Vec::new()),
             Material::Hair(m) => self.hair(m, span),
-            Material::Measured(m) => {
+            Material::Measured(MeasuredMaterial { table }) => {
                 self.parts.measured = true;
-                (MEASURED, words([self.measured(&m.table)]), Vec::new())
+                (MEASURED, words([self.measured(table)]), Vec::new())
             }
             Material::Subsurface(m) => {
                 let (given, textures) = self.subsurface(m, span);
@@ -145,9 +156,9 @@ impl Flattener<'_> {
 
     fn hair(&mut self, hair: &HairMaterial, span: Span) -> Record {
         self.parts.hair = true;
-        let numbers = [hair.beta_m, hair.beta_n, hair.eta, hair.alpha];
-        let mut textures = numbers.map(|id| self.number_texture(id, span)).to_vec();
-        let given = match hair.absorption {
+        let &HairMaterial { absorption, eta, beta_m, beta_n, alpha } = hair;
+        let mut textures = [beta_m, beta_n, eta, alpha].map(|id| self.number_texture(id, span)).to_vec();
+        let given = match absorption {
             HairAbsorption::Coefficient(sigma_a) => {
                 textures.push(self.spectrum_texture(sigma_a, span));
                 [0, 0]
@@ -167,20 +178,22 @@ impl Flattener<'_> {
     /// A coat over a base, of which two words and the textures are given.
     fn coated(&mut self, kind: u32, coat: &Coat, base: [u32; 2], textures: Vec<u32>, span: Span) -> Record {
         self.parts.coats = true;
-        let (remap, mut all) = self.roughness(&coat.roughness, span);
-        all.extend([coat.thickness, coat.g].map(|id| self.number_texture(id, span)));
-        all.push(self.spectrum_texture(coat.albedo, span));
+        let Coat { eta, roughness, thickness, albedo, g, inner, max_depth, samples } = coat;
+        let (remap, mut all) = self.roughness(roughness, span);
+        all.extend([thickness, g].map(|id| self.number_texture(*id, span)));
+        all.push(self.spectrum_texture(*albedo, span));
         all.extend(textures);
-        let [eta, varies] = self.index(&coat.eta);
-        let inner = coat.inner.unwrap_or(-1.0).to_bits();
-        (kind, [base[0], eta, varies, base[1], remap, inner, coat.max_depth, coat.samples], all)
+        let [eta, varies] = self.index(eta);
+        let inner = inner.unwrap_or(-1.0).to_bits();
+        (kind, [base[0], eta, varies, base[1], remap, inner, *max_depth, *samples], all)
     }
 
     /// Of a metal whether α is the square root, whether k is its reflectance, and its textures.
     fn conductor(&mut self, metal: &ConductorMaterial, span: Span) -> (u32, u32, Vec<u32>) {
         self.parts.facets = true;
-        let (remap, mut textures) = self.roughness(&metal.roughness, span);
-        let (is_reflectance, spectra) = match metal.index {
+        let ConductorMaterial { index, roughness } = metal;
+        let (remap, mut textures) = self.roughness(roughness, span);
+        let (is_reflectance, spectra) = match *index {
             ConductorIndex::Complex { eta, k } => (0, vec![k, eta]),
             ConductorIndex::Reflectance(reflectance) => (1, vec![reflectance]),
         };
@@ -190,8 +203,8 @@ impl Flattener<'_> {
 
     /// Whether α is the square root, and the textures of roughness.
     pub(super) fn roughness(&mut self, roughness: &Roughness, span: Span) -> (u32, Vec<u32>) {
-        let textures = [roughness.u, roughness.v].map(|id| self.number_texture(id, span));
-        (roughness.remap.into(), textures.to_vec())
+        let &Roughness { u, v, remap } = roughness;
+        (remap.into(), [u, v].map(|id| self.number_texture(id, span)).to_vec())
     }
 
     /// An index of refraction, and whether it varies with the wavelength.

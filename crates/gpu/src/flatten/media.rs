@@ -25,8 +25,8 @@
 
 use description::Span;
 use scene::medium::{
-    CloudMedium, Coefficients, EmissionSource, Grid, GridEmission, MajorantGrid, Medium, MediumId,
-    MediumKind, NanoVdbMedium, Placement, RgbGridMedium, Temperature, UniformGridMedium, Voxels,
+    CloudMedium, Coefficients, EmissionSource, Grid, GridEmission, HomogeneousMedium, MajorantGrid, Medium,
+    MediumId, MediumKind, NanoVdbMedium, Placement, RgbGridMedium, Temperature, UniformGridMedium, Voxels,
 };
 use spectrum::RgbUnboundedSpectrum;
 
@@ -66,12 +66,12 @@ impl Flattener<'_> {
 
     fn medium(&mut self, medium: &Medium) -> u32 {
         let (matter, placement, majorants) = match &medium.kind {
-            MediumKind::Homogeneous(m) => {
-                let emission = m.le.as_ref().map_or(0, |le| {
+            MediumKind::Homogeneous(HomogeneousMedium { coefficients, le, le_scale }) => {
+                let emission = le.as_ref().map_or(0, |le| {
                     let le = self.spectrum(le);
-                    self.slab.add([0, m.le_scale.to_bits(), le, 0, 0, 0])
+                    self.slab.add([0, le_scale.to_bits(), le, 0, 0, 0])
                 });
-                let coefficients = self.coefficients(&m.coefficients);
+                let coefficients = self.coefficients(coefficients);
                 (Matter { kind: HOMOGENEOUS, coefficients, emission, values: 0 }, None, None)
             }
             MediumKind::UniformGrid(m) => (self.densities(m), Some(&m.placement), Some(&m.majorants)),
@@ -88,7 +88,8 @@ impl Flattener<'_> {
     }
 
     fn densities(&mut self, medium: &UniformGridMedium) -> Matter {
-        let emission = medium.emission.as_ref().map_or(0, |GridEmission { source, scale, factor }| {
+        let UniformGridMedium { placement: _, coefficients, density, majorants: _, emission } = medium;
+        let emission = emission.as_ref().map_or(0, |GridEmission { source, scale, factor }| {
             let factor = self.grid(factor);
             let [spectrum, temperatures, offset, kelvin] = match source {
                 EmissionSource::Spectrum(spectrum) => [self.spectrum(spectrum), 0, 0, 0],
@@ -99,41 +100,49 @@ impl Flattener<'_> {
             };
             self.slab.add([factor, scale.to_bits(), spectrum, temperatures, offset, kelvin])
         });
-        let coefficients = self.coefficients(&medium.coefficients);
-        Matter { kind: DENSITIES, coefficients, emission, values: self.grid(&medium.density) }
+        let coefficients = self.coefficients(coefficients);
+        Matter { kind: DENSITIES, coefficients, emission, values: self.grid(density) }
     }
 
     fn colours(&mut self, medium: &RgbGridMedium) -> Matter {
-        let [sigma_a, sigma_s] = [&medium.sigma_a, &medium.sigma_s]
-            .map(|grid| grid.as_ref().map_or(0, |grid| self.grid_of_colours(grid)));
-        let emission = medium.le.as_ref().map_or(0, |le| {
-            let (grid, illuminant) = (self.grid_of_colours(le), self.spectrum(&medium.space.illuminant()));
-            self.slab.add([grid, medium.le_scale.to_bits(), illuminant, 0, 0, 0])
+        let RgbGridMedium { placement: _, sigma_a, sigma_s, scale, majorants: _, le, le_scale, space } =
+            medium;
+        let [sigma_a, sigma_s] =
+            [sigma_a, sigma_s].map(|grid| grid.as_ref().map_or(0, |grid| self.grid_of_colours(grid)));
+        let emission = le.as_ref().map_or(0, |le| {
+            let (grid, illuminant) = (self.grid_of_colours(le), self.spectrum(&space.illuminant()));
+            self.slab.add([grid, le_scale.to_bits(), illuminant, 0, 0, 0])
         });
-        Matter {
-            kind: COLOURS,
-            coefficients: [sigma_a, sigma_s, medium.scale.to_bits()],
-            emission,
-            values: 0,
-        }
+        let coefficients = [sigma_a, sigma_s, scale.to_bits()];
+        Matter { kind: COLOURS, coefficients, emission, values: 0 }
     }
 
     fn cloud(&mut self, medium: &CloudMedium) -> Matter {
-        let CloudMedium { bounds, density, wispiness, frequency, .. } = medium;
+        let CloudMedium {
+            placement: _,
+            bounds,
+            coefficients,
+            majorants: _,
+            density,
+            wispiness,
+            frequency,
+            instruction_set: _,
+        } = medium;
         let [low, size] = [bounds.min, bounds.diagonal()].map(|v| v.to_array());
         let numbers = [&low[..], &[*density], &size, &[*wispiness], &[*frequency]];
         let values = self.slab.add_numbers(numbers.concat());
-        let coefficients = self.coefficients(&medium.coefficients);
+        let coefficients = self.coefficients(coefficients);
         Matter { kind: CLOUD, coefficients, emission: 0, values }
     }
 
     fn sparse(&mut self, medium: &NanoVdbMedium) -> Matter {
-        let emission = medium.emission.as_ref().map_or(0, |(voxels, temperature, factor)| {
+        let NanoVdbMedium { placement: _, coefficients, density, majorants: _, emission } = medium;
+        let emission = emission.as_ref().map_or(0, |(voxels, temperature, factor)| {
             let ([offset, scale], voxels) = (kelvin(temperature), self.voxels(voxels));
             self.slab.add([0, factor.to_bits(), 0, voxels, offset, scale])
         });
-        let coefficients = self.coefficients(&medium.coefficients);
-        Matter { kind: VOXELS, coefficients, emission, values: self.voxels(&medium.density) }
+        let coefficients = self.coefficients(coefficients);
+        Matter { kind: VOXELS, coefficients, emission, values: self.voxels(density) }
     }
 
     fn coefficients(&mut self, Coefficients { sigma_a, sigma_s, scale }: &Coefficients) -> [u32; 3] {

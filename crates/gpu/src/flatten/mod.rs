@@ -30,16 +30,19 @@ mod textures;
 
 use std::collections::HashMap;
 
-use description::{Diagnostic, Span};
+use description::{
+    AmbientOcclusionDesc, BdptDesc, Diagnostic, LightTracingDesc, MltDesc, PathDesc, RandomWalkDesc,
+    SimplePathDesc, SimpleVolPathDesc, Span, SppmDesc, WhittedDesc,
+};
 use film::{Film, LayerSet};
 use geometry::{GeometryId, InstanceId, InstancePath, Shape};
 use sampling::Sampler;
 use scene::light::Light;
 use scene::light_sampler::LightSampler;
 use scene::material::Material;
-use scene::{GeometryEntry, Scene, View};
+use scene::{GeometryEntry, Scene, View, ViewOptions};
 
-use crate::algorithm::Algorithm;
+use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::shaders::Parts;
 pub use openpbr::openpbr_table;
@@ -173,6 +176,15 @@ pub struct Subject<'a> {
 pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refusal>> {
     let Subject { scene, view, film, algorithm, sampler, light_sampler, largest_buffer, ray_queries } =
         subject;
+    // The camera's record has samples and wavelengths, and footprints know of filters.
+    let View { camera: _, medium, samples_per_pixel: _, options, wavelengths: _ } = view;
+    let ViewOptions {
+        disable_pixel_jitter,
+        disable_wavelength_jitter,
+        disable_texture_filtering: _,
+        force_diffuse,
+    } = *options;
+    let Traits { media: _, bodies, light_paths, splats: _ } = algorithm.traits();
     let mut flattener = Flattener {
         scene,
         slab: Slab::new(),
@@ -183,18 +195,15 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         instances: Default::default(),
         surfaces: Default::default(),
         largest_buffer,
-        follows_bodies: matches!(
-            algorithm,
-            Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_)
-        ) && !view.options.force_diffuse,
-        begins_at_lights: algorithm.begins_at_lights(),
-        parts: Parts::default(),
+        follows_bodies: bodies && !force_diffuse,
+        begins_at_lights: light_paths,
+        parts: Parts { force_diffuse, ..Parts::default() },
         refusals: Vec::new(),
     };
-    flattener.check(view, film, algorithm);
+    flattener.check(film, algorithm);
     let mut head = Head {
-        is_centered: view.options.disable_pixel_jitter.into(),
-        has_one_wavelength: view.options.disable_wavelength_jitter.into(),
+        is_centered: disable_pixel_jitter.into(),
+        has_one_wavelength: disable_wavelength_jitter.into(),
         has_footprints: scene.needs_footprints(view).into(),
         ..Head::default()
     };
@@ -211,45 +220,64 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     head.light_count = scene.lights().len() as u32;
     head.infinite_count = scene.infinite_lights().len() as u32;
     head.choice = flattener.light_choice(lights);
-    match algorithm {
-        Algorithm::RayCasting => {}
-        Algorithm::Whitted(desc) => head.max_depth = desc.max_depth,
-        Algorithm::AmbientOcclusion(desc, space) => {
+    (head.max_depth, head.settings) = match *algorithm {
+        Algorithm::RayCasting => (0, 0),
+        // The text of the kernel has `ambient`, and other reflections are refused.
+        Algorithm::Whitted(WhittedDesc {
+            max_depth,
+            ambient: _,
+            reflections: _,
+            reflection_distance: _,
+            reflection_resolution: _,
+        })
+        | Algorithm::SimpleVolPath(SimpleVolPathDesc { max_depth })
+        | Algorithm::RandomWalk(RandomWalkDesc { max_depth })
+        | Algorithm::LightTracing(LightTracingDesc { max_depth })
+        // What makes photons has the rest.
+        | Algorithm::Sppm(SppmDesc { max_depth, photons_per_iteration: _, radius: _, seed: _ }, _) => {
+            (max_depth, 0)
+        }
+        Algorithm::AmbientOcclusion(AmbientOcclusionDesc { max_distance, cos_sample }, space) => {
             let white = space.illuminant();
             head.white = flattener.spectrum(&white);
             head.white_scale = 1.0 / white.to_photometric();
-            head.max_distance = desc.max_distance;
-            head.cos_sample = desc.cos_sample.into();
+            (head.max_distance, head.cos_sample) = (max_distance, cos_sample.into());
+            (0, 0)
         }
-        Algorithm::Path(desc) | Algorithm::VolPath(desc) => {
-            head.max_depth = desc.max_depth;
-            head.settings = SAMPLES_LIGHTS | regularizes(desc.regularize);
+        // `lights` is of the light sampler.
+        Algorithm::Path(PathDesc { max_depth, regularize, light_sampler: _ })
+        | Algorithm::VolPath(PathDesc { max_depth, regularize, light_sampler: _ }) => {
+            (max_depth, SAMPLES_LIGHTS | bit(regularize, REGULARIZES))
         }
-        Algorithm::SimpleVolPath(desc) => head.max_depth = desc.max_depth,
-        Algorithm::SimplePath(desc) => {
-            head.max_depth = desc.max_depth;
-            head.settings = MIRRORS_DIRECTIONS
-                | if desc.sample_lights { SAMPLES_LIGHTS } else { 0 }
-                | if desc.sample_bsdf { SAMPLES_BSDFS } else { 0 };
+        Algorithm::SimplePath(SimplePathDesc { max_depth, sample_lights, sample_bsdf }) => {
+            let sampled = bit(sample_lights, SAMPLES_LIGHTS) | bit(sample_bsdf, SAMPLES_BSDFS);
+            (max_depth, MIRRORS_DIRECTIONS | sampled)
         }
-        Algorithm::RandomWalk(desc) => head.max_depth = desc.max_depth,
-        Algorithm::LightTracing(desc) => head.max_depth = desc.max_depth,
-        Algorithm::Bdpt(desc) => {
-            head.max_depth = desc.max_depth;
-            head.settings = regularizes(desc.regularize);
+        // Pictures of strategies are refused.
+        Algorithm::Bdpt(BdptDesc { max_depth, regularize, visualize_strategies: _, visualize_weights: _ }) => {
+            (max_depth, bit(regularize, REGULARIZES))
         }
-        Algorithm::Mlt(desc, _) => {
-            head.max_depth = desc.max_depth;
-            head.settings = regularizes(desc.regularize);
-        }
-        Algorithm::Sppm(desc, _) => head.max_depth = desc.max_depth,
-    }
-    if algorithm.begins_at_lights() {
+        // Other techniques are refused, and what runs the chains has their numbers.
+        Algorithm::Mlt(
+            MltDesc {
+                max_depth,
+                regularize,
+                technique: _,
+                bootstrap_samples: _,
+                chains: _,
+                mutations_per_pixel: _,
+                large_step_probability: _,
+                sigma: _,
+            },
+            _,
+        ) => (max_depth, bit(regularize, REGULARIZES)),
+    };
+    if light_paths {
         head.light_paths = flattener.light_paths(algorithm, light_sampler, film);
     }
     if has_media(scene) || matches!(algorithm, Algorithm::SimpleVolPath(_)) {
         flattener.parts.media = true;
-        head.media = flattener.media(view.medium);
+        head.media = flattener.media(*medium);
     }
     let Flattener { slab, texels, parts, refusals, .. } = flattener;
     let radius = scene.sphere().radius;
@@ -274,8 +302,8 @@ const SAMPLES_LIGHTS: u32 = 2;
 const SAMPLES_BSDFS: u32 = 4;
 const MIRRORS_DIRECTIONS: u32 = 8;
 
-fn regularizes(is: bool) -> u32 {
-    if is { REGULARIZES } else { 0 }
+fn bit(is: bool, bit: u32) -> u32 {
+    if is { bit } else { 0 }
 }
 
 /// Tables under construction.
@@ -310,23 +338,12 @@ impl Flattener<'_> {
     }
 
     /// Refuses what concerns the whole picture.
-    fn check(&mut self, view: &View, film: &Film, algorithm: &Algorithm) {
-        let knows_media = matches!(
-            algorithm,
-            Algorithm::Path(_)
-                | Algorithm::VolPath(_)
-                | Algorithm::SimpleVolPath(_)
-                | Algorithm::SimplePath(_)
-                | Algorithm::RandomWalk(_)
-        );
-        self.parts.force_diffuse = view.options.force_diffuse;
+    fn check(&mut self, film: &Film, algorithm: &Algorithm) {
+        let Traits { media, bodies: _, light_paths, splats: _ } = algorithm.traits();
         let whole = [
-            (!knows_media && has_media(self.scene), "participating media or interfaces"),
+            (!media && has_media(self.scene), "participating media or interfaces"),
             (film.layers().has_parts(), "layers of parts of the light"),
-            (
-                film.layers() != LayerSet::NONE && algorithm.begins_at_lights(),
-                "layers beside the colour with light paths",
-            ),
+            (film.layers() != LayerSet::NONE && light_paths, "layers beside the colour with light paths"),
         ];
         for (is, what) in whole {
             if is {

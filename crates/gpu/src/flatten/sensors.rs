@@ -11,7 +11,21 @@ use super::slab::padded;
 impl Flattener<'_> {
     /// The sensor of a film; its offset.
     pub fn sensor(&mut self, film: &Film) -> u32 {
-        let FilmSettings { sensor, max_component_value, color_space, .. } = film.settings();
+        // The CPU keeps what else a film has.
+        let FilmSettings {
+            sensor,
+            max_component_value,
+            color_space,
+            full_resolution: _,
+            pixel_bounds: _,
+            diagonal: _,
+            filter: _,
+            half_floats: _,
+            layers: _,
+            buckets: _,
+            gbuffer: _,
+            light_groups: _,
+        } = film.settings();
         let curves =
             [0, 1, 2].map(|channel| DenselySampled::from_fn(|lambda| sensitivity(&sensor, channel, lambda)));
         let matrix = color_space.rgb_from_xyz() * sensor.xyz_from_sensor_rgb();

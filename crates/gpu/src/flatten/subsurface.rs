@@ -18,15 +18,16 @@ impl Flattener<'_> {
         if self.begins_at_lights {
             self.refuse("light paths under the surface of `subsurface`", span);
         }
-        let walks = body.method == SubsurfaceMethod::RandomWalk;
-        let (given, scale, spectra) = match body.inside {
+        let SubsurfaceMaterial { table, inside, roughness, method } = body;
+        let walks = *method == SubsurfaceMethod::RandomWalk;
+        let (given, scale, spectra) = match *inside {
             SubsurfaceInside::Coefficients { sigma_a, sigma_s, scale } => (0, scale, [sigma_a, sigma_s]),
             SubsurfaceInside::Reflectance { reflectance, mfp, scale } => (1, scale, [reflectance, mfp]),
         };
-        let (remap, mut textures) = self.roughness(&body.roughness, span);
+        let (remap, mut textures) = self.roughness(roughness, span);
         textures.extend(spectra.map(|id| self.spectrum_texture(id, span)));
-        let table = self.bssrdf_table(&body.table, walks, given == 1);
-        let [scale, eta, g] = [scale, body.table.eta(), body.table.g()].map(f32::to_bits);
+        let [scale, eta, g] = [scale, table.eta(), table.g()].map(f32::to_bits);
+        let table = self.bssrdf_table(table, walks, given == 1);
         ([remap, table, walks.into(), given, scale, eta, g], textures)
     }
 

@@ -152,23 +152,23 @@ impl Flattener<'_> {
 
     /// A lookup in an image, of a colour space and a type of spectrum; its offset.
     fn image_texture(&mut self, lookup: &ImageLookup, space: [u32; 2], span: Span) -> u32 {
-        let pyramid = &self.scene.textures().pyramids()[lookup.pyramid as usize];
-        let pyramid = match self.pyramids.get(&lookup.pyramid) {
+        let &ImageLookup { mapping, pyramid: id, filter, scale, invert } = lookup;
+        let pyramid = &self.scene.textures().pyramids()[id as usize];
+        let pyramid = match self.pyramids.get(&id) {
             Some(&at) => at,
             None => self.image(pyramid.levels(), pyramid.wrap(), span),
         };
-        self.pyramids.insert(lookup.pyramid, pyramid);
-        let mapping = self.mapping(lookup.mapping);
-        let (filter, anisotropy) = match lookup.filter {
+        self.pyramids.insert(id, pyramid);
+        let mapping = self.mapping(mapping);
+        let (filter, anisotropy) = match filter {
             TextureFilter::Point => (0, 0.0),
             TextureFilter::Bilinear => (1, 0.0),
             TextureFilter::Trilinear => (2, 0.0),
             TextureFilter::Ewa { max_anisotropy } => (3, max_anisotropy),
         };
-        let numbers = [anisotropy, lookup.scale].map(f32::to_bits);
-        let [anisotropy, scale] = numbers;
+        let [anisotropy, scale] = [anisotropy, scale].map(f32::to_bits);
         let [space, kind] = space;
-        self.slab.add([pyramid, mapping, filter, anisotropy, scale, lookup.invert.into(), space, kind])
+        self.slab.add([pyramid, mapping, filter, anisotropy, scale, invert.into(), space, kind])
     }
 
     /// A sum of noise; its offset.

@@ -61,7 +61,16 @@ impl Painter<'_> {
                 !(textures.is_constant(m.reflectance) && textures.is_constant(m.transmittance))
             }
             Material::Mix(_) => true,
-            _ => false,
+            Material::Conductor(_)
+            | Material::Dielectric(_)
+            | Material::ThinDielectric(_)
+            | Material::CoatedDiffuse(_)
+            | Material::CoatedConductor(_)
+            | Material::OpenPbr(_)
+            | Material::Interface
+            | Material::Hair(_)
+            | Material::Measured(_)
+            | Material::Subsurface(_) => false,
         }
     }
 
@@ -103,7 +112,12 @@ impl Painter<'_> {
                         shading = Shading::Mirror;
                         albedo(&bsdf)[i]
                     }
-                    _ => albedo(&bsdf)[i],
+                    Bxdf::CoatedDiffuse(_)
+                    | Bxdf::OpenPbr(_)
+                    | Bxdf::Hair(_)
+                    | Bxdf::Measured(_)
+                    | Bxdf::Subsurface(_)
+                    | Bxdf::NormalizedFresnel(_) => albedo(&bsdf)[i],
                 }
             })
         };
