@@ -1,13 +1,5 @@
 // Camera rays: the records of `src/flatten/cameras.rs` and `filters.rs`.
 
-const FILTER_BOX = 0u;
-const FILTER_TRIANGLE = 1u;
-const PERSPECTIVE = 0u;
-const ORTHOGRAPHIC = 1u;
-const EQUIRECTANGULAR = 2u;
-const EQUAL_AREA = 3u;
-const REALISTIC = 4u;
-
 // The offset from the centre of a pixel that a filter draws, and the weight of the sample: its sign
 // where the filter is tabulated, which leaves a pixel as it is.
 fn filter_sample(u: vec2f) -> vec3f {
@@ -15,8 +7,8 @@ fn filter_sample(u: vec2f) -> vec3f {
     let head = words_at(at);
     let radius = bitcast<vec2f>(head.yz);
     switch (head.x) {
-        case FILTER_BOX: { return vec3f(-radius + (radius - -radius) * u, 1); }
-        case FILTER_TRIANGLE: { return vec3f(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y), 1); }
+        case FilterTag_Box: { return vec3f(-radius + (radius - -radius) * u, 1); }
+        case FilterTag_Triangle: { return vec3f(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y), 1); }
         default: {}
     }
     let table = head.w;
@@ -53,7 +45,7 @@ fn placed_camera() -> PlacedCamera {
 // The direction of a position on the square of a spherical camera.
 fn spherical_ray(st: vec2f) -> vec3f {
     var z_up: vec3f;
-    if (word(world.camera) == EQUIRECTANGULAR) {
+    if (word(world.camera) == CameraTag_EquiRectangular) {
         let theta = sin_cos(3.1415927 * st.y);
         z_up = spherical_direction(theta.v0, theta.v1, 6.2831855 * st.x);
     } else {
@@ -66,8 +58,8 @@ fn spherical_ray(st: vec2f) -> vec3f {
 fn unscaled_ray(camera: PlacedCamera, film: vec2f, lens: vec2f) -> Ray {
     var ray: Tuple_Vec3_Vec3;
     switch (word(world.camera)) {
-        case PERSPECTIVE: { ray = Perspective_ray(Perspective(camera.screen, camera.lens), film, lens); }
-        case ORTHOGRAPHIC: { ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens); }
+        case CameraTag_Perspective: { ray = Perspective_ray(Perspective(camera.screen, camera.lens), film, lens); }
+        case CameraTag_Orthographic: { ray = Orthographic_ray(Orthographic(camera.screen, camera.lens), film, lens); }
         default: { ray = Tuple_Vec3_Vec3(vec3f(), spherical_ray(film / camera.screen.top_left)); }
     }
     return placed_ray(camera, ray.v0, ray.v1);
@@ -103,7 +95,7 @@ fn camera_ray(film: vec2f, lens: vec2f) -> CameraRay {
     let has_neighbours = world.has_footprints == 1;
     // Of a sphere, on which lines of pixels bend, by rays nearer than a pixel.
     let kind = word(world.camera);
-    let step = select(1.0, 0.05, kind == EQUIRECTANGULAR || kind == EQUAL_AREA);
+    let step = select(1.0, 0.05, kind == CameraTag_EquiRectangular || kind == CameraTag_EqualArea);
     var rays_of_film: array<Ray, 3>;
     var share = 1.0;
     var seen: array<LensRay, 3>;

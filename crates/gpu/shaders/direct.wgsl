@@ -64,7 +64,7 @@ fn all_lights(
     let context = light_context(s, flags);
     for (var i = 0u; i < world.light_count; i++) {
         let u = get_2d();
-        let is_ambient = has_ambient && word(light_record(i)) == UNIFORM_LIGHT;
+        let is_ambient = has_ambient && word(light_record(i)) == LightTag_UniformInfinite;
         var light: LightSample;
         if (is_ambient) {
             let sample = sample_ambient(s.wo, s.ns, flags, u);

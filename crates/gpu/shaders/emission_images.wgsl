@@ -13,7 +13,7 @@ fn emission_image(at: u32) -> u32 {
 fn image_share(image: u32, uv: vec2f, lambda: SampledWavelengths) -> vec4f {
     let parts = words_at(image);
     let rgb = uv_color(parts.x, uv);
-    return rgb_spectrum(parts.y, UNBOUNDED, max(rgb, vec3f()), lambda);
+    return rgb_spectrum(parts.y, SpectrumTypeTag_Unbounded, max(rgb, vec3f()), lambda);
 }
 
 // The same at a point of its surface, which has the parameters `uv`.
@@ -33,24 +33,24 @@ fn coordinates_on_light(light: u32, p_outside: vec3f, uv: vec2f) -> vec2f {
         p = times_point(inward, p);
     }
     switch (word(at)) {
-        case TRIANGLE_LIGHT: {
+        case LightTag_Triangle: {
             let corners = numbers_at(at + 20);
             let third = numbers_at(at + 24).xy;
             return corners.xy * (1 - uv.x - uv.y) + corners.zw * uv.x + third * uv.y;
         }
-        case RECTANGLE_LIGHT, PATCH_LIGHT: { return uv; }
-        case SPHERE_LIGHT: {
+        case LightTag_Rectangle, LightTag_Patch: { return uv; }
+        case LightTag_Sphere: {
             let ball = numbers_at(at + 4);
             let rotation = Rows(vector(at + 8), vector(at + 12), vector(at + 16));
             let local = transposed(rotation, p - ball.xyz);
-            return revolved_point(SPHERE, local, whole_sphere(ball.w)).uv;
+            return revolved_point(ItemTag_Sphere, local, whole_sphere(ball.w)).uv;
         }
         default: {
             let out = kept_placement(at + 4);
             let local = times(inverse(out.linear), p - out.translation);
-            var kind = SPHERE;
-            if (word(at) != SPHERE_PART_LIGHT) {
-                kind = select(CYLINDER, DISK, word(at) == DISK_LIGHT);
+            var kind = ItemTag_Sphere;
+            if (word(at) != LightTag_SpherePart) {
+                kind = select(ItemTag_Cylinder, ItemTag_Disk, word(at) == LightTag_Disk);
             }
             return revolved_point(kind, local, numbers_at(at + 16)).uv;
         }

@@ -38,7 +38,7 @@ fn pixel_on_plane(s: Surface, d: Differentials) -> array<vec3f, 2> {
     let in_camera = times(inverse(camera.rotation), p - camera.translation);
     var way = Vec3_normalize_masked(in_camera);
     var distance = length(in_camera);
-    let is_parallel = word(world.camera) == ORTHOGRAPHIC && camera.lens.radius <= 0;
+    let is_parallel = word(world.camera) == CameraTag_Orthographic && camera.lens.radius <= 0;
     if (is_parallel || !way.v1) {
         way.v0 = vec3f(0, 0, 1);
         distance = select(distance, in_camera.z, is_parallel);

@@ -1,19 +1,6 @@
 // Lookups in pyramids of images: the records of `src/flatten/images.rs`, and the filters of
 // `image/src/pyramid.rs`.
 
-const STORED_BYTES = 0u;
-const STORED_HALVES = 1u;
-
-const WRAP_REPEAT = 0u;
-const WRAP_BLACK = 1u;
-const WRAP_CLAMP = 2u;
-const WRAP_SPHERE = 3u;
-const WRAP_AXES = 5u;
-
-const LOOKUP_POINT = 0u;
-const LOOKUP_TRILINEAR = 2u;
-const LOOKUP_EWA = 3u;
-
 // A level of a pyramid: its first word among the texels, and its size.
 struct Level {
     first: u32,
@@ -28,11 +15,11 @@ fn level_of(pyramid: u32, index: u32) -> Level {
 // The value at an index of a level, given how values are stored, and what bytes stand for.
 fn stored_value(format: u32, decoded: u32, first: u32, index: u32) -> f32 {
     switch (format) {
-        case STORED_BYTES: {
+        case StorageTag_Bytes: {
             let code = (texels[first + index / 4] >> (8 * (index & 3))) & 255;
             return number(decoded + code);
         }
-        case STORED_HALVES: {
+        case StorageTag_Halves: {
             return from_half((texels[first + index / 2] >> (16 * (index & 1))) & 0xffff);
         }
         default: { return bitcast<f32>(texels[first + index]); }
@@ -58,17 +45,17 @@ fn remainder(p: vec2i, size: vec2i) -> vec2i {
 
 // The wrap modes of columns and of rows.
 fn wraps(wrap: u32) -> vec2u {
-    return select(vec2u(wrap), vec2u(wrap >> 4, wrap >> 6) & vec2u(3), (wrap & 15) == WRAP_AXES);
+    return select(vec2u(wrap), vec2u(wrap >> 4, wrap >> 6) & vec2u(3), (wrap & 15) == WrapTag_Axes);
 }
 
 // The pixel that a lookup anywhere reads.
 fn wrapped(p: vec2i, size: vec2i, wrap: u32) -> vec2i {
     switch (wrap & 15) {
-        case WRAP_REPEAT, WRAP_BLACK, WRAP_CLAMP, WRAP_AXES: {
-            let is_repeated = wraps(wrap) == vec2u(WRAP_REPEAT);
+        case WrapTag_Repeat, WrapTag_Black, WrapTag_Clamp, WrapTag_Axes: {
+            let is_repeated = wraps(wrap) == vec2u(WrapTag_Repeat);
             return select(clamp(p, vec2i(), size - 1), remainder(p, size), is_repeated);
         }
-        case WRAP_SPHERE: {
+        case WrapTag_Sphere: {
             let q = remainder(p, size);
             let tile = (p - q) / size;
             return select(q, size - 1 - q, ((tile.x + tile.y) & 1) == 1);
@@ -89,7 +76,7 @@ fn texel(pyramid: u32, level: Level, p: vec2i) -> vec3f {
     let head = words_at(pyramid);
     let more = words_at(pyramid + 4);
     let wrap = more.z;
-    if (any(is_beyond & (wraps(wrap) == vec2u(WRAP_BLACK)))) {
+    if (any(is_beyond & (wraps(wrap) == vec2u(WrapTag_Black)))) {
         return vec3f();
     }
     var q = p;
@@ -185,7 +172,7 @@ fn filtered_color(lookup: vec4u, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
     var level = 0.0;
     var is_blended = false;
     var is_elliptic = false;
-    if (method == LOOKUP_EWA) {
+    if (method == LookupTag_Ewa) {
         let slimmest = length(shorter) * bitcast<f32>(lookup.w);
         if (slimmest > 0 && slimmest < length(longer)) {
             shorter *= length(longer) / slimmest;
@@ -198,7 +185,7 @@ fn filtered_color(lookup: vec4u, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
         let changes = max(abs(dst0), abs(dst1));
         let width = 2 * max(changes.x, changes.y);
         level = clamp(f32(last) + log2(max(width, 1e-8)), 0, f32(last));
-        is_blended = method == LOOKUP_TRILINEAR && u32(level) != 0 && u32(level) != last;
+        is_blended = method == LookupTag_Trilinear && u32(level) != 0 && u32(level) != last;
     }
     let index = u32(level);
     let t = level - f32(index);
@@ -206,7 +193,7 @@ fn filtered_color(lookup: vec4u, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
     for (var i = 0u; i < select(1u, 2u, is_blended); i++) {
         let weight = select(1, select(1 - t, t, i == 1), is_blended);
         let found = level_of(pyramid, min(index + i, last));
-        let is_last = select(i == 0 && index == last && method != LOOKUP_EWA, index + i > last, is_elliptic);
+        let is_last = select(i == 0 && index == last && method != LookupTag_Ewa, index + i > last, is_elliptic);
         var color = vec4f();
         if (is_elliptic && !is_last) {
             color = ellipse(pyramid, found, st, longer, shorter);
@@ -214,7 +201,7 @@ fn filtered_color(lookup: vec4u, st: vec2f, dst0: vec2f, dst1: vec2f) -> vec3f {
         if (color.w > 0) {
             sum += weight / color.w * color.xyz;
         } else {
-            sum += weight * few_texels(pyramid, found, st, method == LOOKUP_POINT, is_last);
+            sum += weight * few_texels(pyramid, found, st, method == LookupTag_Point, is_last);
         }
     }
     return sum;

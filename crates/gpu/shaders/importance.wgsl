@@ -22,7 +22,7 @@ struct LensSample {
 
 // Whether all camera rays are parallel.
 fn is_parallel() -> bool {
-    return word(world.camera) == ORTHOGRAPHIC && number(world.camera + 20) <= 0;
+    return word(world.camera) == CameraTag_Orthographic && number(world.camera + 20) <= 0;
 }
 
 // The ray from a point of the lens along a unit direction, both in camera space.
@@ -43,7 +43,7 @@ fn seen_along(camera: PlacedCamera, o: vec3f, d: vec3f) -> Seen {
         if (radius > 0) {
             focus = vec3f((o + d * (distance / d.z)).xy, distance);
         }
-        let is_perspective = word(world.camera) == PERSPECTIVE;
+        let is_perspective = word(world.camera) == CameraTag_Perspective;
         on_screen = select(focus.xy, focus.xy / focus.z, is_perspective);
         density *= select(focus.z * focus.z, 1, is_perspective) / (d.z * d.z * d.z);
     }

@@ -1,7 +1,7 @@
 // Interfaces between media, which paths pass.
 
 fn is_interface(material: u32) -> bool {
-    return word(material_record(material)) == INTERFACE;
+    return word(material_record(material)) == MaterialTag_Interface;
 }
 
 // Leads a ray that has hit an interface at distance `t` on, with its neighbours.

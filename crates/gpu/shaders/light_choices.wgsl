@@ -1,8 +1,5 @@
 // The choice of a light: the records of `src/flatten/light_choices.rs`.
 
-const CHOICE_UNIFORM = 0u;
-const CHOICE_POWER = 1u;
-
 // The bit of a leaf's kind.
 const TREE_LEAF = 0x80000000u;
 
@@ -19,11 +16,11 @@ fn choose_light(context: ShapeSampleContext, u: f32) -> Choice {
     if (world.light_count == 0) {
         return Choice(0, 0, false);
     }
-    if (head.x == CHOICE_UNIFORM) {
+    if (head.x == ChoiceTag_Uniform) {
         let light = min(u32(u * f32(world.light_count)), world.light_count - 1);
         return Choice(light, 1 / f32(world.light_count), true);
     }
-    if (head.x == CHOICE_POWER) {
+    if (head.x == ChoiceTag_Power) {
         return choose_by_power(at + 4, u);
     }
     let counts = words_at(at + 4);
@@ -44,10 +41,10 @@ fn choose_light(context: ShapeSampleContext, u: f32) -> Choice {
 fn light_pmf(context: ShapeSampleContext, light: u32) -> f32 {
     let at = world.choice;
     let head = words_at(at);
-    if (head.x == CHOICE_UNIFORM) {
+    if (head.x == ChoiceTag_Uniform) {
         return 1 / f32(world.light_count);
     }
-    if (head.x == CHOICE_POWER) {
+    if (head.x == ChoiceTag_Power) {
         return number(at + 4 + 4 * light + 1);
     }
     let trail = vec2u(word(head.z + 2 * light), word(head.z + 2 * light + 1));

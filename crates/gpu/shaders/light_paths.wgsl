@@ -80,7 +80,7 @@ fn spot_direction(at: u32, u: vec2f) -> vec3f {
 fn image_direction(at: u32, u: vec2f) -> vec3f {
     let st = draw_2d(word(at + 32), u).xy;
     var local: vec3f;
-    if (word(at) == GONIOMETRIC_LIGHT) {
+    if (word(at) == LightTag_Goniometric) {
         local = equal_area_square_to_sphere(st).xzy;
     } else {
         let screen = numbers_at(at + 36);
@@ -96,7 +96,7 @@ fn image_direction_density(at: u32, w: vec3f) -> f32 {
     let x = vector(at + 8);
     // Solid angle in the space of the light over that of render space.
     let factor = abs(dot(x, cross(vector(at + 12), vector(at + 16)))) / (length2 * sqrt(length2));
-    if (word(at) == GONIOMETRIC_LIGHT) {
+    if (word(at) == LightTag_Goniometric) {
         return UNIFORM_DIRECTION * density_of(word(at + 32), position_on_square(local)) * factor;
     }
     let on_slide = position_on_slide(at, local);
@@ -110,8 +110,8 @@ fn image_direction_density(at: u32, w: vec3f) -> f32 {
 // The density of a direction from a light at a point.
 fn point_direction_density(at: u32, w: vec3f) -> f32 {
     switch (word(at)) {
-        case POINT_LIGHT: { return UNIFORM_DIRECTION; }
-        case SPOT_LIGHT: { return spot_density(at, dot(w, vector(at + 8))); }
+        case LightTag_Point: { return UNIFORM_DIRECTION; }
+        case LightTag_Spot: { return spot_density(at, dot(w, vector(at + 8))); }
         default: { return image_direction_density(at, w); }
     }
 }
@@ -153,8 +153,8 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
     } else if (HAS_POINT_LIGHTS && is_at_point(kind)) {
         e.origin.p = vector(at + 4);
         switch (kind) {
-            case POINT_LIGHT: { w = sample_uniform_sphere(u_direction); }
-            case SPOT_LIGHT: {
+            case LightTag_Point: { w = sample_uniform_sphere(u_direction); }
+            case LightTag_Spot: {
                 w = Frame_from_local(Frame_from_z(vector(at + 8)), spot_direction(at, u_direction));
             }
             default: { w = image_direction(at, u_direction); }
@@ -190,10 +190,10 @@ fn emit(u: f32, u_position: vec2f, u_direction: vec2f, lambda: SampledWavelength
 
 // The density of a direction to an infinitely distant light; of one direction, 1.
 fn far_density(at: u32, wi: vec3f) -> f32 {
-    if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
+    if (HAS_SKY_IMAGES && word(at) == LightTag_ImageInfinite) {
         return sky_density(at, sky_position(at, wi), wi, false);
     }
-    return select(UNIFORM_DIRECTION, 1, word(at) == DISTANT_LIGHT);
+    return select(UNIFORM_DIRECTION, 1, word(at) == LightTag_Distant);
 }
 
 // The density per solid angle with which a surface chooses a light and a point of it, or a

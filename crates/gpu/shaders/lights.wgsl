@@ -1,30 +1,15 @@
 // Lights: the records of `src/flatten/lights.rs`.
 
-const POINT_LIGHT = 0u;
-const SPOT_LIGHT = 1u;
-const DISTANT_LIGHT = 2u;
-const TRIANGLE_LIGHT = 3u;
-const RECTANGLE_LIGHT = 4u;
-const SPHERE_LIGHT = 5u;
-const UNIFORM_LIGHT = 6u;
-const IMAGE_LIGHT = 7u;
-const DISK_LIGHT = 8u;
-const CYLINDER_LIGHT = 9u;
-const GONIOMETRIC_LIGHT = 10u;
-const PROJECTION_LIGHT = 11u;
-const PATCH_LIGHT = 12u;
-const PORTAL_LIGHT = 13u;
-const PLACED_LIGHT = 14u;
-const SPHERE_PART_LIGHT = 15u;
-
 // Whether a light is at a point: these have kinds of their own.
 fn is_at_point(kind: u32) -> bool {
-    return kind == POINT_LIGHT || kind == SPOT_LIGHT || kind == GONIOMETRIC_LIGHT || kind == PROJECTION_LIGHT;
+    return kind == LightTag_Point || kind == LightTag_Spot || kind == LightTag_Goniometric
+        || kind == LightTag_Projection;
 }
 
 // Whether a light is infinitely far away.
 fn is_far(kind: u32) -> bool {
-    return kind == DISTANT_LIGHT || kind == UNIFORM_LIGHT || kind == IMAGE_LIGHT || kind == PORTAL_LIGHT;
+    return kind == LightTag_Distant || kind == LightTag_UniformInfinite || kind == LightTag_ImageInfinite
+        || kind == LightTag_PortalInfinite;
 }
 
 // Incident light, before its visibility is tested.
@@ -52,7 +37,7 @@ fn light_record(light: u32) -> u32 {
 fn is_delta(at: u32) -> bool {
     let head = words_at(at);
     // No ray hits a surface that is invisible.
-    return is_at_point(head.x) || head.x == DISTANT_LIGHT || (head.w & 2) != 0;
+    return is_at_point(head.x) || head.x == LightTag_Distant || (head.w & 2) != 0;
 }
 
 // The spectrum of a light times its scale.
@@ -78,7 +63,7 @@ fn light_position(at: u32) -> vec3f {
         return p;
     }
     let outward = out_of_light(at);
-    if (word(at) == GONIOMETRIC_LIGHT || word(at) == PROJECTION_LIGHT) {
+    if (word(at) == LightTag_Goniometric || word(at) == LightTag_Projection) {
         return outward.translation;
     }
     return times_point(outward, p);
@@ -95,7 +80,7 @@ fn light_direction(at: u32, place: u32) -> vec3f {
 
 fn flat_light(at: u32) -> FlatShape {
     let sides = array(vector(at + 8), vector(at + 12));
-    return FlatShape(vector(at + 4), sides, vector(at + 16), word(at) == TRIANGLE_LIGHT);
+    return FlatShape(vector(at + 4), sides, vector(at + 16), word(at) == LightTag_Triangle);
 }
 
 // Whether both sides of a surface emit.
@@ -178,15 +163,15 @@ fn sample_point_light(at: u32, context: ShapeSampleContext, lambda: SampledWavel
 // What the intensity of a light at a point is multiplied by along `w`.
 fn point_share(at: u32, w: vec3f, lambda: SampledWavelengths) -> vec4f {
     switch (word(at)) {
-        case SPOT_LIGHT: {
+        case LightTag_Spot: {
             let cosine = dot(w, light_direction(at, at + 8));
             let falloff = numbers_at(at + 12);
             return vec4f(smooth_step(cosine, falloff.y, falloff.x));
         }
-        case GONIOMETRIC_LIGHT: {
+        case LightTag_Goniometric: {
             return vec4f(density_of(word(at + 32), position_on_square(in_light(at, w))));
         }
-        case PROJECTION_LIGHT: {
+        case LightTag_Projection: {
             let on_slide = position_on_slide(at, in_light(at, w));
             if (on_slide.z == 0) {
                 return vec4f();
@@ -232,17 +217,17 @@ fn sample_far_light(
     sample.l = vec4f(1);
     sample.is_distant = true;
     switch (word(at)) {
-        case DISTANT_LIGHT: {
+        case LightTag_Distant: {
             sample.wi = light_direction(at, at + 4);
             sample.pdf = 1;
             sample.valid = true;
         }
-        case IMAGE_LIGHT: {
+        case LightTag_ImageInfinite: {
             if (HAS_SKY_IMAGES) {
                 sample_sky(at, u, lambda, allow_incomplete, &sample);
             }
         }
-        case PORTAL_LIGHT: { sample_portal(at, p, u, lambda, &sample); }
+        case LightTag_PortalInfinite: { sample_portal(at, p, u, lambda, &sample); }
         default: {
             sample.wi = sample_uniform_sphere(u);
             sample.pdf = 1 / (4 * 3.1415927);
@@ -262,11 +247,11 @@ struct Sky {
 fn sky(light: u32, o: vec3f, d: vec3f, lambda: SampledWavelengths) -> Sky {
     let at = light_record(light);
     var seen = Sky(emission(at, lambda), 0);
-    if (HAS_SKY_IMAGES && word(at) == IMAGE_LIGHT) {
+    if (HAS_SKY_IMAGES && word(at) == LightTag_ImageInfinite) {
         let st = sky_position(at, d);
         seen = Sky(seen.l * sky_image(at, st, lambda), sky_density(at, st, d, true));
     }
-    if (HAS_PORTALS && word(at) == PORTAL_LIGHT) {
+    if (HAS_PORTALS && word(at) == LightTag_PortalInfinite) {
         let through = portal_seen(at, o, d, lambda);
         seen = Sky(seen.l * through.l, through.pdf);
     }
@@ -284,7 +269,7 @@ fn into_sky(at: u32) -> Rows {
 // The position in an image of the sphere that is seen along a direction.
 fn sky_position(at: u32, d: vec3f) -> vec2f {
     let w = Vec3_normalize(times(into_sky(at), d));
-    if (word(at + 6) == 0) {
+    if (word(at + 6) == ProjectionTag_EqualArea) {
         return equal_area_sphere_to_square(w);
     }
     return vec2f(spherical_phi(w) / 6.2831855, arc_atan2(length(w.xy), w.z) / 3.1415927);
@@ -310,7 +295,7 @@ fn solid_angle_factor(inward: Rows, w: vec3f) -> f32 {
 
 // Solid angle per area of an image of the sphere, as a part of 4π.
 fn solid_angle_density(at: u32, st: vec2f) -> f32 {
-    return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, word(at + 6) == 0);
+    return select(1.5707964 * real_max(sin_cos(3.1415927 * st.y).v0, 0), 1, word(at + 6) == ProjectionTag_EqualArea);
 }
 
 // What the pixel at a position multiplies the emission by.
@@ -340,7 +325,7 @@ fn sample_sky(
     let drawn = draw_2d(word(at + select(7u, 33u, allow_incomplete)), u);
     let st = drawn.xy;
     var local: vec3f;
-    if (word(at + 6) == 0) {
+    if (word(at + 6) == ProjectionTag_EqualArea) {
         local = equal_area_square_to_sphere(st);
     } else {
         let theta = sin_cos(3.1415927 * st.y);

@@ -1,22 +1,5 @@
 // Materials: the records of `src/flatten/materials.rs`, and what they scatter at a point.
 
-const DIFFUSE = 0u;
-const DIFFUSE_TRANSMISSION = 1u;
-const CONDUCTOR = 2u;
-const DIELECTRIC = 3u;
-const THIN_DIELECTRIC = 4u;
-const MIX = 5u;
-const COATED_DIFFUSE = 6u;
-const COATED_CONDUCTOR = 7u;
-const PRINCIPLED = 8u;
-const INTERFACE = 9u;
-const HAIR = 10u;
-const MEASURED = 11u;
-const SUBSURFACE = 12u;
-// Of the material above its boundary alone, where paths enter it; and where they leave it.
-const BOUNDARY = 13u;
-const EXIT = 14u;
-
 // Where the offsets of a material's textures begin, and how many of them a coat has.
 const MATERIAL_TEXTURES = 12u;
 const COAT_TEXTURES = 5u;
@@ -70,7 +53,7 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
     }
     let sample = bsdf_sample(bsdf, (*s).wo, u[0].x, u[1]);
     var forced: Bsdf;
-    forced.kind = DIFFUSE;
+    forced.kind = MaterialTag_Diffuse;
     forced.frame = bsdf.frame;
     forced.eta = 1;
     if (sample.valid) {
@@ -94,7 +77,7 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     var head: vec4u;
     loop {
         head = words_at(at);
-        let is_mix = head.x == MIX;
+        let is_mix = head.x == MaterialTag_Mix;
         let is_raised = HAS_BUMPS && head.z != 0 && height < 3;
         if (!is_mix && !is_raised && value == head.w) {
             break;
@@ -127,8 +110,8 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     bsdf.kind = head.x;
     bsdf.frame = Frame_from_z_and_x((*s).ns, (*s).ss);
     bsdf.eta = 1;
-    let is_coated = HAS_COATS && (bsdf.kind == COATED_DIFFUSE || bsdf.kind == COATED_CONDUCTOR);
-    let is_glass = HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == THIN_DIELECTRIC);
+    let is_coated = HAS_COATS && (bsdf.kind == MaterialTag_CoatedDiffuse || bsdf.kind == MaterialTag_CoatedConductor);
+    let is_glass = HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_ThinDielectric);
     if (is_coated || is_glass) {
         let eta = spectrum_at(given.y, (*lambda).lambda.x);
         // A spectrum is zero outside of its table, where the index is unknown.
@@ -140,16 +123,16 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     // The textures of a base come after those of its coat.
     let first = select(0u, COAT_TEXTURES, is_coated);
     switch (bsdf.kind) {
-        case DIFFUSE, COATED_DIFFUSE: { bsdf.a = clamp(values[first], vec4f(), vec4f(1)); }
-        case DIFFUSE_TRANSMISSION: {
+        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: { bsdf.a = clamp(values[first], vec4f(), vec4f(1)); }
+        case MaterialTag_DiffuseTransmission: {
             let scale = bitcast<f32>(given.x);
             bsdf.a = clamp(values[0] * scale, vec4f(), vec4f(1));
             bsdf.b = clamp(values[1] * scale, vec4f(), vec4f(1));
         }
-        case PRINCIPLED: { bsdf.surface = openpbr_at(given.x, values, context.uv, lambda); }
+        case MaterialTag_Principled: { bsdf.surface = openpbr_at(given.x, values, context.uv, lambda); }
         default: {}
     }
-    if (HAS_FACETS && (bsdf.kind == CONDUCTOR || bsdf.kind == COATED_CONDUCTOR)) {
+    if (HAS_FACETS && (bsdf.kind == MaterialTag_Conductor || bsdf.kind == MaterialTag_CoatedConductor)) {
         bsdf.facets = facets_of(values[first].x, values[first + 1].x, given.x);
         bsdf.b = values[first + 2];
         bsdf.a = values[first + 3];
@@ -162,16 +145,16 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
         bsdf.a /= bsdf.eta;
         bsdf.b /= bsdf.eta;
     }
-    if (HAS_FACETS && bsdf.kind == DIELECTRIC) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_Dielectric) {
         bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
     }
-    if (HAS_HAIR && bsdf.kind == HAIR) {
+    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
         bsdf.fibre = hair_at(given.xy, values, context.uv.y, *lambda);
     }
-    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
         bsdf.measured = Measured_new(given.x, *lambda);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
         bsdf.record = at;
         bsdf.eta = bitcast<f32>(more.y);
         bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
@@ -226,36 +209,36 @@ fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {
 }
 
 fn bsdf_flags(bsdf: Bsdf) -> u32 {
-    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
         return Layered_Diffuse_flags(coated_diffuse(bsdf));
     }
-    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
         return Layered_Conductor_flags(coated_conductor(bsdf));
     }
     switch (bsdf.kind) {
-        case HAIR: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
-        case MEASURED: { return BxdfFlags_GLOSSY_REFLECTION; }
-        case EXIT: { return BxdfFlags_DIFFUSE_REFLECTION; }
-        case DIFFUSE: {
+        case MaterialTag_Hair: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
+        case MaterialTag_Measured: { return BxdfFlags_GLOSSY_REFLECTION; }
+        case MaterialTag_Exit: { return BxdfFlags_DIFFUSE_REFLECTION; }
+        case MaterialTag_Diffuse: {
             return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a));
         }
-        case DIFFUSE_TRANSMISSION: {
+        case MaterialTag_DiffuseTransmission: {
             return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a))
                 | select(BxdfFlags_DIFFUSE_TRANSMISSION, 0, is_black(bsdf.b));
         }
-        case PRINCIPLED: { return OpenPbr_flags(bsdf.surface); }
+        case MaterialTag_Principled: { return OpenPbr_flags(bsdf.surface); }
         default: {}
     }
     let is_smooth = HAS_FACETS && TrowbridgeReitz_effectively_smooth(bsdf.facets);
-    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
         return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
+    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
         let is_specular = bsdf.eta == 1 || is_smooth;
         return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
             | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
         let mirrors = select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
         return BxdfFlags_DIFFUSE_REFLECTION | select(mirrors, 0, bsdf.eta == 1);
     }
@@ -290,40 +273,40 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (!is_normal(wo.z)) {
         return vec4f();
     }
-    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
         return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, bsdf.mode);
     }
-    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
         return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, bsdf.mode);
     }
-    if (HAS_HAIR && bsdf.kind == HAIR) {
+    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
         return Hair_f(bsdf.fibre, wo, wi, bsdf.mode);
     }
-    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
         return Measured_f(bsdf.measured, wo, wi, bsdf.mode);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
         return exit_f(bsdf, wo, wi);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
         return body_f(bsdf, wo, wi);
     }
-    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
         return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
+    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
         var factor = 1.0;
-        if (HAS_SUBSURFACE && bsdf.kind == BOUNDARY) {
+        if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
             factor = boundary_factor(bsdf, wo, wi, false);
         }
         return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
     }
     switch (bsdf.kind) {
-        case DIFFUSE: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
-        case DIFFUSE_TRANSMISSION: {
+        case MaterialTag_Diffuse: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
+        case MaterialTag_DiffuseTransmission: {
             return DiffuseTransmission_f(DiffuseTransmission(bsdf.a, bsdf.b), wo, wi, bsdf.mode);
         }
-        case PRINCIPLED: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
+        case MaterialTag_Principled: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
         default: { return vec4f(); }
     }
 }
@@ -335,37 +318,37 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
         return 0;
     }
     let mode = bsdf.mode;
-    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
         return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
     }
-    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
         return Layered_Conductor_pdf(coated_conductor(bsdf), wo, wi, mode, Directions_All);
     }
-    if (HAS_HAIR && bsdf.kind == HAIR) {
+    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
         return Hair_pdf(bsdf.fibre, wo, wi, mode, Directions_All);
     }
-    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
         return Measured_pdf(bsdf.measured, wo, wi, mode, Directions_All);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
         return exit_pdf(wo, wi);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
         return body_pdf(bsdf, wo, wi);
     }
-    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
         return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
+    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
         return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
     }
     switch (bsdf.kind) {
-        case DIFFUSE: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
-        case DIFFUSE_TRANSMISSION: {
+        case MaterialTag_Diffuse: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
+        case MaterialTag_DiffuseTransmission: {
             let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
             return DiffuseTransmission_pdf(bxdf, wo, wi, mode, Directions_All);
         }
-        case PRINCIPLED: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
+        case MaterialTag_Principled: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
         default: { return 0; }
     }
 }
@@ -384,44 +367,44 @@ fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32
     let mode = bsdf.mode;
     var sample: BsdfSample;
     switch (bsdf.kind) {
-        case DIFFUSE: { sample = Diffuse_sample_f(Diffuse(bsdf.a), wo, uc, u, mode, directions); }
-        case DIFFUSE_TRANSMISSION: {
+        case MaterialTag_Diffuse: { sample = Diffuse_sample_f(Diffuse(bsdf.a), wo, uc, u, mode, directions); }
+        case MaterialTag_DiffuseTransmission: {
             let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
             sample = DiffuseTransmission_sample_f(bxdf, wo, uc, u, mode, directions);
         }
-        case PRINCIPLED: {
+        case MaterialTag_Principled: {
             sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, directions);
         }
         default: {}
     }
-    if (HAS_FACETS && bsdf.kind == CONDUCTOR) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
         sample = Conductor_sample_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, uc, u, mode, directions);
     }
-    if (HAS_FACETS && (bsdf.kind == DIELECTRIC || bsdf.kind == BOUNDARY)) {
+    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
         sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
-        if (HAS_SUBSURFACE && bsdf.kind == BOUNDARY) {
+        if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
             sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
         }
     }
-    if (HAS_FACETS && bsdf.kind == THIN_DIELECTRIC) {
+    if (HAS_FACETS && bsdf.kind == MaterialTag_ThinDielectric) {
         sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
     }
-    if (HAS_COATS && bsdf.kind == COATED_DIFFUSE) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
         sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, directions);
     }
-    if (HAS_COATS && bsdf.kind == COATED_CONDUCTOR) {
+    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
         sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, directions);
     }
-    if (HAS_HAIR && bsdf.kind == HAIR) {
+    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
         sample = Hair_sample_f(bsdf.fibre, wo, uc, u, mode, directions);
     }
-    if (HAS_MEASURED && bsdf.kind == MEASURED) {
+    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
         sample = Measured_sample_f(bsdf.measured, wo, uc, u, mode, directions);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == EXIT) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
         sample = exit_sample(bsdf, wo, u);
     }
-    if (HAS_SUBSURFACE && bsdf.kind == SUBSURFACE && directions != Directions_Transmission) {
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface && directions != Directions_Transmission) {
         sample = body_sample(bsdf, wo, uc, u);
     }
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);

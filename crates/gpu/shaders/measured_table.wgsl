@@ -106,7 +106,7 @@ fn MeasuredTable_values(table: u32, u: vec2f, between: LayerWeights, lambda: Sam
         for (var i = 0u; i < 3; i++) {
             rgb[i] = measured_channel(table, i, 3, cell, between);
         }
-        return rgb_spectrum(word(table + 6), UNBOUNDED, rgb, lambda);
+        return rgb_spectrum(word(table + 6), SpectrumTypeTag_Unbounded, rgb, lambda);
     }
     var values: vec4f;
     for (var i = 0u; i < 4; i++) {

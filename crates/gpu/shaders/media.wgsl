@@ -2,12 +2,6 @@
 // are attenuated, as `integrators/src/transport/media/` has it. Random numbers after the first of
 // a ray are other ones than there.
 
-const HOMOGENEOUS = 0u;
-const DENSITIES = 1u;
-const COLOURS = 2u;
-const CLOUD = 3u;
-const VOXELS = 4u;
-
 const GREATEST = 3.4028235e38;
 
 // The random numbers of a ray: the first, and what the others follow from.
@@ -201,7 +195,7 @@ struct Matter {
 
 fn matter(at: u32, lambda: SampledWavelengths) -> Matter {
     let scale = number(at + 4);
-    if (word(at) == COLOURS) {
+    if (word(at) == MediumTag_Colours) {
         return Matter(at, vec4f(scale), vec4f());
     }
     var coefficients = array(vec4f(), vec4f());
@@ -223,16 +217,16 @@ fn emission_of_medium(kind: u32, emission: u32, p: vec3f, unit: vec3f, lambda: S
         le = spectrum(head.z, lambda);
     } else {
         var value: f32;
-        if (kind == VOXELS) {
+        if (kind == MediumTag_Voxels) {
             value = voxel_value(temperatures, p);
         } else {
             value = grid_value(temperatures, unit);
         }
         le = blackbody((value - number(emission + 4)) * number(emission + 5), lambda);
     }
-    if (kind == DENSITIES) {
+    if (kind == MediumTag_Densities) {
         le *= grid_value(head.x, unit);
-    } else if (kind == COLOURS) {
+    } else if (kind == MediumTag_Colours) {
         le *= colour_value(head.x, unit, lambda);
     }
     return le * bitcast<f32>(head.y);
@@ -249,14 +243,14 @@ fn properties(m: Matter, p: vec3f, lambda: SampledWavelengths) -> Properties {
     let values = word(m.at + 6);
     var density = 1.0;
     switch (kind) {
-        case DENSITIES: { density = grid_value(values, unit); }
-        case CLOUD: { density = cloud_density(values, unit); }
-        case VOXELS: { density = voxel_value(values, p); }
+        case MediumTag_Densities: { density = grid_value(values, unit); }
+        case MediumTag_Cloud: { density = cloud_density(values, unit); }
+        case MediumTag_Voxels: { density = voxel_value(values, p); }
         default: {}
     }
     found.sigma_a = m.sigma_a * density;
     found.sigma_s = m.sigma_s * density;
-    if (kind == COLOURS) {
+    if (kind == MediumTag_Colours) {
         found.sigma_s = colour_value(word(m.at + 3), unit, lambda) * m.sigma_a;
         found.sigma_a = colour_value(word(m.at + 2), unit, lambda) * m.sigma_a;
     }
@@ -283,7 +277,7 @@ fn cells_along(m: Matter, ray: Ray, t_max: f32) -> Cells {
     cells.t_end = min(t_max, GREATEST);
     cells.next = vec3f(infinity());
     cells.goes_on = true;
-    if (word(m.at) == HOMOGENEOUS) {
+    if (word(m.at) == MediumTag_Homogeneous) {
         return cells;
     }
     let inward = kept_placement(m.at + 8);
@@ -396,7 +390,7 @@ fn fly(
     var flight: Flight;
     let m = matter(medium, lambda);
     let hero = heroes.hero;
-    let is_exact = word(medium) == HOMOGENEOUS;
+    let is_exact = word(medium) == MediumTag_Homogeneous;
     let per_density = m.sigma_a + m.sigma_s;
     if (is_exact && is_shadow) {
         let passed = attenuation(per_density, min(t_max, GREATEST));

@@ -9,18 +9,6 @@
 //
 // A chain of no steps is a candidate for starts.
 
-// Rows of the table: the scalar contribution of the current point, the candidate where the chain
-// starts, the weight of the current point so far, its film position, wavelength and light, and the
-// rays of the chain. The point follows.
-const SCALAR = 0u;
-const START = 1u;
-const WEIGHT = 2u;
-const FILM = 3u;
-const WAVELENGTH = 5u;
-const LIGHT = 6u;
-const RAYS = 10u;
-const POINT = 11u;
-
 // Coordinates of a point: those of the choice of a strategy and of the camera, of the camera's
 // subpath, of the light's, of the connection.
 const CAMERA_DIMENSIONS = 8u;
@@ -95,7 +83,7 @@ fn dimensions() -> u32 {
 fn step_numbers(dimension: u32) -> vec2f {
     var words = array(chain, step_, batch.key, dimension);
     if (step_ == 0) {
-        words = array(table[place_in(START)], 0u, batch.candidate_key, dimension);
+        words = array(table[place_in(ChainRow_Start)], 0u, batch.candidate_key, dimension);
     }
     let mixed = mix_quadruple(words);
     return vec2f(unit_interval(mixed[0]), unit_interval(mixed[1]));
@@ -108,7 +96,7 @@ fn coordinate(dimension: u32) -> f32 {
         return u.x;
     }
     let deviate = sqrt(max(-2 * ln(1 - u.x), 0)) * circular_sin(6.2831855 * u.y);
-    let x = kept(POINT + dimension) + batch.sigma * deviate;
+    let x = kept(ChainRow_Point + dimension) + batch.sigma * deviate;
     return min(x - floor(x), float_ONE_MINUS_EPSILON);
 }
 
@@ -262,22 +250,22 @@ fn weight_of(share: f32, has_large_step: bool, scalar: f32) -> f32 {
 }
 
 fn current_splat(weight: f32) -> Splat {
-    let l = vec4f(kept(LIGHT), kept(LIGHT + 1), kept(LIGHT + 2), kept(LIGHT + 3));
-    return Splat(vec2f(kept(FILM), kept(FILM + 1)), kept(WAVELENGTH), 0, l * weight);
+    let l = vec4f(kept(ChainRow_Light), kept(ChainRow_Light + 1), kept(ChainRow_Light + 2), kept(ChainRow_Light + 3));
+    return Splat(vec2f(kept(ChainRow_Film), kept(ChainRow_Film + 1)), kept(ChainRow_Wavelength), 0, l * weight);
 }
 
 // Makes the proposed point the current one.
 fn accept(found: Contribution, weight: f32) {
     for (var i = 0u; i < dimensions(); i++) {
-        keep(POINT + i, coordinate(i));
+        keep(ChainRow_Point + i, coordinate(i));
     }
-    keep(SCALAR, found.scalar);
-    keep(WEIGHT, weight);
-    keep(FILM, found.film.x);
-    keep(FILM + 1, found.film.y);
-    keep(WAVELENGTH, found.wavelength);
+    keep(ChainRow_Scalar, found.scalar);
+    keep(ChainRow_Weight, weight);
+    keep(ChainRow_Film, found.film.x);
+    keep(ChainRow_Film + 1, found.film.y);
+    keep(ChainRow_Wavelength, found.wavelength);
     for (var i = 0u; i < 4; i++) {
-        keep(LIGHT + i, found.l[i]);
+        keep(ChainRow_Light + i, found.l[i]);
     }
 }
 
@@ -291,16 +279,16 @@ fn leave_one() -> Splat {
         accept(found, 0);
         return Splat();
     }
-    let scalar = kept(SCALAR);
+    let scalar = kept(ChainRow_Scalar);
     let a = select(1, found.scalar / scalar, found.scalar < scalar);
-    let weight = kept(WEIGHT) + weight_of(1 - a, false, scalar);
+    let weight = kept(ChainRow_Weight) + weight_of(1 - a, false, scalar);
     let of_found = weight_of(a, is_large, found.scalar);
     if (u.y < a) {
         let left = current_splat(weight);
         accept(found, of_found);
         return left;
     }
-    keep(WEIGHT, weight);
+    keep(ChainRow_Weight, weight);
     return Splat(found.film, found.wavelength, 0, found.l * of_found);
 }
 
@@ -318,9 +306,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (step_ <= last) {
             splat = leave_one();
         } else if (step_ == last + 1) {
-            splat = current_splat(kept(WEIGHT));
+            splat = current_splat(kept(ChainRow_Weight));
         }
         batch.splats[i * batch.count + chain] = splat;
     }
-    table[place_in(RAYS)] += rays;
+    table[place_in(ChainRow_Rays)] += rays;
 }

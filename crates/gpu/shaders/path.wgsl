@@ -146,7 +146,7 @@ fn shade(
         }
         (*path).depth++;
         keep_boundary(&bsdf);
-        if (has_setting(REGULARIZES) && (*path).rough_before) {
+        if (has_setting(SettingBit_Regularizes) && (*path).rough_before) {
             regularize(&bsdf);
         }
     }

@@ -6,7 +6,7 @@
 // solid angle around ω there grows by |det W|/|Wω|³ on the way in.
 
 fn is_placed(at: u32) -> bool {
-    return HAS_PLACED_LIGHTS && word(at) == PLACED_LIGHT;
+    return HAS_PLACED_LIGHTS && word(at) == LightTag_Placed;
 }
 
 // The record of the surface of a light, in its own space.

@@ -1,13 +1,5 @@
 // The random numbers of samples: the records of `src/flatten/samplers.rs`.
 
-const INDEPENDENT = 0u;
-const ZSOBOL = 1u;
-const PADDED_SOBOL = 2u;
-const SOBOL = 3u;
-const HALTON = 4u;
-const STRATIFIED = 5u;
-const PMJ02BN = 6u;
-
 // The coordinates at the current place, of which samplers make the second one if it is wanted.
 fn coordinates(is_pair: bool) -> vec2f {
     var at = world.random_numbers;
@@ -16,19 +8,19 @@ fn coordinates(is_pair: bool) -> vec2f {
     }
     let head = words_at(at);
     let key = head.y;
-    if (HAS_ZSOBOL && head.x == ZSOBOL) {
+    if (HAS_ZSOBOL && head.x == SamplerTag_ZSobol) {
         return ZSobol_at_2d(ZSobol(1u << head.z, head.z, head.w, word(at + 4), key, place), place);
     }
     if (HAS_RARE_SAMPLERS) {
         switch (head.x) {
-            case PADDED_SOBOL: { return padded_sobol(place, key, head.z, head.w, is_pair); }
-            case SOBOL: { return sobol(at, is_pair); }
-            case HALTON: { return halton_at(at, is_pair); }
-            case STRATIFIED: {
+            case SamplerTag_PaddedSobol: { return padded_sobol(place, key, head.z, head.w, is_pair); }
+            case SamplerTag_Sobol: { return sobol(at, is_pair); }
+            case SamplerTag_Halton: { return halton_at(at, is_pair); }
+            case SamplerTag_Stratified: {
                 let more = words_at(at + 4);
                 return stratified(place, vec2u(head.w, more.x), head.z, key, more.y == 1, is_pair);
             }
-            case PMJ02BN: { return pmj02bn(place, head.z, key, is_pair); }
+            case SamplerTag_Pmj02Bn: { return pmj02bn(place, head.z, key, is_pair); }
             default: {}
         }
     }
@@ -65,7 +57,7 @@ fn sobol(at: u32, is_pair: bool) -> vec2f {
 fn halton_at(at: u32, is_pair: bool) -> vec2f {
     let pixel = mix_word(mix_word(word(at + 1) ^ place.pixel[0]) ^ place.pixel[1]);
     let randomize = word(at + 2);
-    let index = place.index + select(0u, pixel, randomize == 0);
+    let index = place.index + select(0u, pixel, randomize == Randomize_None);
     let first = wrapped_dimension(place.dimension, select(1u, 2u, is_pair), word(at + 3));
     var u: vec2f;
     for (var c = 0u; c < select(1u, 2u, is_pair); c++) {

@@ -7,10 +7,6 @@
 // What the hardware says instead of an instance's item where there is none.
 const OUTSIDE = 0xffffffu;
 
-// The masks of instances.
-const TRIANGLES = 1u;
-const SHAPES = 2u;
-
 const LARGEST = 0x1.fffffep+127f;
 
 // A ray within an instance, or outside of all.
@@ -71,7 +67,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     var t_min = 0.0;
     // One query is for triangles, and the next for shapes: naga 30 compares the distance of a shape
     // with a wrong one if a triangle was found before.
-    var mask = TRIANGLES;
+    var mask = MaskBit_Triangles;
     loop {
         var ray = InnerRay(o, d, world.roots, NO_HIT);
         var hit = best;
@@ -95,7 +91,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                 found = rayQueryGetCommittedIntersection(&query);
             }
             ray = inner_ray(o, d, found.instance_custom_data);
-            if (mask == SHAPES) {
+            if (mask == MaskBit_Shapes) {
                 if (!is_candidate) {
                     break;
                 }
@@ -115,7 +111,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                             break;
                         }
                         t_min = 0;
-                        mask = SHAPES;
+                        mask = MaskBit_Shapes;
                     }
                     is_begun = false;
                     continue;

@@ -130,17 +130,14 @@ fn pmj02bn(address: Address, log2_samples: u32, key: u32, is_pair: bool) -> vec2
     let point = reverseBits(fast_owen_scramble(reverseBits(index), hash));
     let first = mix_word(hash + 0x9e3779b9u);
     if (!is_pair) {
-        return vec2f(Randomize_digits(FAST_OWEN, point, first), 0);
+        return vec2f(Randomize_digits(Randomize_FastOwen, point, first), 0);
     }
     let second = mix_word(first + 0x9e3779b9u);
     return vec2f(
-        Randomize_digits(FAST_OWEN, point, first),
-        Randomize_digits(FAST_OWEN, pascal_digits(point, 0), second),
+        Randomize_digits(Randomize_FastOwen, point, first),
+        Randomize_digits(Randomize_FastOwen, pascal_digits(point, 0), second),
     );
 }
-
-const PERMUTE_DIGITS = 1u;
-const FAST_OWEN = 2u;
 
 // The coordinate in the base of a prime number, from a hash of pixel and dimension. Sums of digits
 // differ from those of the CPU, which has doubles, by rounding.
@@ -148,7 +145,7 @@ fn halton(index: u32, base: u32, randomize: u32, hash: u32) -> f32 {
     var a = index;
     var scale = 1.0;
     var sum = 0.0;
-    if (randomize == PERMUTE_DIGITS) {
+    if (randomize == Randomize_PermuteDigits) {
         var shifts = mix_word(hash);
         var multipliers = mix_word(~hash);
         while (a > 0) {
@@ -165,10 +162,10 @@ fn halton(index: u32, base: u32, randomize: u32, hash: u32) -> f32 {
     }
     // The permuted digits so far after a one, so that leading zeros count.
     var before = 1u;
-    while (select(scale > 5.9604645e-8, a > 0, randomize == 0)) {
+    while (select(scale > 5.9604645e-8, a > 0, randomize == Randomize_None)) {
         let next = a / base;
         var digit = a - next * base;
-        if (randomize != 0) {
+        if (randomize != Randomize_None) {
             digit = permuted_index(digit, base, mix_word(hash ^ before));
             before = before * base + digit;
         }

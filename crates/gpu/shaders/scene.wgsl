@@ -39,12 +39,6 @@ struct World {
 @group(0) @binding(4) var<storage, read_write> tables: array<vec4u>;
 @group(0) @binding(7) var<storage, read_write> texels: array<u32>;
 
-// The bits of `settings`.
-const REGULARIZES = 1u;
-const SAMPLES_LIGHTS = 2u;
-const SAMPLES_BSDFS = 4u;
-const MIRRORS_DIRECTIONS = 8u;
-
 fn has_setting(bit: u32) -> bool {
     return (world.settings & bit) != 0;
 }

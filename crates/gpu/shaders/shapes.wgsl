@@ -1,33 +1,17 @@
 // Rays and shapes that are not triangles: patches, quadrics and curves. `src/bvh/item.rs` has the
 // format of their items.
 
-// The kinds of items.
-const INSTANCE = 0u;
-const PATCH = 1u;
-const SPHERE = 2u;
-const CYLINDER = 3u;
-const DISK = 4u;
-const PLANE = 5u;
-// A whole sphere that is not rotated, for spheres by the million.
-const BALL = 6u;
-const FLAT_CURVE = 7u;
-const TUBE = 8u;
-const RIBBON = 9u;
-
-// The bits of the last word of a shape.
-const MARKED = 2u;
-
 // Takes the hit on a shape if it is the nearest so far of those beyond `after`.
 fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, best: ptr<function, Nearest>) {
     let at = 5 * index;
     let ids = items[at + 4];
     var uv = vec2f();
     var t = -1.0;
-    if (ids.x == PATCH) {
+    if (ids.x == ItemTag_Patch) {
         t = hit_patch(o, d, at, after, (*best).t, &uv);
-    } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {
+    } else if (HAS_CURVES && ids.x >= ItemTag_FlatCurve) {
         t = hit_curve(o, d, at, after, (*best).t, &uv);
-    } else if (ids.x == BALL) {
+    } else if (ids.x == ItemTag_Ball) {
         let ball = bitcast<vec4f>(items[at]);
         t = hit_round(o - ball.xyz, d, true, whole_sphere(ball.w), after, (*best).t);
     } else {
@@ -37,14 +21,14 @@ fn intersect_shape(o: vec3f, d: vec3f, after: f32, index: u32, instance: u32, be
         let inner_o = vec3f(dot(row[0].xyz, q), dot(row[1].xyz, q), dot(row[2].xyz, q));
         let inner_d = vec3f(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
         let numbers = bitcast<vec4f>(items[at + 3]);
-        if (ids.x == DISK || ids.x == PLANE) {
-            t = hit_flat(inner_o, inner_d, dot(abs(row[2].xyz), abs(q)), ids.x == DISK, numbers, (*best).t);
+        if (ids.x == ItemTag_Disk || ids.x == ItemTag_Plane) {
+            t = hit_flat(inner_o, inner_d, dot(abs(row[2].xyz), abs(q)), ids.x == ItemTag_Disk, numbers, (*best).t);
         } else {
-            t = hit_round(inner_o, inner_d, ids.x == SPHERE, numbers, after, (*best).t);
+            t = hit_round(inner_o, inner_d, ids.x == ItemTag_Sphere, numbers, after, (*best).t);
         }
     }
     if (t > after) {
-        *best = Nearest(t, uv, index, false, instance, (ids.w & MARKED) != 0);
+        *best = Nearest(t, uv, index, false, instance, (ids.w & ItemBit_Marked) != 0);
     }
 }
 
@@ -256,7 +240,7 @@ fn hit_curve(o: vec3f, d: vec3f, at: u32, after: f32, t_max: f32, uv: ptr<functi
             let w = clamp(-dot(p[0].xy, chord) / dot(chord, chord), 0, 1);
             let u = u0 + w * size;
             var width = mix(ends.x, ends.y, u);
-            if (ids.x == RIBBON) {
+            if (ids.x == ItemTag_Ribbon) {
                 width *= abs(dot(ribbon_normal(ids.y, ids.z, u), z));
             }
             let q = blossom(Cubic(p), w, w, w);

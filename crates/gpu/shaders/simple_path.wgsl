@@ -11,7 +11,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
     var counts = true;
     var direct: DirectLight;
     var goes_on = true;
-    let samples_lights = has_setting(SAMPLES_LIGHTS);
+    let samples_lights = has_setting(SettingBit_SamplesLights);
     // Each turn follows the last vertex's shadow ray, or the ray to the next vertex, at one place
     // of the program, because traversal is long.
     loop {
@@ -52,7 +52,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         depth++;
         // What chooses the light and its point, and the lobe and its direction.
-        let follows_bsdf = has_setting(SAMPLES_BSDFS);
+        let follows_bsdf = has_setting(SettingBit_SamplesBsdfs);
         var u: array<vec2f, 4>;
         for (var i = select(2u, 0u, samples_lights); i < 4; i++) {
             if ((i != 1 || world.light_count > 0) && (i != 2 || follows_bsdf)) {
@@ -83,7 +83,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             var pdf = 1 / (4 * 3.1415927);
             let sides = flags & (BxdfFlags_REFLECTION | BxdfFlags_TRANSMISSION);
             let has_one_side = sides != (BxdfFlags_REFLECTION | BxdfFlags_TRANSMISSION);
-            if (has_setting(MIRRORS_DIRECTIONS) && has_one_side) {
+            if (has_setting(SettingBit_MirrorsDirections) && has_one_side) {
                 // Directions on the other side are mirrored, which doubles the density.
                 pdf *= 2;
                 let is_same_side = dot(s.wo, s.n) * dot(wi, s.n) > 0;

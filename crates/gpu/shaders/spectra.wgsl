@@ -1,10 +1,5 @@
 // Spectra: the records of `src/flatten/spectra.rs`.
 
-const SPECTRUM_CONSTANT = 0u;
-const SPECTRUM_LINEAR = 1u;
-const SPECTRUM_DENSE = 2u;
-const SPECTRUM_RGB = 3u;
-
 // The value of a spectrum at a wavelength in nanometres.
 fn spectrum_at(at: u32, lambda: f32) -> f32 {
     return spectrum_of(at, words_at(at), lambda);
@@ -14,13 +9,13 @@ fn spectrum_at(at: u32, lambda: f32) -> f32 {
 fn spectrum_of(at: u32, head: vec4u, lambda: f32) -> f32 {
     let scale = bitcast<f32>(head.y);
     switch (head.x) {
-        case SPECTRUM_CONSTANT: { return scale; }
-        case SPECTRUM_LINEAR: { return linear_spectrum(at, head.y, lambda); }
-        case SPECTRUM_DENSE: { return dense_spectrum(at, lambda); }
+        case SpectrumTag_Constant: { return scale; }
+        case SpectrumTag_Linear: { return linear_spectrum(at, head.y, lambda); }
+        case SpectrumTag_Dense: { return dense_spectrum(at, lambda); }
         default: {}
     }
     let value = scale * RgbSigmoidPolynomial_at(RgbSigmoidPolynomial(vector(at + 4)), lambda);
-    if (head.x == SPECTRUM_RGB) {
+    if (head.x == SpectrumTag_Rgb) {
         return value;
     }
     return value * dense_spectrum(head.z, lambda);
@@ -61,7 +56,7 @@ fn dense_spectrum(at: u32, lambda: f32) -> f32 {
 
 fn spectrum(at: u32, lambda: SampledWavelengths) -> vec4f {
     let head = words_at(at);
-    if (head.x == SPECTRUM_CONSTANT) {
+    if (head.x == SpectrumTag_Constant) {
         return vec4f(bitcast<f32>(head.y));
     }
     var values: vec4f;
@@ -71,16 +66,11 @@ fn spectrum(at: u32, lambda: SampledWavelengths) -> vec4f {
     return values;
 }
 
-// The types of spectra that RGB values become.
-const ALBEDO = 0u;
-const UNBOUNDED = 1u;
-const ILLUMINANT = 2u;
-
 // The spectrum of an RGB value of a colour space, which has no component below 0.
 fn rgb_spectrum(space: u32, kind: u32, rgb: vec3f, lambda: SampledWavelengths) -> vec4f {
     var scale = 1.0;
     var color = min(rgb, vec3f(1));
-    if (kind != ALBEDO) {
+    if (kind != SpectrumTypeTag_Albedo) {
         scale = 2 * max(rgb.x, max(rgb.y, rgb.z));
         color = select(vec3f(), rgb / scale, scale > 0);
     }
@@ -88,7 +78,7 @@ fn rgb_spectrum(space: u32, kind: u32, rgb: vec3f, lambda: SampledWavelengths) -
     var values: vec4f;
     for (var i = 0; i < 4; i++) {
         values[i] = RgbSigmoidPolynomial_at(polynomial, lambda.lambda[i]) * scale;
-        if (kind == ILLUMINANT) {
+        if (kind == SpectrumTypeTag_Illuminant) {
             values[i] *= dense_spectrum(word(space + 4), lambda.lambda[i]);
         }
     }

@@ -325,7 +325,7 @@ fn arrive(walk: ptr<function, Subpath>, s: ptr<function, Surface>, t: f32) -> Ar
     var bsdf = bsdf_at(s, textures, &lambda);
     (*walk).lambda = lambda;
     bsdf.mode = select(TransportMode_Radiance, TransportMode_Importance, is_light_path);
-    if (has_setting(REGULARIZES) && (*walk).rough_before) {
+    if (has_setting(SettingBit_Regularizes) && (*walk).rough_before) {
         regularize(&bsdf);
     }
     (*walk).depth++;

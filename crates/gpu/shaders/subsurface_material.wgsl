@@ -254,9 +254,9 @@ fn exit_sample(bsdf: Bsdf, wo: vec3f, u: vec2f) -> BsdfSample {
 
 // Leaves of a body the boundary, by samples of which paths enter it.
 fn keep_boundary(bsdf: ptr<function, Bsdf>) {
-    if ((*bsdf).kind == SUBSURFACE) {
-        (*bsdf).kind = BOUNDARY;
-    } else if ((*bsdf).kind == PRINCIPLED) {
+    if ((*bsdf).kind == MaterialTag_Subsurface) {
+        (*bsdf).kind = MaterialTag_Boundary;
+    } else if ((*bsdf).kind == MaterialTag_Principled) {
         (*bsdf).surface = boundary_part((*bsdf).surface);
     }
 }

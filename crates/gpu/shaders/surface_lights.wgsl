@@ -2,7 +2,7 @@
 
 // Whether the surface of a light is a triangle or a rectangle.
 fn is_flat(at: u32) -> bool {
-    return !HAS_ROUND_LIGHTS || word(at) == TRIANGLE_LIGHT || word(at) == RECTANGLE_LIGHT;
+    return !HAS_ROUND_LIGHTS || word(at) == LightTag_Triangle || word(at) == LightTag_Rectangle;
 }
 
 fn sample_surface(at: u32, context: ShapeSampleContext, u: vec2f, lambda: SampledWavelengths) -> LightSample {
@@ -62,7 +62,7 @@ fn cone_of(at: u32, context: ShapeSampleContext) -> Cone {
     let toward = ball.xyz - context.p.p;
     let distance = length(toward);
     let radius = ball.w;
-    if (word(at) != SPHERE_LIGHT || distance - length(context.p.error) <= radius) {
+    if (word(at) != LightTag_Sphere || distance - length(context.p.error) <= radius) {
         return Cone(vec3f(), 0, 2);
     }
     let sine = radius / distance;
@@ -105,11 +105,11 @@ fn point_by_area(at: u32, u: vec2f) -> ShapeSample {
         }
         point.p = FlatShape_point(flat_shape, point.uv);
         point.n = flat_shape.n;
-    } else if (word(at) == SPHERE_LIGHT) {
+    } else if (word(at) == LightTag_Sphere) {
         let outward = outward_by_area(at, u);
         point.p = point_of_ball(numbers_at(at + 4), outward);
         point.n = outward * number(at + 11);
-    } else if (word(at) == PATCH_LIGHT) {
+    } else if (word(at) == LightTag_Patch) {
         point = patch_by_area(at, u);
     } else {
         point = revolved_by_area(at, u);
@@ -156,11 +156,11 @@ fn surface_density(at: u32, n: vec3f, uv: vec2f) -> f32 {
         return select(1.0, 2.0, flat_shape.is_triangle) / area;
     }
     switch (word(at)) {
-        case SPHERE_LIGHT: {
+        case LightTag_Sphere: {
             let radius = number(at + 7);
             return 1 / (4 * 3.1415927 * radius * radius);
         }
-        case PATCH_LIGHT: { return patch_density(at, uv) / length(patch_normal(at, uv)); }
+        case LightTag_Patch: { return patch_density(at, uv) / length(patch_normal(at, uv)); }
         default: {
             // By area in object space, of which an element grows by |det M|/|Mᵀn|.
             let m = Rows(vector(at + 4), vector(at + 8), vector(at + 12));
@@ -182,14 +182,14 @@ fn revolved_by_area(at: u32, u: vec2f) -> ShapeSample {
     var n = vec3f(0, 0, 1);
     let phi = sin_cos(u.y * angle);
     switch (word(at)) {
-        case DISK_LIGHT: {
+        case LightTag_Disk: {
             // The numbers are those of the radius and of the hole.
             let distance = sqrt(high * high + (low * low - high * high) * u.x);
             let is_whole = high == 0 && angle > 6.28318;
             let ring = vec2f(phi.v1, phi.v0) * distance;
             p = vec3f(select(ring, sample_uniform_disk_concentric(u) * low, is_whole), first);
         }
-        case CYLINDER_LIGHT: {
+        case LightTag_Cylinder: {
             n = vec3f(phi.v1, phi.v0, 0);
             p = n * first + vec3f(0, 0, low + (high - low) * u.x);
         }

@@ -132,13 +132,13 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     var flags = 0u;
     if (attributes != 0) {
         flags = word(attributes);
-        let numbers = select(0u, 9u, (flags & 1) != 0) + select(0u, 6u, (flags & 2) != 0)
-            + select(0u, 9u, (flags & 4) != 0);
+        let numbers = select(0u, 9u, (flags & AttributeBit_Normals) != 0) + select(0u, 6u, (flags & AttributeBit_Coordinates) != 0)
+            + select(0u, 9u, (flags & AttributeBit_Tangents) != 0);
         next += numbers * hit.primitive;
     }
     let normals = next;
-    next += select(0u, 9u, (flags & 1) != 0);
-    if ((flags & 2) != 0) {
+    next += select(0u, 9u, (flags & AttributeBit_Normals) != 0);
+    if ((flags & AttributeBit_Coordinates) != 0) {
         for (var i = 0u; i < 3; i++) {
             uv[i] = vec2f(number(next + 2 * i), number(next + 2 * i + 1));
         }
@@ -149,7 +149,7 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
     s.ns = s.n;
     s.ss = s.dpdu;
     s.ts = s.dpdv;
-    if ((flags & 1) != 0) {
+    if ((flags & AttributeBit_Normals) != 0) {
         let n = at_corners(normals);
         let ns = Vec3_normalize_masked(mixed(n, b));
         s.ns = select(s.n, ns.v0, ns.v1);
@@ -164,11 +164,11 @@ fn triangle_point(hit: Hit, attributes: u32, flips: bool) -> Surface {
         s.dndu = select(vec3f(), dndu, is_regular);
         s.dndv = select(vec3f(), dndv, is_regular);
     }
-    if ((flags & 4) != 0) {
+    if ((flags & AttributeBit_Tangents) != 0) {
         let ss = mixed(at_corners(next), b);
         s.ss = select(s.dpdu, ss, dot(ss, ss) > 0);
     }
-    if ((flags & 5) != 0) {
+    if ((flags & (AttributeBit_Normals | AttributeBit_Tangents)) != 0) {
         s.ts = cross(s.ns, s.ss);
         s.ss = cross(s.ts, s.ns);
         if (dot(s.ts, s.ts) == 0) {
@@ -203,7 +203,7 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
     let ids = items[at + 4];
     let side = select(1.0, -1.0, (ids.w & 1) != 0);
     var s: Surface;
-    if (ids.x == PATCH) {
+    if (ids.x == ItemTag_Patch) {
         let corner = bitcast<vec3f>(items[at].xyz);
         let right = bitcast<vec3f>(items[at + 1].xyz);
         let up = bitcast<vec3f>(items[at + 2].xyz);
@@ -225,7 +225,7 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         let dv = cross(twist * scale, s.dpdv * scale);
         s.dndu = (du - n * dot(n, du)) * (side / length(normal));
         s.dndv = (dv - n * dot(n, dv)) * (side / length(normal));
-    } else if (HAS_CURVES && ids.x >= FLAT_CURVE) {
+    } else if (HAS_CURVES && ids.x >= ItemTag_FlatCurve) {
         s = curve_point(hit, o, d, side);
     } else {
         let row = array(bitcast<vec4f>(items[at]), bitcast<vec4f>(items[at + 1]), bitcast<vec4f>(items[at + 2]));
@@ -233,10 +233,10 @@ fn shape_point(hit: Hit, o: vec3f, d: vec3f) -> Surface {
         var center = vec3f(row[0].w, row[1].w, row[2].w);
         var kind = ids.x;
         var numbers = bitcast<vec4f>(items[at + 3]);
-        if (kind == BALL) {
+        if (kind == ItemTag_Ball) {
             inward = Rows(vec3f(1, 0, 0), vec3f(0, 1, 0), vec3f(0, 0, 1));
             center = row[0].xyz;
-            kind = SPHERE;
+            kind = ItemTag_Sphere;
             numbers = whole_sphere(row[0].w);
         }
         let p = times(inward, o - center) + times(inward, d) * hit.t;
@@ -273,10 +273,10 @@ fn curve_point(hit: Hit, o: vec3f, d: vec3f, flip: f32) -> Surface {
     var width = mix(ends.x, ends.y, u);
     let sideways = unit_or(cross(z, tangent), across(tangent));
     var across_it = sideways;
-    if (kind == TUBE) {
+    if (kind == ItemTag_Tube) {
         let turn = sin_cos((hit.uv.y - 0.5) * 3.1415927);
         across_it = sideways * turn.v1 - cross(tangent, sideways) * turn.v0;
-    } else if (kind == RIBBON) {
+    } else if (kind == ItemTag_Ribbon) {
         let normal = ribbon_normal(hit.geometry, hit.primitive, u);
         width *= abs(dot(normal, z));
         across_it = unit_or(cross(normal, tangent), sideways);
@@ -308,12 +308,12 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
     s.p.p = p;
     s.n = vec3f(0, 0, 1);
     let phi = spherical_phi(p);
-    if (kind == PLANE) {
+    if (kind == ItemTag_Plane) {
         s.p.p.z = 0;
         s.uv = p.xy;
         s.dpdu = vec3f(1, 0, 0);
         s.dpdv = vec3f(0, 1, 0);
-    } else if (kind == DISK) {
+    } else if (kind == ItemTag_Disk) {
         s.p.p.z = numbers.x;
         let width = numbers.y - numbers.z;
         let distance = length(p.xy);
@@ -322,7 +322,7 @@ fn revolved_point(kind: u32, p: vec3f, numbers: vec4f) -> Surface {
         let out = select(vec2f(1e-5 * numbers.y, 0), p.xy, distance > 0);
         s.dpdu = vec3f(-out.y, out.x, 0) * numbers.w;
         s.dpdv = vec3f(out / length(out), 0) * -width;
-    } else if (kind == CYLINDER) {
+    } else if (kind == ItemTag_Cylinder) {
         let out = p.xy / length(p.xy);
         s.n = vec3f(out, 0);
         s.p.p = vec3f(out * numbers.x, p.z);

@@ -1,27 +1,5 @@
 // Textures: the records of `src/flatten/textures.rs`.
 
-const TEXTURE_NUMBER = 0u;
-const TEXTURE_SPECTRUM = 1u;
-
-const CODE_NUMBER = 0u;
-const CODE_SPECTRUM = 1u;
-const CODE_SQUARES = 2u;
-const CODE_CUBES = 3u;
-const CODE_FACING = 4u;
-const CODE_STEP = 5u;
-const CODE_SCALE = 6u;
-const CODE_MIX = 7u;
-const CODE_BILERP = 8u;
-const CODE_IMAGE = 9u;
-const CODE_DOTS = 10u;
-const CODE_FBM = 11u;
-const CODE_WRINKLED = 12u;
-const CODE_WINDY = 13u;
-
-const LINEAR_MAPPING = 0u;
-const SPHERICAL_MAPPING = 1u;
-const CYLINDRICAL_MAPPING = 2u;
-
 // What textures depend on.
 struct TextureContext {
     p: vec3f,
@@ -33,10 +11,10 @@ struct TextureContext {
 // A spectrum, or a number four times.
 fn texture(at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
     let head = words_at(at);
-    if (head.x == TEXTURE_NUMBER) {
+    if (head.x == TextureTag_Number) {
         return vec4f(bitcast<f32>(head.y));
     }
-    if (head.x == TEXTURE_SPECTRUM) {
+    if (head.x == TextureTag_Spectrum) {
         return spectrum(head.y, lambda);
     }
     if (HAS_PROGRAMS) {
@@ -59,24 +37,24 @@ fn program(at: u32, count: u32, context: TextureContext, lambda: SampledWaveleng
         let argument = operation.w;
         var value: vec4f;
         switch (code) {
-            case CODE_NUMBER: { value = vec4f(bitcast<f32>(argument)); }
-            case CODE_SPECTRUM: { value = spectrum(argument, lambda); }
-            case CODE_CUBES: { value = vec4f(cubes(in_texture(argument, context))); }
-            case CODE_FACING: { value = vec4f(abs(dot(context.n, vector(argument)))); }
-            case CODE_STEP: { value = vec4f(select(0.0, 1.0, a.x >= bitcast<f32>(argument))); }
-            case CODE_SCALE: { value = a * b.x; }
-            case CODE_MIX: {
+            case CodeTag_Number: { value = vec4f(bitcast<f32>(argument)); }
+            case CodeTag_Spectrum: { value = spectrum(argument, lambda); }
+            case CodeTag_Cubes: { value = vec4f(cubes(in_texture(argument, context))); }
+            case CodeTag_Facing: { value = vec4f(abs(dot(context.n, vector(argument)))); }
+            case CodeTag_Step: { value = vec4f(select(0.0, 1.0, a.x >= bitcast<f32>(argument))); }
+            case CodeTag_Scale: { value = a * b.x; }
+            case CodeTag_Mix: {
                 let mixed = a * (1 - c.x) + b * c.x;
                 value = select(select(mixed, b, c.x == 1), a, c.x == 0);
             }
-            case CODE_SQUARES, CODE_BILERP, CODE_IMAGE, CODE_DOTS: {
-                let is_image = code == CODE_IMAGE;
+            case CodeTag_Squares, CodeTag_Bilerp, CodeTag_Image, CodeTag_Dots: {
+                let is_image = code == CodeTag_Image;
                 let place = on_texture(select(argument, word(argument + 1), is_image), context);
                 if (HAS_IMAGES && is_image) {
                     value = image_texture(argument, place, lambda);
-                } else if (code == CODE_SQUARES) {
+                } else if (code == CodeTag_Squares) {
                     value = vec4f(squares(place));
-                } else if (HAS_NOISE && code == CODE_DOTS) {
+                } else if (HAS_NOISE && code == CodeTag_Dots) {
                     value = vec4f(coverage(place.st));
                 } else {
                     let w = weights(place.st);
@@ -110,7 +88,7 @@ fn image_texture(at: u32, place: TexCoord2d, lambda: SampledWavelengths) -> vec4
 
 // What is made of noise.
 fn pattern(code: u32, at: u32, context: TextureContext, lambda: SampledWavelengths) -> vec4f {
-    if (code == CODE_WINDY) {
+    if (code == CodeTag_Windy) {
         return vec4f(windy(in_texture(at, context)));
     }
     let head = words_at(at);
@@ -118,13 +96,13 @@ fn pattern(code: u32, at: u32, context: TextureContext, lambda: SampledWavelengt
     let octaves = head.y;
     let roughness = bitcast<f32>(head.z);
     switch (code) {
-        case CODE_FBM: { return vec4f(fbm(place, octaves, roughness)); }
-        case CODE_WRINKLED: { return vec4f(turbulence(place, octaves, roughness)); }
+        case CodeTag_Fbm: { return vec4f(fbm(place, octaves, roughness)); }
+        case CodeTag_Wrinkled: { return vec4f(turbulence(place, octaves, roughness)); }
         default: {
             let more = words_at(at + 4);
             let fractal = Fractal(0, octaves, roughness);
             let marble = Marble(fractal, bitcast<f32>(head.w), bitcast<f32>(more.x));
-            return rgb_spectrum(more.y, ALBEDO, marble_color(Marble_place(marble, place)), lambda);
+            return rgb_spectrum(more.y, SpectrumTypeTag_Albedo, marble_color(Marble_place(marble, place)), lambda);
         }
     }
 }
@@ -154,7 +132,7 @@ fn marble_color(place: f32) -> vec3f {
 fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
     let footprint = context.footprint;
     let kind = word(at);
-    if (kind == LINEAR_MAPPING) {
+    if (kind == MappingTag_Linear) {
         let columns = numbers_at(at + 4);
         let u = columns.xy;
         let v = columns.zw;
@@ -173,14 +151,14 @@ fn on_texture(at: u32, context: TextureContext) -> TexCoord2d {
     // The gradients of the coordinates.
     var s: vec3f;
     var t: vec3f;
-    if (kind == SPHERICAL_MAPPING) {
+    if (kind == MappingTag_Spherical) {
         let rho = sqrt(outward);
         s = vec3f(p.xy * (p.z / rho), -rho) / (3.1415927 * dot(p, p));
         t = around;
         let direction = Vec3_normalize_masked(p);
         let w = select(vec3f(), direction.v0, direction.v1);
         st = vec2f(arc_acos(clamp(w.z, -1, 1)) / 3.1415927, spherical_phi(w) / 6.2831855);
-    } else if (kind == CYLINDRICAL_MAPPING) {
+    } else if (kind == MappingTag_Cylindrical) {
         s = around;
         t = vec3f(0, 0, 1);
         st = vec2f((3.1415927 + arc_atan2(p.y, p.x)) / 6.2831855, p.z);

@@ -148,7 +148,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
             // The primitives after the first one.
             let rest = reference + (1u << COUNT_BITS) - 1;
             let are_items = (reference & ITEMS) == ITEMS;
-            if (!are_items || items[5 * first + 4].x != INSTANCE) {
+            if (!are_items || items[5 * first + 4].x != ItemTag_Instance) {
                 var hit = best;
                 hit.is_marked = false;
                 if (are_items) {

@@ -89,11 +89,11 @@ fn exit_lobe(s: Surface) -> Bsdf {
     var bsdf: Bsdf;
     bsdf.frame = Frame_from_z_and_x(s.ns, s.ss);
     bsdf.eta = under.eta;
-    if (under.kind == PRINCIPLED) {
-        bsdf.kind = PRINCIPLED;
+    if (under.kind == MaterialTag_Principled) {
+        bsdf.kind = MaterialTag_Principled;
         bsdf.surface = entering_part(under.surface);
     } else {
-        bsdf.kind = EXIT;
+        bsdf.kind = MaterialTag_Exit;
         bsdf.record = under.record;
     }
     return bsdf;
@@ -153,14 +153,14 @@ fn sampled_radius(u: f32) -> f32 {
 // Whether a path from the camera enters a body by a sample of its boundary.
 fn enters_body(bsdf: Bsdf, s: Surface, sample: BsdfSample) -> bool {
     let is_diffuse = (sample.flags & BxdfFlags_DIFFUSE) != 0;
-    let is_body = bsdf.kind == PRINCIPLED && is_diffuse && !is_black(openpbr_extinction(bsdf.surface));
+    let is_body = bsdf.kind == MaterialTag_Principled && is_diffuse && !is_black(openpbr_extinction(bsdf.surface));
     let passes = dot(s.wo, s.ns) > 0 && (sample.flags & BxdfFlags_TRANSMISSION) != 0;
-    return passes && (is_body || bsdf.kind == BOUNDARY);
+    return passes && (is_body || bsdf.kind == MaterialTag_Boundary);
 }
 
 // Leads a path, whose ray has entered a body, under its surface; false if it ends.
 fn go_under(path: ptr<function, Path>, s: Surface, bsdf: Bsdf, lambda: SampledWavelengths) -> bool {
-    let is_principled = bsdf.kind == PRINCIPLED;
+    let is_principled = bsdf.kind == MaterialTag_Principled;
     let walks = is_principled || walks_under(bsdf.record);
     // What chooses the hero, and the axis and the place of the probe and one of its points, or the
     // first flight of a walk and all that follows.

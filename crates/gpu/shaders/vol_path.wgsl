@@ -256,7 +256,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 keep_first(&path);
             }
             keep_boundary(&bsdf);
-            if (has_setting(REGULARIZES) && path.rough_before) {
+            if (has_setting(SettingBit_Regularizes) && path.rough_before) {
                 regularize(&bsdf);
             }
             flags = bsdf_flags(bsdf);
@@ -269,7 +269,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         let phase = HenyeyGreenstein(number(max(medium, 1) + 1));
         // What chooses the light and its point, the collisions of the shadow ray, and the lobe and
         // its direction.
-        let samples_light = has_setting(SAMPLES_LIGHTS) && (in_medium || is_non_specular(flags));
+        let samples_light = has_setting(SettingBit_SamplesLights) && (in_medium || is_non_specular(flags));
         var u: array<vec2f, 6>;
         for (var i = select(4u, 0u, samples_light); i < 6; i++) {
             if (!(in_medium && i == 4)) {
@@ -293,7 +293,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (in_medium) {
             let scattered = HenyeyGreenstein_sample_p(phase, s.wo, u[5]);
             path.near = no_differentials();
-            path.is_found_twice = has_setting(SAMPLES_LIGHTS);
+            path.is_found_twice = has_setting(SettingBit_SamplesLights);
             path.rough_before = true;
             leave(&path, s, context, scattered.v0, scattered.v1);
             goes_on = survives(&path);
@@ -318,7 +318,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
             }
             let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
-            path.is_found_twice = !is_specular && has_setting(SAMPLES_LIGHTS);
+            path.is_found_twice = !is_specular && has_setting(SettingBit_SamplesLights);
             path.rough_before |= !is_specular;
             if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
                 path.eta_scale *= sample.eta * sample.eta;

@@ -22,6 +22,7 @@ mod realtime;
 mod renderer;
 pub mod shaders;
 mod structure;
+mod tags;
 
 pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};

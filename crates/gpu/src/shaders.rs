@@ -5,12 +5,19 @@ use std::borrow::Cow;
 
 use crate::Algorithm;
 pub use crate::pruning::parsed;
+use crate::tags;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.
 const BY_HAND: [&str; 2] =
     [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/samplers.wgsl")];
 
-/// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these.
+/// The tags of records, for what reads any.
+pub fn tags() -> String {
+    tags::text()
+}
+
+/// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these and have
+/// [`tags`].
 pub const TRACE: &str = concat!(
     include_str!("../shaders/hits.wgsl"),
     include_str!("../shaders/trace.wgsl"),
@@ -389,7 +396,8 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     let (head, rays) =
         if ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
     let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera, skies];
-    head.to_owned() + &with_laws(&[&PLUMBING[..], &rays, &of_scene, texts].concat())
+    let tags = tags();
+    head.to_owned() + &with_laws(&[&[&*tags], &PLUMBING[..], &rays, &of_scene, texts].concat())
 }
 
 /// The text of a file of `shaders/dynamic/`.
@@ -408,7 +416,7 @@ pub fn sort() -> [String; 3] {
 
 /// The kernel that moves spheres.
 pub fn place_spheres() -> String {
-    dynamic! { "plan" "box" "middles" "place_spheres" }
+    tags() + &dynamic! { "plan" "box" "middles" "place_spheres" }
 }
 
 /// The kernel that moves triangles.

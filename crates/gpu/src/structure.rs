@@ -10,16 +10,13 @@ use wgpu::{
 
 use crate::bvh::{Bvh, Plan};
 use crate::device::{Binding, Buffer, Device, GpuError};
+use crate::tags::MaskBit;
 
 /// The bytes of a corner of a triangle.
 const CORNER: u64 = 16;
 
 /// The bytes of a box.
 const BOX: u64 = 24;
-
-/// The masks of instances, as in `shaders/ray_query.wgsl`.
-const TRIANGLES: u8 = 1;
-const SHAPES: u8 = 2;
 
 /// What rays are traced through.
 #[derive(Debug)]
@@ -93,8 +90,10 @@ fn structure(device: &Device, plan: &Plan, triangles: &Buffer) -> Result<Tlas, G
         .flat_map(|place| {
             let triangles = of_triangles[place.group].as_ref().map(|(blas, _)| blas);
             let boxes = of_boxes[place.group].as_ref().map(|(blas, _)| blas);
-            let all =
-                triangles.map(|blas| (blas, TRIANGLES)).into_iter().chain(boxes.map(|blas| (blas, SHAPES)));
+            let all = triangles
+                .map(|blas| (blas, MaskBit::Triangles as u8))
+                .into_iter()
+                .chain(boxes.map(|blas| (blas, MaskBit::Shapes as u8)));
             all.map(|(blas, mask)| TlasInstance::new(blas, place.rows, place.item, mask))
         })
         .collect();

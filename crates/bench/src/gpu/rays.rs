@@ -46,11 +46,12 @@ const STRUCTURE: &str = "@group(0) @binding(1) var structure: acceleration_struc
 /// there are any.
 pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
     let device = kernels.device();
-    let source = [shaders::TRACE, NODES, KERNEL].concat();
+    let source = [&*shaders::tags(), shaders::TRACE, NODES, KERNEL].concat();
     let mut report = by(device, &source, size)?;
     let device = Device::for_ray_queries(device.name()).map_err(|error| error.to_string())?;
     if device.has_ray_queries() {
-        let source = [shaders::ENABLE_RAY_QUERIES, shaders::RAY_QUERY, STRUCTURE, KERNEL].concat();
+        let source =
+            [shaders::ENABLE_RAY_QUERIES, &*shaders::tags(), shaders::RAY_QUERY, STRUCTURE, KERNEL].concat();
         report.insert("by ray queries".into(), by(&device, &source, size)?.into());
     }
     Ok(report.into())

@@ -6,15 +6,13 @@
 // The first point of each geometry.
 @group(0) @binding(3) var<storage, read_write> spheres: array<u32>;
 
-const BALL = 6u;
-
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
     if (id.x < plan.count) {
         let at = 5 * (plan.first_item + id.x);
         let ids = items[at + 4];
         // An instance has no geometry.
-        if (ids.x == BALL && spheres[ids.y] != AT_REST) {
+        if (ids.x == ItemTag_Ball && spheres[ids.y] != AT_REST) {
             let base = 3 * (spheres[ids.y] + ids.z);
             let center = vec3f(points[base], points[base + 1], points[base + 2]);
             let radius = bitcast<f32>(items[at].w);

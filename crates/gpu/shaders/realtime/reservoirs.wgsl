@@ -26,9 +26,6 @@ struct Reservoir {
     normal: u32,
 }
 
-const IS_BIASED = 1u;
-const HAS_BEFORE = 2u;
-
 const SHAPE_RECEIVER = 1u;
 const TRIANGLE_RECEIVER = 2u;
 

@@ -42,7 +42,7 @@ fn other_pixel(id: vec2u, here: Reservoir) -> vec3u {
     let place = place_before(here.o + here.d * here.t, true);
     // Between pixels it is one or the other.
     let pixel = vec2i(floor(place.xy + u));
-    let is_known = (reuse.flags & HAS_BEFORE) != 0 && place.z == 1;
+    let is_known = (reuse.flags & ReuseBit_HasBefore) != 0 && place.z == 1;
     let is_valid = is_known && all(pixel >= vec2i()) && all(pixel < vec2i(frame.size));
     return vec3u(vec2u(max(pixel, vec2i())), u32(is_valid));
 }
@@ -95,7 +95,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var receiver: Receiver;
     // One place of the program for all that is found, because it is long: what the samples find
     // here, what the chosen one finds for their receivers, and its light at the path's wavelengths.
-    let others = select(count, 1, (reuse.flags & IS_BIASED) != 0);
+    let others = select(count, 1, (reuse.flags & ReuseBit_IsBiased) != 0);
     let sets = select(0u, select(SETS, 1u, world.has_one_wavelength == 1), is_last);
     let steps = count + others + sets;
     for (var step = 0u; step < steps; step++) {
@@ -146,7 +146,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         if (step + 1 == count + others && is_lit) {
             next.weight = sum / (next.count * aim);
-            if ((reuse.flags & IS_BIASED) == 0) {
+            if ((reuse.flags & ReuseBit_IsBiased) == 0) {
                 next.weight = sum * own_aim / (all_aims * aim);
             }
         }

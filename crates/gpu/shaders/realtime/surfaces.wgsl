@@ -20,8 +20,8 @@ fn guide_of_sky(o: vec3f, d: vec3f, lambda: SampledWavelengths) -> vec3f {
 
 fn reflectance(bsdf: Bsdf) -> vec3f {
     switch (bsdf.kind) {
-        case DIFFUSE, COATED_DIFFUSE: { return bsdf.a.xyz; }
-        case DIFFUSE_TRANSMISSION: { return bsdf.a.xyz + bsdf.b.xyz; }
+        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: { return bsdf.a.xyz; }
+        case MaterialTag_DiffuseTransmission: { return bsdf.a.xyz + bsdf.b.xyz; }
         default: { return vec3f(1); }
     }
 }

@@ -9,8 +9,7 @@
 //! | ball | its centre and its radius |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
-//! The last quadruple is the kind, the geometry and the primitive, and bits: 1 where the outside is
-//! turned over, 2 where it is marked. That of an instance has, after the kind, the index of its
+//! The last quadruple is the tag, the geometry and the primitive, and bits. That of an instance has, after the kind, the index of its
 //! first key, the number of its motions, which is 0 at rest, and the first light of its shapes. Two
 //! keys are a motion; an instance within others has several, the outermost first. Keys follow all
 //! that rays hit in the group.
@@ -21,21 +20,10 @@ use geometry::{CurveKind, GeometryId, InstancePath, PlainItem, PlainShape, Revol
 use math::{AnimatedTransform, Bounds3, DMat3, DMat4, DQuat, DVec3, MotionKeys, Vec3};
 
 use super::{BvhError, Group, Words};
+use crate::tags::{ItemBit, ItemTag, bit};
 
 /// Quadruples of an item.
 pub const QUADRUPLES: usize = 5;
-
-// The kinds of items, as in `shaders/shapes.wgsl`.
-const INSTANCE: u32 = 0;
-const PATCH: u32 = 1;
-const SPHERE: u32 = 2;
-const CYLINDER: u32 = 3;
-const DISK: u32 = 4;
-const PLANE: u32 = 5;
-const BALL: u32 = 6;
-const FLAT_CURVE: u32 = 7;
-const TUBE: u32 = 8;
-const RIBBON: u32 = 9;
 
 /// What is tested alone.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +67,7 @@ pub fn instance(
     let group = path.ids().last().map_or(0, |&id| world.group_of_instance(id).0);
     let group = &groups[group as usize];
     let inside = [group.roots[0], group.roots[1], group.size.to_bits(), last];
-    [x, y, z, inside, [INSTANCE, motions[0], motions[1], 0]]
+    [x, y, z, inside, [ItemTag::Instance as u32, motions[0], motions[1], 0]]
 }
 
 /// The rows of the matrix that takes rays inside, given the one that takes points outside.
@@ -127,7 +115,7 @@ pub fn keys(keys: &MotionKeys) -> [[Words; QUADRUPLES]; 2] {
 /// The geometry and the primitive of the first of some items; `None` for an instance.
 pub fn ids(items: &[Words]) -> Option<(GeometryId, u32)> {
     let [kind, geometry, primitive, _] = items[QUADRUPLES - 1];
-    (kind != INSTANCE).then_some((GeometryId(geometry), primitive))
+    (kind != ItemTag::Instance as u32).then_some((GeometryId(geometry), primitive))
 }
 
 /// A shape of a geometry.
@@ -138,19 +126,21 @@ pub fn shape(
     is_marked: bool,
 ) -> Result<[Words; QUADRUPLES], BvhError> {
     let shape = world.geometry(geometry).plain(primitive);
-    let marked = u32::from(is_marked) << 1;
-    let ids = |kind, flips| [kind, geometry.0, primitive, u32::from(flips) | marked];
+    let ids = |tag: ItemTag, flips| {
+        let bits = bit(flips, ItemBit::Flips) | bit(is_marked, ItemBit::Marked);
+        [tag as u32, geometry.0, primitive, bits]
+    };
     match shape.ok_or(BvhError::Shape(geometry))? {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let words = |v: Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), 0];
-            Ok([words(corner), words(right), words(up), words(twist), ids(PATCH, flips)])
+            Ok([words(corner), words(right), words(up), words(twist), ids(ItemTag::Patch, flips)])
         }
         PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
             let kind = match kind {
-                RevolvedKind::Sphere => SPHERE,
-                RevolvedKind::Cylinder => CYLINDER,
-                RevolvedKind::Disk => DISK,
-                RevolvedKind::Plane => PLANE,
+                RevolvedKind::Sphere => ItemTag::Sphere,
+                RevolvedKind::Cylinder => ItemTag::Cylinder,
+                RevolvedKind::Disk => ItemTag::Disk,
+                RevolvedKind::Plane => ItemTag::Plane,
             };
             let (inverse, origin) =
                 (render_from_object.inverse(), render_from_object.transform_point3(DVec3::ZERO));
@@ -161,17 +151,18 @@ pub fn shape(
             let [x, y, z] = [0, 1, 2].map(row);
             let [radius, low, high, angle] = numbers;
             let is_whole = [low, high] == [-radius, radius] && angle >= TAU;
-            if kind == SPHERE && is_whole && DMat3::from_mat4(render_from_object) == DMat3::IDENTITY {
+            if kind == ItemTag::Sphere && is_whole && DMat3::from_mat4(render_from_object) == DMat3::IDENTITY
+            {
                 let ball = [x[3], y[3], z[3], radius.to_bits()];
-                return Ok([ball, [0; 4], [0; 4], [0; 4], ids(BALL, flips)]);
+                return Ok([ball, [0; 4], [0; 4], [0; 4], ids(ItemTag::Ball, flips)]);
             }
             Ok([x, y, z, numbers.map(f32::to_bits), ids(kind, flips)])
         }
         PlainShape::Curve { kind, points: [a, b, c, d], widths, range, normals: _, flips } => {
             let kind = match kind {
-                CurveKind::Flat => FLAT_CURVE,
-                CurveKind::Cylinder => TUBE,
-                CurveKind::Ribbon => RIBBON,
+                CurveKind::Flat => ItemTag::FlatCurve,
+                CurveKind::Cylinder => ItemTag::Tube,
+                CurveKind::Ribbon => ItemTag::Ribbon,
             };
             let row = |p: Vec3, number: f32| [p.x, p.y, p.z, number].map(f32::to_bits);
             let [[first, last], [begin, end]] = [widths, range];

@@ -25,12 +25,7 @@ use super::slab::padded;
 use super::textures::rows;
 use crate::Algorithm;
 use crate::bvh::angle;
-
-const PERSPECTIVE: u32 = 0;
-const ORTHOGRAPHIC: u32 = 1;
-const EQUIRECTANGULAR: u32 = 2;
-const EQUAL_AREA: u32 = 3;
-const REALISTIC: u32 = 4;
+use crate::tags::CameraTag;
 
 impl Flattener<'_> {
     /// The camera of a view; its offset.
@@ -57,18 +52,18 @@ pub fn words(view: &View, lenses: u32) -> Vec<u32> {
         [top_left.x, top_left.y, per_pixel.x, per_pixel.y, lens.radius, lens.focal_distance]
     };
     let (kind, film) = match view.camera.projection() {
-        Projection::Perspective(p) => (PERSPECTIVE, flat(p.screen(), p.lens())),
-        Projection::Orthographic(p) => (ORTHOGRAPHIC, flat(p.screen(), p.lens())),
+        Projection::Perspective(p) => (CameraTag::Perspective, flat(p.screen(), p.lens())),
+        Projection::Orthographic(p) => (CameraTag::Orthographic, flat(p.screen(), p.lens())),
         Projection::Spherical(p) => {
             let kind = match p.mapping() {
-                SphericalMapping::EquiRectangular => EQUIRECTANGULAR,
-                SphericalMapping::EqualArea => EQUAL_AREA,
+                SphericalMapping::EquiRectangular => CameraTag::EquiRectangular,
+                SphericalMapping::EqualArea => CameraTag::EqualArea,
             };
             (kind, [p.resolution().x, p.resolution().y, 1.0, 1.0, 0.0, 1.0])
         }
         Projection::Realistic(p) => {
             let PlainLens { pixel, half, radius, .. } = p.plain();
-            (REALISTIC, [pixel.x, pixel.y, half.x, half.y, radius, 1.0])
+            (CameraTag::Realistic, [pixel.x, pixel.y, half.x, half.y, radius, 1.0])
         }
     };
     let mut numbers = rows(motion.start());
@@ -83,7 +78,7 @@ pub fn words(view: &View, lenses: u32) -> Vec<u32> {
     let keys = motion.keys().map(|keys| interpolated(&keys));
     let moves = keys.is_some().into();
     numbers.extend(keys.unwrap_or_default());
-    [kind, moves, lenses, 0].into_iter().chain(numbers.into_iter().map(f32::to_bits)).collect()
+    [kind as u32, moves, lenses, 0].into_iter().chain(numbers.into_iter().map(f32::to_bits)).collect()
 }
 
 /// The numbers of a motion.

@@ -5,22 +5,20 @@ use film::Filter;
 use math::Vec2;
 
 use super::Flattener;
-
-const BOX: u32 = 0;
-const TRIANGLE: u32 = 1;
-const TABLE: u32 = 2;
+use crate::tags::FilterTag;
 
 impl Flattener<'_> {
     /// A filter; its offset.
     pub fn filter(&mut self, filter: &Filter) -> u32 {
         let radius = filter.radius().to_array().map(f32::to_bits);
-        let (kind, table) = match filter {
-            Filter::Box(_) => (BOX, None),
-            Filter::Triangle(_) => (TRIANGLE, None),
+        let (tag, table) = match filter {
+            Filter::Box(_) => (FilterTag::Box, None),
+            Filter::Triangle(_) => (FilterTag::Triangle, None),
             Filter::Gaussian(_, table) | Filter::Mitchell(_, table) | Filter::LanczosSinc(_, table) => {
-                (TABLE, Some(table))
+                (FilterTag::Table, Some(table))
             }
         };
+        let kind = tag as u32;
         let Some(table) = table else { return self.slab.add([kind, radius[0], radius[1]]) };
         let distribution = self.distribution(table.distribution());
         let ([columns, rows], domain) = (table.distribution().resolution(), table.distribution().domain());

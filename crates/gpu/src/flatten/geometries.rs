@@ -2,7 +2,7 @@
 //! vertices' attributes, 1 where the outside of a mesh is where corners run clockwise, the texture
 //! of its alpha or 0, 1 where it is single-sided, and zeros.
 //!
-//! Attributes are flags (1: normals, 2: texture coordinates, 4: tangents), and then for each
+//! Attributes are bits, and then for each
 //! triangle what it has at its three corners, in this order, without gaps to save memory. Those of
 //! ribbons are the normals at both ends of each primitive, four words each.
 
@@ -11,10 +11,7 @@ use scene::GeometryEntry;
 
 use super::Flattener;
 use super::slab::padded;
-
-const NORMALS: u32 = 1;
-const COORDINATES: u32 = 2;
-const TANGENTS: u32 = 4;
+use crate::tags::{AttributeBit, bit};
 
 impl Flattener<'_> {
     /// The table of geometries; its offset.
@@ -63,9 +60,9 @@ impl Flattener<'_> {
         let first = mesh.triangle(0);
         // Meshes without coordinates have the same at each triangle.
         let has_coordinates = (0..mesh.len()).any(|i| mesh.triangle(i).uv != Triangle::DEFAULT_UV);
-        let flags = if first.n.is_some() { NORMALS } else { 0 }
-            | if has_coordinates { COORDINATES } else { 0 }
-            | if first.s.is_some() { TANGENTS } else { 0 };
+        let flags = bit(first.n.is_some(), AttributeBit::Normals)
+            | bit(has_coordinates, AttributeBit::Coordinates)
+            | bit(first.s.is_some(), AttributeBit::Tangents);
         if flags == 0 {
             return 0;
         }

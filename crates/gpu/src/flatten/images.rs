@@ -3,10 +3,10 @@
 //! | words | what |
 //! |---|---|
 //! | 0 | the number of levels |
-//! | 1 | how values are stored: 0 bytes, 1 half floats, 2 floats |
+//! | 1 | how values are stored |
 //! | 2 | values a pixel |
 //! | 3–5 | which of them are red, green and blue |
-//! | 6 | lookups beyond the edges: 0 repeat, 1 black, 2 clamp, 3 sphere, 4 latitude and longitude, 5 by axis: columns from bit 4 on, rows from bit 6 on |
+//! | 6 | lookups beyond the edges; by axis, those of columns from bit 4 on, of rows from bit 6 on |
 //! | 7 | of bytes, the offset of the 256 numbers that they stand for |
 //! | 8… | for each level where it begins in the buffer of texels, its width, its height, and 0 |
 //!
@@ -23,17 +23,7 @@ use image::{ColorEncoding, EdgeMode, Image, Pixels, WrapMode};
 use scene::texture::UvLookup;
 
 use super::Flattener;
-
-const BYTES: u32 = 0;
-const HALVES: u32 = 1;
-const FLOATS: u32 = 2;
-
-const REPEAT: u32 = 0;
-const BLACK: u32 = 1;
-const CLAMP: u32 = 2;
-const SPHERE: u32 = 3;
-const LATITUDE_LONGITUDE: u32 = 4;
-const AXES: u32 = 5;
+use crate::tags::{StorageTag, WrapTag};
 
 /// The buffer of texels, and where each image begins in it, by its address.
 #[derive(Default)]
@@ -60,24 +50,24 @@ impl Flattener<'_> {
         let (format, decoded) = match image.pixels() {
             Pixels::U8(_, encoding) => {
                 let encoding = if is_opacity { ColorEncoding::Linear } else { *encoding };
-                (BYTES, self.slab.add_numbers(encoding.table()))
+                (StorageTag::Bytes, self.slab.add_numbers(encoding.table()))
             }
-            Pixels::F16(_) => (HALVES, 0),
-            Pixels::F32(_) => (FLOATS, 0),
+            Pixels::F16(_) => (StorageTag::Halves, 0),
+            Pixels::F32(_) => (StorageTag::Floats, 0),
         };
         let wrap = match wrap {
-            WrapMode::Repeat => REPEAT,
-            WrapMode::Black => BLACK,
-            WrapMode::Clamp => CLAMP,
-            WrapMode::OctahedralSphere => SPHERE,
-            WrapMode::LatitudeLongitude => LATITUDE_LONGITUDE,
+            WrapMode::Repeat => WrapTag::Repeat as u32,
+            WrapMode::Black => WrapTag::Black as u32,
+            WrapMode::Clamp => WrapTag::Clamp as u32,
+            WrapMode::OctahedralSphere => WrapTag::Sphere as u32,
+            WrapMode::LatitudeLongitude => WrapTag::LatitudeLongitude as u32,
             WrapMode::Axes(axes) => {
                 let [across, down] = axes.map(edge);
-                AXES | across << 4 | down << 6
+                WrapTag::Axes as u32 | across << 4 | down << 6
             }
         };
         let channels = [image.channel_count(), red, green, blue].map(|n| n as u32);
-        let mut words = vec![levels.len() as u32, format];
+        let mut words = vec![levels.len() as u32, format as u32];
         words.extend(channels.into_iter().chain([wrap, decoded]));
         for level in levels {
             words.extend([self.texels(level, span), level.width(), level.height(), 0]);
@@ -118,8 +108,8 @@ impl Flattener<'_> {
 
 fn edge(mode: EdgeMode) -> u32 {
     match mode {
-        EdgeMode::Repeat => REPEAT,
-        EdgeMode::Black => BLACK,
-        EdgeMode::Clamp => CLAMP,
+        EdgeMode::Repeat => WrapTag::Repeat as u32,
+        EdgeMode::Black => WrapTag::Black as u32,
+        EdgeMode::Clamp => WrapTag::Clamp as u32,
     }
 }

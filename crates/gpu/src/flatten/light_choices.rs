@@ -2,9 +2,9 @@
 //!
 //! | words | choice |
 //! |---|---|
-//! | 0 | each light alike |
-//! | 1, and for each light 4 words from the fifth on: threshold, probability, alias, 0 | in proportion to power |
-//! | 2, offsets of nodes, trails and infinite lights, the number of these and of nodes, the probability of them all | through a tree |
+//! | `Uniform` | each light alike |
+//! | `Power`, and for each light 4 words from the fifth on: threshold, probability, alias, 0 | in proportion to power |
+//! | `Tree`, offsets of nodes, trails and infinite lights, the number of these and of nodes, the probability of them all | through a tree |
 //!
 //! A node of the tree is 16 words: the numbers of its cluster, its kind, and zeros.
 
@@ -12,18 +12,15 @@ use description::Span;
 use scene::light_sampler::{LightSampler, PowerLightSampler};
 
 use super::Flattener;
-
-const UNIFORM: u32 = 0;
-const POWER: u32 = 1;
-const TREE: u32 = 2;
+use crate::tags::ChoiceTag;
 
 impl Flattener<'_> {
     /// The choice of lights; its offset.
     pub fn light_choice(&mut self, lights: &LightSampler) -> u32 {
         match lights {
-            LightSampler::Uniform(_) => self.slab.add([UNIFORM]),
+            LightSampler::Uniform(_) => self.slab.add([ChoiceTag::Uniform as u32]),
             LightSampler::Power(power) => {
-                let at = self.slab.add([POWER, 0, 0, 0]);
+                let at = self.slab.add([ChoiceTag::Power as u32, 0, 0, 0]);
                 self.slab.extend(bins(power));
                 at
             }
@@ -37,7 +34,15 @@ impl Flattener<'_> {
                 let trails = self.slab.add(tree.trails().flatten());
                 let (ids, probability) = tree.infinite();
                 let infinite = self.slab.add(ids.iter().copied());
-                self.slab.add([TREE, nodes, trails, infinite, ids.len() as u32, count, probability.to_bits()])
+                self.slab.add([
+                    ChoiceTag::Tree as u32,
+                    nodes,
+                    trails,
+                    infinite,
+                    ids.len() as u32,
+                    count,
+                    probability.to_bits(),
+                ])
             }
             LightSampler::Exhaustive(_) => {
                 self.refuse("light sampler `exhaustive`", Span::NONE);

@@ -6,19 +6,19 @@
 //!
 //! | kind | numbers |
 //! |---|---|
-//! | 0 point | position |
-//! | 1 spot | position, axis, cosines of the start and of the end of the falloff |
-//! | 2 distant | direction |
-//! | 3 triangle, 4 rectangle | corner, sides, normal, and of a triangle with an image or holes the texture coordinates at its corners |
-//! | 5 sphere | centre (radius), the rows of the rotation from object to render space (the first: 1 or −1 where the outside is inside) |
-//! | 6 uniform infinite | none |
-//! | 8 disk, 9 cylinder, 15 part of a sphere | the rows of the matrix from object to render space (translation), the numbers of the shape, 1 or −1 where the outside is inside, area in object space |
-//! | 7 image infinite | width, height, 0 (equal-area) or 1 (latitude–longitude), offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
-//! | 10 goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
-//! | 11 projection | the same with the distribution of positions, width, height, offset of pixels, least and largest coordinates of the screen |
-//! | 13 infinite behind a portal | those that `portals.rs` describes |
-//! | 12 patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
-//! | 14 surface in an instance | the offset of its record in the instance's space, the item of the instance |
+//! | point | position |
+//! | spot | position, axis, cosines of the start and of the end of the falloff |
+//! | distant | direction |
+//! | triangle, rectangle | corner, sides, normal, and of a triangle with an image or holes the texture coordinates at its corners |
+//! | sphere | centre (radius), the rows of the rotation from object to render space (the first: 1 or −1 where the outside is inside) |
+//! | uniform infinite | none |
+//! | disk, cylinder, part of a sphere | the rows of the matrix from object to render space (translation), the numbers of the shape, 1 or −1 where the outside is inside, area in object space |
+//! | image infinite | width, height, projection, offset of the distribution of positions, the rows of the rotation to the light and of its inverse, offset of pixels, offset of the distribution where sampling may be incomplete |
+//! | goniometric | position, the rows of the matrix to the light's space and of its inverse, offset of the distribution of directions |
+//! | projection | the same with the distribution of positions, width, height, offset of pixels, least and largest coordinates of the screen |
+//! | infinite behind a portal | those that `portals.rs` describes |
+//! | patch | corner, sides, twist, area elements at the corners, 1 or −1 where the outside is inside, offset of the distribution of its points or 0 |
+//! | surface in an instance | the offset of its record in the instance's space, the item of the instance |
 //!
 //! Of the record of a surface that is in an instance only kind and numbers count. What else a
 //! surface has is the image of its emission, the colour space of that, and the texture of its
@@ -40,23 +40,7 @@ use spectrum::{RgbColorSpace, RgbUnboundedSpectrum};
 use super::Flattener;
 use super::cameras::interpolated;
 use super::slab::padded;
-
-const POINT: u32 = 0;
-const SPOT: u32 = 1;
-const DISTANT: u32 = 2;
-const TRIANGLE: u32 = 3;
-const RECTANGLE: u32 = 4;
-const SPHERE: u32 = 5;
-const UNIFORM_INFINITE: u32 = 6;
-const IMAGE_INFINITE: u32 = 7;
-const DISK: u32 = 8;
-const CYLINDER: u32 = 9;
-const GONIOMETRIC: u32 = 10;
-const PROJECTION: u32 = 11;
-const PATCH: u32 = 12;
-const PORTAL_INFINITE: u32 = 13;
-const PLACED: u32 = 14;
-const SPHERE_PART: u32 = 15;
+use crate::tags::{LightTag, ProjectionTag};
 
 impl Flattener<'_> {
     /// The table of the lights' offsets, and that of infinite lights' ids; their offsets.
@@ -77,21 +61,21 @@ impl Flattener<'_> {
             Light::Point(PointLight { p, motion, intensity }) => {
                 self.parts.point_lights = true;
                 let motion = self.motion(motion.as_deref(), span);
-                self.emitter(POINT, intensity, motion, &padded([p.to_array()]))
+                self.emitter(LightTag::Point, intensity, motion, &padded([p.to_array()]))
             }
             Light::Spot(SpotLight { p, axis, motion, intensity, cos_falloff_start, cos_falloff_end }) => {
                 self.parts.point_lights = true;
                 let motion = self.motion(motion.as_deref(), span);
                 let vectors = padded([p, axis].map(|v| v.to_array()));
                 let numbers = [&vectors[..], &[*cos_falloff_start, *cos_falloff_end]];
-                self.emitter(SPOT, intensity, motion, &numbers.concat())
+                self.emitter(LightTag::Spot, intensity, motion, &numbers.concat())
             }
             Light::Distant(DistantLight { w, motion, radiance, scene: _ }) => {
                 let motion = self.motion(motion.as_deref(), span);
-                self.emitter(DISTANT, radiance, motion, &padded([w.to_array()]))
+                self.emitter(LightTag::Distant, radiance, motion, &padded([w.to_array()]))
             }
             Light::UniformInfinite(UniformInfiniteLight { radiance, scene: _ }) => {
-                self.emitter(UNIFORM_INFINITE, radiance, 0, &[])
+                self.emitter(LightTag::UniformInfinite, radiance, 0, &[])
             }
             Light::Area(area) => {
                 if light.primitive() == 0 {
@@ -104,14 +88,14 @@ impl Flattener<'_> {
                 if self.begins_at_lights {
                     self.refuse("light paths from infinite lights with portals", span);
                 }
-                self.portal(PORTAL_INFINITE, l)
+                self.portal(LightTag::PortalInfinite, l)
             }
             Light::Goniometric(l) => {
                 self.parts.point_lights = true;
                 let (transform, intensity, distribution) = l.parts();
                 let (motion, distribution) =
                     (self.motion(Some(transform), span), self.distribution(distribution));
-                let at = self.emitter(GONIOMETRIC, intensity, motion, &placement(transform));
+                let at = self.emitter(LightTag::Goniometric, intensity, motion, &placement(transform));
                 self.slab.extend([distribution]);
                 at
             }
@@ -135,9 +119,15 @@ impl Flattener<'_> {
     }
 
     /// A light without a surface, with the offset of its motion.
-    pub(super) fn emitter(&mut self, kind: u32, emission: &Emission, motion: u32, numbers: &[f32]) -> u32 {
+    pub(super) fn emitter(
+        &mut self,
+        tag: LightTag,
+        emission: &Emission,
+        motion: u32,
+        numbers: &[f32],
+    ) -> u32 {
         let Emission { spectrum, scale } = emission;
-        let at = [kind, self.spectrum(spectrum), scale.to_bits(), 4 * motion];
+        let at = [tag as u32, self.spectrum(spectrum), scale.to_bits(), 4 * motion];
         let at = self.slab.add(at);
         self.slab.extend_numbers(numbers.iter().copied());
         at
@@ -151,7 +141,8 @@ impl Flattener<'_> {
         let pixels = self.pixels(image, color_space);
         let distribution = self.distribution(distribution);
         let spectrum = color_space.illuminant();
-        let at = self.emitter(PROJECTION, &Emission { spectrum, scale }, motion, &placement(transform));
+        let at =
+            self.emitter(LightTag::Projection, &Emission { spectrum, scale }, motion, &placement(transform));
         let screen = slide.screen();
         self.slab.extend([distribution, image.width(), image.height(), pixels]);
         let corners = [screen.min, screen.max].map(|corner| corner.to_array());
@@ -179,11 +170,20 @@ impl Flattener<'_> {
             [false, true].map(|allows| self.distribution(light.distribution(allows)));
         let illuminant = self.spectrum(&light.color_space.illuminant());
         let kind = match light.projection {
-            Projection::EqualArea => 0,
-            Projection::LatitudeLongitude => 1,
+            Projection::EqualArea => ProjectionTag::EqualArea,
+            Projection::LatitudeLongitude => ProjectionTag::LatitudeLongitude,
         };
         let scale = light.scale.to_bits();
-        let words = [IMAGE_INFINITE, illuminant, scale, 4 * motion, width, height, kind, complete];
+        let words = [
+            LightTag::ImageInfinite as u32,
+            illuminant,
+            scale,
+            4 * motion,
+            width,
+            height,
+            kind as u32,
+            complete,
+        ];
         let at = self.slab.add(words);
         self.slab.extend_numbers(placement(&light.render_from_light)[4..].iter().copied());
         self.slab.extend([pixels, incomplete]);
@@ -214,7 +214,7 @@ impl Flattener<'_> {
         self.surfaces.insert(id, surface);
         // There are no instances where the world is refused.
         let item = self.instances.get(instance).copied().unwrap_or(0);
-        self.slab.add([PLACED].into_iter().chain(words).chain([surface, item]))
+        self.slab.add([LightTag::Placed as u32].into_iter().chain(words).chain([surface, item]))
     }
 
     /// A primitive that emits, with these words of its light; its offset.
@@ -225,7 +225,7 @@ impl Flattener<'_> {
         };
         let (kind, mut numbers) = if let Some(flat) = shape.flat_shape() {
             let vectors = [flat.corner, flat.sides[0], flat.sides[1], flat.n];
-            let kind = if flat.is_triangle { TRIANGLE } else { RECTANGLE };
+            let kind = if flat.is_triangle { LightTag::Triangle } else { LightTag::Rectangle };
             (kind, padded(vectors.map(|v| v.to_array())))
         } else if let Some(numbers) = shape.plain().and_then(|plain| surface(&plain)) {
             self.parts.round_lights = true;
@@ -244,7 +244,7 @@ impl Flattener<'_> {
             _ => 0,
         };
         self.parts.emission_images |= distribution != 0;
-        let at = self.slab.add([kind].into_iter().chain(words));
+        let at = self.slab.add([kind as u32].into_iter().chain(words));
         self.slab.extend_numbers(numbers);
         self.slab.extend([distribution]);
         at
@@ -282,14 +282,14 @@ fn placement(motion: &AnimatedTransform) -> Vec<f32> {
 
 /// The kind and the numbers of a patch, a sphere, a disk or a cylinder, or of a part of one; `None`
 /// of other shapes.
-fn surface(shape: &PlainShape) -> Option<(u32, Vec<f32>)> {
+fn surface(shape: &PlainShape) -> Option<(LightTag, Vec<f32>)> {
     let (kind, render_from_object, flips, numbers) = match *shape {
         PlainShape::Patch { corner, sides: [right, up], twist, flips } => {
             let element = |u: f32, v: f32| (right + twist * v).cross(up + twist * u).length();
             let elements = [element(0.0, 0.0), element(1.0, 0.0), element(0.0, 1.0), element(1.0, 1.0)];
             let vectors = [corner, right, up, twist].map(|vector| vector.to_array());
             let side = if flips { -1.0 } else { 1.0 };
-            return Some((PATCH, [&padded(vectors)[..], &elements, &[side]].concat()));
+            return Some((LightTag::Patch, [&padded(vectors)[..], &elements, &[side]].concat()));
         }
         PlainShape::Revolved { kind, render_from_object, flips, numbers } => {
             (kind, render_from_object, flips, numbers)
@@ -311,17 +311,17 @@ fn surface(shape: &PlainShape) -> Option<(u32, Vec<f32>)> {
                     && axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-6 * scale * scale
             });
             if !is_similar || second != -first || third != first || phi < TAU {
-                return Some((SPHERE_PART, placed(phi * first * (third - second))));
+                return Some((LightTag::SpherePart, placed(phi * first * (third - second))));
             }
             let center = render_from_object.transform_point3(DVec3::ZERO).as_vec3();
             let rotation =
                 [0, 1, 2].map(|row| (render_from_object.row(row).truncate() / scale).as_vec3().to_array());
             let mut numbers = padded([center.to_array()].into_iter().chain(rotation));
             (numbers[3], numbers[7]) = (first * scale as f32, side);
-            Some((SPHERE, numbers))
+            Some((LightTag::Sphere, numbers))
         }
-        RevolvedKind::Disk => Some((DISK, placed(0.5 * phi * (second * second - third * third)))),
-        RevolvedKind::Cylinder => Some((CYLINDER, placed(phi * first * (third - second)))),
+        RevolvedKind::Disk => Some((LightTag::Disk, placed(0.5 * phi * (second * second - third * third)))),
+        RevolvedKind::Cylinder => Some((LightTag::Cylinder, placed(phi * first * (third - second)))),
         RevolvedKind::Plane => None,
     }
 }

@@ -3,18 +3,18 @@
 //!
 //! | kind | words | textures |
 //! |---|---|---|
-//! | 0 diffuse | | reflectance |
-//! | 1 diffuse transmission | scale | reflectance, transmittance |
-//! | 2 conductor | remap, 0, 0, 1 where k is the reflectance | roughness along u and v, k, η |
-//! | 3 dielectric | remap, spectrum of η, whether it varies | roughness along u and v |
-//! | 4 thin dielectric | 0, spectrum of η, whether it varies | |
-//! | 5 mix | the two materials | the probability of the second |
-//! | 8 principled | offset of its record | numbers and colours |
-//! | 9 interface | | |
-//! | 10 hair | what absorption is given by: 0 its coefficient, 1 colour, 2 pigments, and then the colour space | longitudinal and azimuthal roughness, η, angle of the scales, that of the absorption or both pigments |
-//! | 11 measured | offset of its record | |
-//! | 12 subsurface | remap, offset of its table, 1 for random walks, 1 where reflectance is given, factor on what is given, η, asymmetry | roughness along u and v; absorption and scattering, or reflectance and mean free path |
-//! | 6 coated diffuse, 7 coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
+//! | diffuse | | reflectance |
+//! | diffuse transmission | scale | reflectance, transmittance |
+//! | conductor | remap, 0, 0, 1 where k is the reflectance | roughness along u and v, k, η |
+//! | dielectric | remap, spectrum of η, whether it varies | roughness along u and v |
+//! | thin dielectric | 0, spectrum of η, whether it varies | |
+//! | mix | the two materials | the probability of the second |
+//! | principled | offset of its record | numbers and colours |
+//! | interface | | |
+//! | hair | what absorption is given by, and of pigments the colour space | longitudinal and azimuthal roughness, η, angle of the scales, that of the absorption or both pigments |
+//! | measured | offset of its record | |
+//! | subsurface | remap, offset of its table, 1 for random walks, 1 where reflectance is given, factor on what is given, η, asymmetry | roughness along u and v; absorption and scattering, or reflectance and mean free path |
+//! | coated diffuse, coated conductor | those of the base, η of the coat, remap, mean inner reflectance or −1, events, walks | roughness of the coat along u and v, thickness, asymmetry, albedo; those of the base |
 //!
 //! Where `remap` is 1, α is the square root of the roughness.
 
@@ -28,23 +28,10 @@ use scene::material::{
 use spectrum::{RgbColorSpace, Spectrum};
 
 use super::Flattener;
+use crate::tags::{AbsorptionTag, MaterialTag};
 
-const DIFFUSE: u32 = 0;
-const DIFFUSE_TRANSMISSION: u32 = 1;
-const CONDUCTOR: u32 = 2;
-const DIELECTRIC: u32 = 3;
-const THIN_DIELECTRIC: u32 = 4;
-const MIX: u32 = 5;
-const COATED_DIFFUSE: u32 = 6;
-const COATED_CONDUCTOR: u32 = 7;
-const PRINCIPLED: u32 = 8;
-const INTERFACE: u32 = 9;
-const HAIR: u32 = 10;
-const MEASURED: u32 = 11;
-const SUBSURFACE: u32 = 12;
-
-/// The kind, the words and the textures of a material.
-type Record = (u32, [u32; 8], Vec<u32>);
+/// The tag, the words and the textures of a material.
+type Record = (MaterialTag, [u32; 8], Vec<u32>);
 
 impl Flattener<'_> {
     /// The table of the materials' offsets; its offset, and the kinds of materials that geometries
@@ -74,11 +61,11 @@ impl Flattener<'_> {
 
     fn entry(&mut self, entry: &MaterialEntry) -> u32 {
         let &MaterialEntry { ref material, ref normal_map, bump_map, span } = entry;
-        let (kind, words, textures) = self.material(material, span);
+        let (tag, words, textures) = self.material(material, span);
         let normals = normal_map.as_ref().map_or(0, |map| self.normal_map(map, span));
         let height = bump_map.map_or(0, |BumpMap { displacement }| self.number_texture(displacement, span));
         self.parts.bumps |= normal_map.is_some() || bump_map.is_some();
-        let head = [kind, normals, height, textures.len() as u32];
+        let head = [tag as u32, normals, height, textures.len() as u32];
         self.slab.add(head.into_iter().chain(words).chain(textures))
     }
 
@@ -91,7 +78,7 @@ impl Flattener<'_> {
     fn material(&mut self, material: &Material, span: Span) -> Record {
         match material {
             Material::Diffuse(DiffuseMaterial { reflectance }) => {
-                (DIFFUSE, [0; 8], vec![self.spectrum_texture(*reflectance, span)])
+                (MaterialTag::Diffuse, [0; 8], vec![self.spectrum_texture(*reflectance, span)])
             }
             Material::DiffuseTransmission(DiffuseTransmissionMaterial {
                 reflectance,
@@ -99,22 +86,22 @@ impl Flattener<'_> {
                 scale,
             }) => {
                 let textures = [reflectance, transmittance].map(|id| self.spectrum_texture(*id, span));
-                (DIFFUSE_TRANSMISSION, words([scale.to_bits()]), textures.to_vec())
+                (MaterialTag::DiffuseTransmission, words([scale.to_bits()]), textures.to_vec())
             }
             Material::Conductor(m) => {
                 let (remap, is_reflectance, textures) = self.conductor(m, span);
-                (CONDUCTOR, words([remap, 0, 0, is_reflectance]), textures)
+                (MaterialTag::Conductor, words([remap, 0, 0, is_reflectance]), textures)
             }
             Material::Dielectric(DielectricMaterial { eta, roughness }) => {
                 self.parts.facets = true;
                 let (remap, textures) = self.roughness(roughness, span);
                 let [eta, varies] = self.index(eta);
-                (DIELECTRIC, words([remap, eta, varies]), textures)
+                (MaterialTag::Dielectric, words([remap, eta, varies]), textures)
             }
             Material::ThinDielectric(ThinDielectricMaterial { eta }) => {
                 self.parts.facets = true;
                 let [eta, varies] = self.index(eta);
-                (THIN_DIELECTRIC, words([0, eta, varies]), Vec::new())
+                (MaterialTag::ThinDielectric, words([0, eta, varies]), Vec::new())
             }
             Material::Mix(MixMaterial { materials, amount }) => {
                 let is_interface = |id: &MaterialId| {
@@ -124,32 +111,32 @@ impl Flattener<'_> {
                     self.refuse("mixes with material `interface`", span);
                 }
                 let pair = materials.map(|material| material.0);
-                (MIX, words(pair), vec![self.number_texture(*amount, span)])
+                (MaterialTag::Mix, words(pair), vec![self.number_texture(*amount, span)])
             }
             Material::CoatedDiffuse(CoatedDiffuseMaterial {
                 base: DiffuseMaterial { reflectance },
                 coat,
             }) => {
                 let base = vec![self.spectrum_texture(*reflectance, span)];
-                self.coated(COATED_DIFFUSE, coat, [0, 0], base, span)
+                self.coated(MaterialTag::CoatedDiffuse, coat, [0, 0], base, span)
             }
             Material::CoatedConductor(CoatedConductorMaterial { base, coat }) => {
                 let (remap, is_reflectance, base) = self.conductor(base, span);
-                self.coated(COATED_CONDUCTOR, coat, [remap, is_reflectance], base, span)
+                self.coated(MaterialTag::CoatedConductor, coat, [remap, is_reflectance], base, span)
             }
             Material::OpenPbr(m) => {
                 let (record, textures) = self.principled(m, span);
-                (PRINCIPLED, words([record]), textures)
+                (MaterialTag::Principled, words([record]), textures)
             }
-            Material::Interface => (INTERFACE, [0; 8], Vec::new()),
+            Material::Interface => (MaterialTag::Interface, [0; 8], Vec::new()),
             Material::Hair(m) => self.hair(m, span),
             Material::Measured(MeasuredMaterial { table }) => {
                 self.parts.measured = true;
-                (MEASURED, words([self.measured(table)]), Vec::new())
+                (MaterialTag::Measured, words([self.measured(table)]), Vec::new())
             }
             Material::Subsurface(m) => {
                 let (given, textures) = self.subsurface(m, span);
-                (SUBSURFACE, words(given), textures)
+                (MaterialTag::Subsurface, words(given), textures)
             }
         }
     }
@@ -161,22 +148,29 @@ impl Flattener<'_> {
         let given = match absorption {
             HairAbsorption::Coefficient(sigma_a) => {
                 textures.push(self.spectrum_texture(sigma_a, span));
-                [0, 0]
+                [AbsorptionTag::Coefficient as u32, 0]
             }
             HairAbsorption::Color(color) => {
                 textures.push(self.spectrum_texture(color, span));
-                [1, 0]
+                [AbsorptionTag::Color as u32, 0]
             }
             HairAbsorption::Pigments { eumelanin, pheomelanin } => {
                 textures.extend([eumelanin, pheomelanin].map(|id| self.number_texture(id, span)));
-                [2, self.color_space(RgbColorSpace::srgb())]
+                [AbsorptionTag::Pigments as u32, self.color_space(RgbColorSpace::srgb())]
             }
         };
-        (HAIR, words(given), textures)
+        (MaterialTag::Hair, words(given), textures)
     }
 
     /// A coat over a base, of which two words and the textures are given.
-    fn coated(&mut self, kind: u32, coat: &Coat, base: [u32; 2], textures: Vec<u32>, span: Span) -> Record {
+    fn coated(
+        &mut self,
+        tag: MaterialTag,
+        coat: &Coat,
+        base: [u32; 2],
+        textures: Vec<u32>,
+        span: Span,
+    ) -> Record {
         self.parts.coats = true;
         let Coat { eta, roughness, thickness, albedo, g, inner, max_depth, samples } = coat;
         let (remap, mut all) = self.roughness(roughness, span);
@@ -185,7 +179,7 @@ impl Flattener<'_> {
         all.extend(textures);
         let [eta, varies] = self.index(eta);
         let inner = inner.unwrap_or(-1.0).to_bits();
-        (kind, [base[0], eta, varies, base[1], remap, inner, *max_depth, *samples], all)
+        (tag, [base[0], eta, varies, base[1], remap, inner, *max_depth, *samples], all)
     }
 
     /// Of a metal whether α is the square root, whether k is its reflectance, and its textures.

@@ -6,7 +6,7 @@
 //!
 //! | words | what |
 //! |---|---|
-//! | 0 | its kind: 0 homogeneous, 1 densities, 2 colours, 3 cloud, 4 voxels |
+//! | 0 | its tag |
 //! | 1 | the asymmetry of its phase function |
 //! | 2–4 | σ_a and σ_s, of colours as grids or 0, and a factor on both |
 //! | 5 | its emission, or 0 |
@@ -32,16 +32,11 @@ use spectrum::RgbUnboundedSpectrum;
 
 use super::Flattener;
 use super::textures::rows;
-
-const HOMOGENEOUS: u32 = 0;
-const DENSITIES: u32 = 1;
-const COLOURS: u32 = 2;
-const CLOUD: u32 = 3;
-const VOXELS: u32 = 4;
+use crate::tags::MediumTag;
 
 /// The words of a medium but for its phase function and its place.
 struct Matter {
-    kind: u32,
+    tag: MediumTag,
     /// σ_a, σ_s and their factor.
     coefficients: [u32; 3],
     emission: u32,
@@ -72,16 +67,17 @@ impl Flattener<'_> {
                     self.slab.add([0, le_scale.to_bits(), le, 0, 0, 0])
                 });
                 let coefficients = self.coefficients(coefficients);
-                (Matter { kind: HOMOGENEOUS, coefficients, emission, values: 0 }, None, None)
+                (Matter { tag: MediumTag::Homogeneous, coefficients, emission, values: 0 }, None, None)
             }
             MediumKind::UniformGrid(m) => (self.densities(m), Some(&m.placement), Some(&m.majorants)),
             MediumKind::RgbGrid(m) => (self.colours(m), Some(&m.placement), Some(&m.majorants)),
             MediumKind::Cloud(m) => (self.cloud(m), Some(&m.placement), Some(&m.majorants)),
             MediumKind::NanoVdb(m) => (self.sparse(m), Some(&m.placement), Some(&m.majorants)),
         };
-        let Matter { kind, coefficients, emission, values } = matter;
+        let Matter { tag, coefficients, emission, values } = matter;
         let majorants = majorants.map_or(0, |majorants| self.majorants(majorants));
-        let words = [&[kind, medium.phase.g.to_bits()], &coefficients[..], &[emission, values, majorants]];
+        let words =
+            [&[tag as u32, medium.phase.g.to_bits()], &coefficients[..], &[emission, values, majorants]];
         let at = self.slab.add(words.concat());
         self.slab.extend_numbers(placement.map(Placement::unit_from_render).map_or(vec![0.0; 12], rows));
         at
@@ -101,7 +97,7 @@ impl Flattener<'_> {
             self.slab.add([factor, scale.to_bits(), spectrum, temperatures, offset, kelvin])
         });
         let coefficients = self.coefficients(coefficients);
-        Matter { kind: DENSITIES, coefficients, emission, values: self.grid(density) }
+        Matter { tag: MediumTag::Densities, coefficients, emission, values: self.grid(density) }
     }
 
     fn colours(&mut self, medium: &RgbGridMedium) -> Matter {
@@ -114,7 +110,7 @@ impl Flattener<'_> {
             self.slab.add([grid, le_scale.to_bits(), illuminant, 0, 0, 0])
         });
         let coefficients = [sigma_a, sigma_s, scale.to_bits()];
-        Matter { kind: COLOURS, coefficients, emission, values: 0 }
+        Matter { tag: MediumTag::Colours, coefficients, emission, values: 0 }
     }
 
     fn cloud(&mut self, medium: &CloudMedium) -> Matter {
@@ -132,7 +128,7 @@ impl Flattener<'_> {
         let numbers = [&low[..], &[*density], &size, &[*wispiness], &[*frequency]];
         let values = self.slab.add_numbers(numbers.concat());
         let coefficients = self.coefficients(coefficients);
-        Matter { kind: CLOUD, coefficients, emission: 0, values }
+        Matter { tag: MediumTag::Cloud, coefficients, emission: 0, values }
     }
 
     fn sparse(&mut self, medium: &NanoVdbMedium) -> Matter {
@@ -142,7 +138,7 @@ impl Flattener<'_> {
             self.slab.add([0, factor.to_bits(), 0, voxels, offset, scale])
         });
         let coefficients = self.coefficients(coefficients);
-        Matter { kind: VOXELS, coefficients, emission, values: self.voxels(density) }
+        Matter { tag: MediumTag::Voxels, coefficients, emission, values: self.voxels(density) }
     }
 
     fn coefficients(&mut self, Coefficients { sigma_a, sigma_s, scale }: &Coefficients) -> [u32; 3] {

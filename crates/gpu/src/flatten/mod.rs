@@ -45,6 +45,7 @@ use scene::{GeometryEntry, Scene, View, ViewOptions};
 use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::shaders::Parts;
+use crate::tags::{SettingBit, bit};
 pub use openpbr::openpbr_table;
 use slab::Slab;
 
@@ -107,9 +108,7 @@ pub(crate) struct Head {
     /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
     pub(crate) is_centered: u32,
     pub(crate) has_one_wavelength: u32,
-    /// The most scattering events, and bits: 1 if surfaces are roughened; of simple paths and of
-    /// those through media 2 if lights are sampled; of simple paths 4 if directions are by BSDFs,
-    /// and 8 if others are on the sides to which surfaces scatter.
+    /// The most scattering events, and a [`SettingBit`] for each setting.
     pub(crate) max_depth: u32,
     pub(crate) settings: u32,
     /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
@@ -247,15 +246,15 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         // `lights` is of the light sampler.
         Algorithm::Path(PathDesc { max_depth, regularize, light_sampler: _ })
         | Algorithm::VolPath(PathDesc { max_depth, regularize, light_sampler: _ }) => {
-            (max_depth, SAMPLES_LIGHTS | bit(regularize, REGULARIZES))
+            (max_depth, SettingBit::SamplesLights as u32 | bit(regularize, SettingBit::Regularizes))
         }
         Algorithm::SimplePath(SimplePathDesc { max_depth, sample_lights, sample_bsdf }) => {
-            let sampled = bit(sample_lights, SAMPLES_LIGHTS) | bit(sample_bsdf, SAMPLES_BSDFS);
-            (max_depth, MIRRORS_DIRECTIONS | sampled)
+            let sampled = bit(sample_lights, SettingBit::SamplesLights) | bit(sample_bsdf, SettingBit::SamplesBsdfs);
+            (max_depth, SettingBit::MirrorsDirections as u32 | sampled)
         }
         // Pictures of strategies are refused.
         Algorithm::Bdpt(BdptDesc { max_depth, regularize, visualize_strategies: _, visualize_weights: _ }) => {
-            (max_depth, bit(regularize, REGULARIZES))
+            (max_depth, bit(regularize, SettingBit::Regularizes))
         }
         // Other techniques are refused, and what runs the chains has their numbers.
         Algorithm::Mlt(
@@ -270,7 +269,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
                 sigma: _,
             },
             _,
-        ) => (max_depth, bit(regularize, REGULARIZES)),
+        ) => (max_depth, bit(regularize, SettingBit::Regularizes)),
     };
     if light_paths {
         head.light_paths = flattener.light_paths(algorithm, light_sampler, film);
@@ -294,16 +293,6 @@ fn has_media(scene: &Scene) -> bool {
 
 fn is_interface(scene: &Scene, entry: &GeometryEntry) -> bool {
     matches!(scene.materials()[entry.material.0 as usize].material, Material::Interface)
-}
-
-// The bits of `Head::settings`.
-const REGULARIZES: u32 = 1;
-const SAMPLES_LIGHTS: u32 = 2;
-const SAMPLES_BSDFS: u32 = 4;
-const MIRRORS_DIRECTIONS: u32 = 8;
-
-fn bit(is: bool, bit: u32) -> u32 {
-    if is { bit } else { 0 }
 }
 
 /// Tables under construction.

@@ -11,13 +11,14 @@ use spectrum::RgbUnboundedSpectrum;
 
 use super::Flattener;
 use super::slab::padded;
+use crate::tags::LightTag;
 
 /// The sum of all cells.
 const WHOLE: f64 = (1u64 << 60) as f64;
 
 impl Flattener<'_> {
     /// A light of a kind; its offset.
-    pub(super) fn portal(&mut self, kind: u32, light: &PortalInfiniteLight) -> u32 {
+    pub(super) fn portal(&mut self, tag: LightTag, light: &PortalInfiniteLight) -> u32 {
         self.parts.portals = true;
         let PlainPortal { corner, frame, size, radiance, resolution, brightness } = light.plain();
         let (emission, pixels) = match radiance {
@@ -37,7 +38,7 @@ impl Flattener<'_> {
         let sums = self.slab.add(sums.into_iter().flat_map(|sum| [sum as u32, (sum >> 32) as u32]));
         let vectors = padded([corner, frame.x, frame.y, frame.z].map(|v| v.to_array()));
         let numbers = [&vectors[..], &size.to_array()].concat();
-        let at = self.emitter(kind, &emission, 0, &numbers);
+        let at = self.emitter(tag, &emission, 0, &numbers);
         self.slab.extend([resolution, pixels, sums, resolution, resolution]);
         at
     }

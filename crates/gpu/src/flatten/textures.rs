@@ -2,17 +2,16 @@
 //!
 //! | words | texture |
 //! |---|---|
-//! | 0, number | the number everywhere |
-//! | 1, offset | a spectrum everywhere |
-//! | 2, count, 0, 0, and for each operation 4 words: code, target, slots of operands, argument | a program |
+//! | `Number`, number | the number everywhere |
+//! | `Spectrum`, offset | a spectrum everywhere |
+//! | `Program`, count, 0, 0, and for each operation 4 words: code, target, slots of operands, argument | a program |
 //!
-//! Slots of operands are bytes of a word. Codes are those of [`Code`] in the order of the constants
-//! below. Their arguments are numbers or offsets: of a spectrum, a direction, a mapping, or of one
+//! Slots of operands are bytes of a word. Arguments of codes are numbers or offsets: of a spectrum, a direction, a mapping, or of one
 //! of these:
 //!
 //! | words | operation |
 //! |---|---|
-//! | pyramid, mapping, filter (0 point, 1 bilinear, 2 trilinear, 3 EWA), largest anisotropy, scale, 1 where it is inverted, colour space or 0, type of spectrum | an image |
+//! | pyramid, mapping, filter, largest anisotropy, scale, 1 where it is inverted, colour space or 0, type of spectrum | an image |
 //! | mapping, octaves, roughness | fBm, turbulence |
 //! | mapping, octaves, roughness, scale, variation, colour space | marble |
 //!
@@ -21,9 +20,9 @@
 //!
 //! | kind | numbers |
 //! |---|---|
-//! | 0 linear | three columns of a matrix |
-//! | 1 spherical, 2 cylindrical | the mapping to texture space |
-//! | 3 planar | the same, two axes, each with an offset |
+//! | linear | three columns of a matrix |
+//! | spherical, cylindrical | the mapping to texture space |
+//! | planar | the same, two axes, each with an offset |
 
 use description::Span;
 use image::TextureFilter;
@@ -35,33 +34,7 @@ use scene::texture::{
 use spectrum::RgbColorSpace;
 
 use super::Flattener;
-
-const NUMBER: u32 = 0;
-const SPECTRUM: u32 = 1;
-const PROGRAM: u32 = 2;
-
-// The codes of operations.
-const CODE_NUMBER: u32 = 0;
-const CODE_SPECTRUM: u32 = 1;
-const CODE_SQUARES: u32 = 2;
-const CODE_CUBES: u32 = 3;
-const CODE_FACING: u32 = 4;
-const CODE_STEP: u32 = 5;
-const CODE_SCALE: u32 = 6;
-const CODE_MIX: u32 = 7;
-const CODE_BILERP: u32 = 8;
-const CODE_IMAGE: u32 = 9;
-const CODE_DOTS: u32 = 10;
-const CODE_FBM: u32 = 11;
-const CODE_WRINKLED: u32 = 12;
-const CODE_WINDY: u32 = 13;
-const CODE_MARBLE: u32 = 14;
-
-// The kinds of mappings to the plane.
-const LINEAR: u32 = 0;
-const SPHERICAL: u32 = 1;
-const CYLINDRICAL: u32 = 2;
-const PLANAR: u32 = 3;
+use crate::tags::{CodeTag, LookupTag, MappingTag, SpectrumTypeTag, TextureTag};
 
 impl Flattener<'_> {
     /// A texture of numbers, which a thing at `span` has; its offset.
@@ -82,18 +55,20 @@ impl Flattener<'_> {
         let program = textures.programs()[id as usize];
         let operations = &textures.operations()[program.first as usize..][..program.length as usize];
         let at = match operations {
-            [Operation { code: Code::Number(number), .. }] => self.slab.add([NUMBER, number.to_bits()]),
+            [Operation { code: Code::Number(number), .. }] => {
+                self.slab.add([TextureTag::Number as u32, number.to_bits()])
+            }
             [Operation { code: Code::Spectrum(index), .. }] => {
                 let spectrum = self.spectrum(&textures.spectra()[*index as usize]);
-                self.slab.add([SPECTRUM, spectrum])
+                self.slab.add([TextureTag::Spectrum as u32, spectrum])
             }
             operations => {
                 self.parts.programs = true;
-                let mut words = vec![PROGRAM, operations.len() as u32, 0, 0];
+                let mut words = vec![TextureTag::Program as u32, operations.len() as u32, 0, 0];
                 for operation in operations {
-                    let [code, argument] = self.code(operation.code, span);
+                    let (code, argument) = self.code(operation.code, span);
                     let slots = u32::from_le_bytes(operation.operands);
-                    words.extend([code, operation.target.into(), slots, argument]);
+                    words.extend([code as u32, operation.target.into(), slots, argument]);
                 }
                 self.slab.add(words)
             }
@@ -103,7 +78,7 @@ impl Flattener<'_> {
     }
 
     /// The code of an operation, and its argument.
-    fn code(&mut self, code: Code, span: Span) -> [u32; 2] {
+    fn code(&mut self, code: Code, span: Span) -> (CodeTag, u32) {
         let textures = self.scene.textures();
         self.parts.images |= matches!(code, Code::FloatImage(_) | Code::SpectrumImage(_));
         self.parts.noise |= matches!(
@@ -111,41 +86,43 @@ impl Flattener<'_> {
             Code::Dots(_) | Code::Fbm(_) | Code::Wrinkled(_) | Code::Windy(_) | Code::Marble(_)
         );
         match code {
-            Code::Number(number) => [CODE_NUMBER, number.to_bits()],
-            Code::Spectrum(index) => [CODE_SPECTRUM, self.spectrum(&textures.spectra()[index as usize])],
-            Code::Squares(index) => [CODE_SQUARES, self.mapping(index)],
-            Code::Cubes(index) => [CODE_CUBES, self.solid_mapping(index)],
+            Code::Number(number) => (CodeTag::Number, number.to_bits()),
+            Code::Spectrum(index) => (CodeTag::Spectrum, self.spectrum(&textures.spectra()[index as usize])),
+            Code::Squares(index) => (CodeTag::Squares, self.mapping(index)),
+            Code::Cubes(index) => (CodeTag::Cubes, self.solid_mapping(index)),
             Code::Facing(index) => {
                 let direction = textures.directions()[index as usize];
-                [CODE_FACING, self.slab.add_numbers(direction.to_array())]
+                (CodeTag::Facing, self.slab.add_numbers(direction.to_array()))
             }
-            Code::Step(edge) => [CODE_STEP, edge.to_bits()],
-            Code::Scale => [CODE_SCALE, 0],
-            Code::Mix => [CODE_MIX, 0],
-            Code::Bilerp(index) => [CODE_BILERP, self.mapping(index)],
+            Code::Step(edge) => (CodeTag::Step, edge.to_bits()),
+            Code::Scale => (CodeTag::Scale, 0),
+            Code::Mix => (CodeTag::Mix, 0),
+            Code::Bilerp(index) => (CodeTag::Bilerp, self.mapping(index)),
             Code::FloatImage(index) => {
                 let lookup = textures.float_images()[index as usize];
-                [CODE_IMAGE, self.image_texture(&lookup, [0, 0], span)]
+                (CodeTag::Image, self.image_texture(&lookup, [0, 0], span))
             }
             Code::SpectrumImage(index) => {
                 let image = &textures.spectrum_images()[index as usize];
                 let kind = match image.spectrum_type {
-                    SpectrumType::Albedo => 0,
-                    SpectrumType::Unbounded => 1,
-                    SpectrumType::Illuminant => 2,
+                    SpectrumType::Albedo => SpectrumTypeTag::Albedo,
+                    SpectrumType::Unbounded => SpectrumTypeTag::Unbounded,
+                    SpectrumType::Illuminant => SpectrumTypeTag::Illuminant,
                 };
                 let space = self.color_space(image.space);
-                [CODE_IMAGE, self.image_texture(&image.lookup, [space, kind], span)]
+                (CodeTag::Image, self.image_texture(&image.lookup, [space, kind as u32], span))
             }
-            Code::Dots(index) => [CODE_DOTS, self.mapping(index)],
-            Code::Fbm(index) => [CODE_FBM, self.fractal(textures.fractals()[index as usize], &[])],
-            Code::Wrinkled(index) => [CODE_WRINKLED, self.fractal(textures.fractals()[index as usize], &[])],
-            Code::Windy(index) => [CODE_WINDY, self.solid_mapping(index)],
+            Code::Dots(index) => (CodeTag::Dots, self.mapping(index)),
+            Code::Fbm(index) => (CodeTag::Fbm, self.fractal(textures.fractals()[index as usize], &[])),
+            Code::Wrinkled(index) => {
+                (CodeTag::Wrinkled, self.fractal(textures.fractals()[index as usize], &[]))
+            }
+            Code::Windy(index) => (CodeTag::Windy, self.solid_mapping(index)),
             Code::Marble(index) => {
                 let marble = &textures.marbles()[index as usize];
                 let space = self.color_space(RgbColorSpace::srgb());
                 let more = [marble.scale.to_bits(), marble.variation.to_bits(), space];
-                [CODE_MARBLE, self.fractal(marble.fractal, &more)]
+                (CodeTag::Marble, self.fractal(marble.fractal, &more))
             }
         }
     }
@@ -161,14 +138,14 @@ impl Flattener<'_> {
         self.pyramids.insert(id, pyramid);
         let mapping = self.mapping(mapping);
         let (filter, anisotropy) = match filter {
-            TextureFilter::Point => (0, 0.0),
-            TextureFilter::Bilinear => (1, 0.0),
-            TextureFilter::Trilinear => (2, 0.0),
-            TextureFilter::Ewa { max_anisotropy } => (3, max_anisotropy),
+            TextureFilter::Point => (LookupTag::Point, 0.0),
+            TextureFilter::Bilinear => (LookupTag::Bilinear, 0.0),
+            TextureFilter::Trilinear => (LookupTag::Trilinear, 0.0),
+            TextureFilter::Ewa { max_anisotropy } => (LookupTag::Ewa, max_anisotropy),
         };
         let [anisotropy, scale] = [anisotropy, scale].map(f32::to_bits);
         let [space, kind] = space;
-        self.slab.add([pyramid, mapping, filter, anisotropy, scale, invert.into(), space, kind])
+        self.slab.add([pyramid, mapping, filter as u32, anisotropy, scale, invert.into(), space, kind])
     }
 
     /// A sum of noise; its offset.
@@ -186,19 +163,26 @@ impl Flattener<'_> {
 
     /// A mapping to the plane; its offset.
     fn mapping(&mut self, index: u32) -> u32 {
-        let (kind, numbers): (u32, Vec<f32>) = match &self.scene.textures().mappings()[index as usize] {
+        let (tag, numbers): (MappingTag, Vec<f32>) = match &self.scene.textures().mappings()[index as usize] {
             &Mapping2d::Uv { scale, delta } => {
-                (LINEAR, flat(&[Vec2::new(scale.x, 0.0), Vec2::new(0.0, scale.y), delta]))
+                (MappingTag::Linear, flat(&[Vec2::new(scale.x, 0.0), Vec2::new(0.0, scale.y), delta]))
             }
-            Mapping2d::Affine { columns } => (LINEAR, flat(columns)),
-            Mapping2d::Spherical { texture_from_render } => (SPHERICAL, rows(texture_from_render)),
-            Mapping2d::Cylindrical { texture_from_render } => (CYLINDRICAL, rows(texture_from_render)),
+            Mapping2d::Affine { columns } => (MappingTag::Linear, flat(columns)),
+            Mapping2d::Spherical { texture_from_render } => {
+                (MappingTag::Spherical, rows(texture_from_render))
+            }
+            Mapping2d::Cylindrical { texture_from_render } => {
+                (MappingTag::Cylindrical, rows(texture_from_render))
+            }
             Mapping2d::Planar { texture_from_render, axes, delta } => {
                 let [s, t] = axes.map(|axis| axis.to_array());
-                (PLANAR, [&rows(texture_from_render)[..], &s, &[delta.x], &t, &[delta.y]].concat())
+                (
+                    MappingTag::Planar,
+                    [&rows(texture_from_render)[..], &s, &[delta.x], &t, &[delta.y]].concat(),
+                )
             }
         };
-        let at = self.slab.add([kind, 0, 0, 0]);
+        let at = self.slab.add([tag as u32, 0, 0, 0]);
         self.slab.extend_numbers(numbers);
         at
     }

@@ -38,6 +38,7 @@ use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
 use crate::structure::Trees;
+use crate::tags::SamplerTag;
 use canvas::Canvas;
 use frame::{Eye, Frame, Level};
 use reservoirs::Reservoirs;
@@ -61,9 +62,6 @@ const LEVELS: u32 = 5;
 /// As many samples as a filtered picture is worth, and after so many at rest it counts no more.
 const WORTH: f32 = 8.0;
 const TRANSITION: f32 = 64.0;
-
-/// The kinds of random numbers of a frame in motion, which do not repeat themselves.
-const INDEPENDENT: u32 = 0;
 
 /// A scene on a device, of which pictures are made at once.
 pub struct Realtime {
@@ -147,7 +145,8 @@ impl Realtime {
         let device = kernels.device();
         let restless = flat.tables.len() as u32;
         let key = Independent::new(1, 0).key();
-        let tables: Vec<u32> = flat.tables.iter().copied().chain([INDEPENDENT, key, 0, 0]).collect();
+        let tables: Vec<u32> =
+            flat.tables.iter().copied().chain([SamplerTag::Independent as u32, key, 0, 0]).collect();
         let scene = [
             device.buffer("heads of the scene", &[flat.head])?,
             device.buffer("triangles of the scene", &flat.bvh.triangles)?,

@@ -8,6 +8,7 @@ use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::renderer::Kernels;
 use crate::shaders::{self, Parts};
+use crate::tags::{ReuseBit, bit};
 
 /// Bytes of a reservoir: `Reservoir` of `shaders/realtime/reservoirs.wgsl`.
 pub const RESERVOIR: u64 = 80;
@@ -19,9 +20,6 @@ const SECOND: u32 = 3;
 
 /// Pixels around that samples are taken from.
 const NEIGHBOURS: u32 = 3;
-
-const IS_BIASED: u32 = 1;
-const HAS_BEFORE: u32 = 2;
 
 /// How samples that are shared count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,8 +87,8 @@ impl Reservoirs {
     /// Prepares a frame in motion by a camera, whose parameters have `projected` as the camera
     /// before.
     pub fn begin(&mut self, device: &Device, eye: Eye, projected: Eye) -> Result<(), GpuError> {
-        let biased = if self.weights == Weights::Biased { IS_BIASED } else { 0 };
-        let before = if self.before == Some(projected) { HAS_BEFORE } else { 0 };
+        let biased = bit(self.weights == Weights::Biased, ReuseBit::IsBiased);
+        let before = bit(self.before == Some(projected), ReuseBit::HasBefore);
         let (now, then, flags) = (self.half, 1 - self.half, biased | before);
         let steps = [
             Reuse { source: 0, target: FIRST, neighbours: 0, flags },

@@ -25,6 +25,7 @@ use super::scene_buffers::SceneBuffers;
 use crate::device::{Buffer, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::shaders;
+use crate::tags::ChainRow;
 
 /// A number beyond those of passes, for the candidates of the estimate that is independent of them.
 const B0_PASS: u32 = u32::MAX;
@@ -44,12 +45,6 @@ const MAX_SPLATS: usize = 1 << 20;
 
 /// Chains of a workgroup.
 const WORKGROUP: usize = 64;
-
-/// Rows of the table of chains: `shaders/metropolis.wgsl`.
-const SCALAR: usize = 0;
-const START: usize = 1;
-const RAYS: usize = 10;
-const POINT: usize = 11;
 
 /// The splats that a thread adds at a time.
 const SPLATS_OF_A_THREAD: usize = 1 << 12;
@@ -117,7 +112,7 @@ impl Chains {
         let most_steps = if device.is_software() { MAX_STEPS_OF_SOFTWARE } else { MAX_STEPS };
         let steps = (MAX_SPLATS / count).clamp(1, most_steps);
         let columns = candidates.min(MAX_CANDIDATES).max(count);
-        let table_bytes = 4 * columns * (POINT + dimensions(settings.max_depth as usize));
+        let table_bytes = 4 * columns * (ChainRow::Point as usize + dimensions(settings.max_depth as usize));
         let batch_bytes = size_of::<Batch>() + size_of::<Splat>() * columns.max(count * steps);
         let batch = device.zeros("splats of chains", batch_bytes as u64)?;
         let table = device.zeros("chains", table_bytes as u64)?;
@@ -156,8 +151,8 @@ impl Chains {
     ) -> Result<Option<u64>, GpuError> {
         let (candidates, mut rays) = self.candidates(scene, pass)?;
         let starts = resample(&candidates, self.count, hash_float(&[self.seed, pass]));
-        self.write_row(scene, START, &starts)?;
-        self.write_row(scene, RAYS, &vec![0; self.count])?;
+        self.write_row(scene, ChainRow::Start, &starts)?;
+        self.write_row(scene, ChainRow::Rays, &vec![0; self.count])?;
         let (mutations, longer) = (self.mutations / self.count, self.mutations % self.count);
         // Before the mutations is the start, and after them the end.
         let last = mutations + usize::from(longer > 0) + 1;
@@ -194,7 +189,7 @@ impl Chains {
             let end = first + batch.steps as usize;
             splatter.add_paths((first..end).map(mutating).sum::<usize>() as u64);
         }
-        rays += sum(&self.read_row(scene, RAYS, self.count)?);
+        rays += sum(&self.read_row(scene, ChainRow::Rays, self.count)?);
         Ok(Some(rays))
     }
 
@@ -207,11 +202,11 @@ impl Chains {
             let count = end - first;
             let batch = Batch { count: count as u32, steps: 1, ..self.batch(pass) };
             let starts: Vec<u32> = (first as u32..end as u32).collect();
-            self.write_row(scene, START, &starts)?;
-            self.write_row(scene, RAYS, &vec![0; count])?;
+            self.write_row(scene, ChainRow::Start, &starts)?;
+            self.write_row(scene, ChainRow::Rays, &vec![0; count])?;
             self.start(scene, &batch)?;
-            scalars.extend(self.read_row(scene, SCALAR, count)?.into_iter().map(f32::from_bits));
-            rays += sum(&self.read_row(scene, RAYS, count)?);
+            scalars.extend(self.read_row(scene, ChainRow::Scalar, count)?.into_iter().map(f32::from_bits));
+            rays += sum(&self.read_row(scene, ChainRow::Rays, count)?);
         }
         Ok((scalars, rays))
     }
@@ -230,13 +225,13 @@ impl Chains {
     }
 
     /// Replaces a row of the table, of which a row is as long.
-    fn write_row(&self, scene: &SceneBuffers, row: usize, words: &[u32]) -> Result<(), GpuError> {
-        scene.device().write_at(&self.table, (4 * words.len() * row) as u64, words)
+    fn write_row(&self, scene: &SceneBuffers, row: ChainRow, words: &[u32]) -> Result<(), GpuError> {
+        scene.device().write_at(&self.table, (4 * words.len() * row as usize) as u64, words)
     }
 
     /// A row of a table of so many columns.
-    fn read_row(&self, scene: &SceneBuffers, row: usize, columns: usize) -> Result<Vec<u32>, GpuError> {
-        scene.device().read_part(&self.table, (4 * columns * row) as u64, columns)
+    fn read_row(&self, scene: &SceneBuffers, row: ChainRow, columns: usize) -> Result<Vec<u32>, GpuError> {
+        scene.device().read_part(&self.table, (4 * columns * row as usize) as u64, columns)
     }
 }
 

@@ -41,8 +41,8 @@ const STRUCTURE: &str = "@group(0) @binding(1) var structure: acceleration_struc
 /// That kernel, which traces rays by a kernel's traversal, or by ray queries.
 pub fn sources() -> [String; 2] {
     [
-        [shaders::TRACE, NODES, KERNEL].concat(),
-        [shaders::ENABLE_RAY_QUERIES, shaders::RAY_QUERY, STRUCTURE, KERNEL].concat(),
+        [&*shaders::tags(), shaders::TRACE, NODES, KERNEL].concat(),
+        [shaders::ENABLE_RAY_QUERIES, &*shaders::tags(), shaders::RAY_QUERY, STRUCTURE, KERNEL].concat(),
     ]
 }
 
