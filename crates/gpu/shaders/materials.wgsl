@@ -44,7 +44,7 @@ fn material_record(material: u32) -> u32 {
 // of its material, estimated by one sample.
 fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<function, SampledWavelengths>) -> Bsdf {
     let bsdf = material_at(s, context, lambda);
-    if (!FORCES_DIFFUSE) {
+    if (!HAS_FORCED_DIFFUSE) {
         return bsdf;
     }
     var u: array<vec2f, 2>;

@@ -132,7 +132,7 @@ fn shade(
         bsdf = exit_lobe(s);
     } else {
         *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
-        if (HAS_INTERFACES && is_interface(s.material)) {
+        if (HAS_MEDIA && is_interface(s.material)) {
             var near = (*path).near;
             var ray = (*path).ray;
             pass_through(&ray, &near, s, hit.t);

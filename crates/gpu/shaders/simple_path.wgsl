@@ -39,7 +39,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         if (s.light != 0 && counts) {
             l += beta * light_radiance(light_record(s.light - 1), s, *lambda);
         }
-        if (HAS_INTERFACES && is_interface(s.material)) {
+        if (HAS_MEDIA && is_interface(s.material)) {
             pass_through(&next, &beside, s, hit.t);
             // Interfaces occlude shadow rays here, so that only the path itself finds lights
             // beyond.

@@ -400,7 +400,7 @@ fn accepts(hit: Hit, o: vec3f, d: vec3f) -> bool {
     if (!HAS_HOLES) {
         return true;
     }
-    if (HAS_INTERFACES && is_interface(word(world.geometries + 8 * hit.geometry))) {
+    if (HAS_MEDIA && is_interface(word(world.geometries + 8 * hit.geometry))) {
         return !passes_interfaces;
     }
     if (word(world.geometries + 8 * hit.geometry + 4) == 0) {

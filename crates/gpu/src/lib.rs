@@ -16,6 +16,7 @@ mod commands;
 mod device;
 mod dynamic;
 mod flatten;
+mod parts;
 mod pruning;
 mod raster;
 mod realtime;

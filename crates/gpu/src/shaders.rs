@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 
 use crate::Algorithm;
+pub use crate::parts::Parts;
 pub use crate::pruning::parsed;
 use crate::tags;
 
@@ -135,67 +136,6 @@ pub fn principled() -> String {
     let table = include_str!("../shaders/openpbr_table.wgsl");
     let all = PRINCIPLED_LAWS.iter().chain([&table]);
     all.copied().collect::<Vec<_>>().join("\n")
-}
-
-/// What kernels have only for scenes that need it, because it is much code.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Parts {
-    /// Textures that are neither a number nor a spectrum.
-    pub programs: bool,
-    /// Maps of normals and of heights.
-    pub bumps: bool,
-    /// Surfaces with an alpha.
-    pub holes: bool,
-    /// Surfaces whose backs the camera does not see.
-    pub single_sided: bool,
-    /// Textures of images.
-    pub images: bool,
-    /// Lights at points.
-    pub point_lights: bool,
-    /// Infinite lights with images.
-    pub sky_images: bool,
-    /// Lights with surfaces.
-    pub surface_lights: bool,
-    /// Those whose surfaces are neither triangles nor rectangles.
-    pub round_lights: bool,
-    /// Lights with surfaces whose images are their emission, or choose their points.
-    pub emission_images: bool,
-    /// Lights with surfaces in instances.
-    pub placed_lights: bool,
-    /// Lights with surfaces that have holes.
-    pub light_holes: bool,
-    /// Infinite lights behind portals.
-    pub portals: bool,
-    /// Textures of noise.
-    pub noise: bool,
-    /// Metals and glass.
-    pub facets: bool,
-    /// Coated materials.
-    pub coats: bool,
-    /// Principled surfaces.
-    pub principled: bool,
-    /// Curves.
-    pub curves: bool,
-    /// A camera with a system of lenses.
-    pub lenses: bool,
-    /// Instances that move.
-    pub motion: bool,
-    /// The material of hair.
-    pub hair: bool,
-    /// Measured surfaces.
-    pub measured: bool,
-    /// Bodies under whose surface light is scattered.
-    pub subsurface: bool,
-    /// Sampler `zsobol`.
-    pub zsobol: bool,
-    /// Samplers other than that and `independent`, which all kernels have.
-    pub rare_samplers: bool,
-    /// Participating media, or interfaces, which paths pass.
-    pub media: bool,
-    /// Diffuse surfaces instead of all others.
-    pub force_diffuse: bool,
-    /// Rays by the ray queries of the hardware.
-    pub ray_queries: bool,
 }
 
 /// The kernel that renders a sample of each pixel by an algorithm; of Metropolis light transport,
@@ -333,71 +273,31 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
     let direct = include_str!("../shaders/direct.wgsl");
-    let Parts {
-        programs,
-        bumps,
-        holes,
-        single_sided,
-        images,
-        point_lights,
-        sky_images,
-        surface_lights,
-        round_lights,
-        emission_images,
-        placed_lights,
-        light_holes,
-        portals,
-        noise,
-        facets,
-        coats,
-        principled,
-        curves,
-        lenses,
-        motion,
-        hair,
-        measured,
-        subsurface,
-        zsobol,
-        rare_samplers,
-        media,
-        force_diffuse,
-        ray_queries,
-    } = parts;
-    let has = format!(
-        "const HAS_PROGRAMS = {programs};\nconst HAS_BUMPS = {bumps};\nconst HAS_FACETS = {facets};\n\
-        const HAS_POINT_LIGHTS = {point_lights};\nconst HAS_SKY_IMAGES = {sky_images};\n\
-        const HAS_SURFACE_LIGHTS = {surface_lights};\nconst HAS_ROUND_LIGHTS = {round_lights};\n\
-        const HAS_HOLES = {holes};\nconst HAS_IMAGES = {images};\nconst HAS_NOISE = {noise};\n\
-        const HAS_PLACED_LIGHTS = {placed_lights};\nconst HAS_LIGHT_HOLES = {light_holes};\n\
-        const HAS_EMISSION_IMAGES = {emission_images};\nconst HAS_COATS = {coats};\n\
-        const HAS_CURVES = {curves};\nconst HAS_MOTION = {motion};\nconst HAS_HAIR = {hair};\n\
-        const HAS_LENSES = {lenses};\nconst HAS_PORTALS = {portals};\n\
-        const HAS_MEASURED = {measured};\nconst HAS_INTERFACES = {media};\nconst FORCES_DIFFUSE = {force_diffuse};\n\
-        const HAS_SUBSURFACE = {subsurface};\nconst HAS_ZSOBOL = {zsobol};\n\
-        const HAS_RARE_SAMPLERS = {rare_samplers};\nconst HAS_SINGLE_SIDED = {single_sided};\n"
-    );
-    let surfaces = if principled {
+    let surfaces = if parts.principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")
     } else {
         include_str!("../shaders/openpbr_none.wgsl").to_owned()
     };
-    let bodies = if subsurface {
+    let bodies = if parts.subsurface {
         include_str!("../shaders/subsurface_material.wgsl")
     } else {
         include_str!("../shaders/subsurface_none.wgsl")
     };
-    let camera =
-        if lenses { include_str!("../shaders/lens.wgsl") } else { include_str!("../shaders/lens_none.wgsl") };
-    let skies = if portals {
+    let camera = if parts.lenses {
+        include_str!("../shaders/lens.wgsl")
+    } else {
+        include_str!("../shaders/lens_none.wgsl")
+    };
+    let skies = if parts.portals {
         include_str!("../shaders/portals.wgsl")
     } else {
         include_str!("../shaders/portals_none.wgsl")
     };
     let (head, rays) =
-        if ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
-    let of_scene = [direct, MEASURED, &has, &surfaces, bodies, camera, skies];
-    let tags = tags();
-    head.to_owned() + &with_laws(&[&[&*tags], &PLUMBING[..], &rays, &of_scene, texts].concat())
+        if parts.ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
+    let of_scene = [direct, MEASURED, &surfaces, bodies, camera, skies];
+    let constants = tags() + &parts.text();
+    head.to_owned() + &with_laws(&[&[&*constants], &PLUMBING[..], &rays, &of_scene, texts].concat())
 }
 
 /// The text of a file of `shaders/dynamic/`.

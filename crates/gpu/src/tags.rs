@@ -88,9 +88,11 @@ tags! {
     /// Bits of the reuse of reservoirs.
     ReuseBit { IsBiased = 1, HasBefore = 2 }
     /// Rows of the table of chains: the scalar contribution of the current point, the candidate
-    /// where the chain starts, the weight of the current point so far, its film position, wavelength
-    /// and light, and the rays of the chain. The point follows.
-    ChainRow { Scalar = 0, Start = 1, Weight = 2, Film = 3, Wavelength = 5, Light = 6, Rays = 10, Point = 11 }
+    /// where the chain starts, the weight of the current point so far, its film position,
+    /// wavelength and light, and the rays of the chain. The point follows.
+    ChainRow {
+        Scalar = 0, Start = 1, Weight = 2, Film = 3, Wavelength = 5, Light = 6, Rays = 10, Point = 11,
+    }
 }
 
 /// A bit where something is so, and 0 elsewhere.

@@ -9,10 +9,10 @@
 //! | ball | its centre and its radius |
 //! | others | the rows of the matrix that takes vectors to object space, each with a coordinate of its origin; its numbers |
 //!
-//! The last quadruple is the tag, the geometry and the primitive, and bits. That of an instance has, after the kind, the index of its
-//! first key, the number of its motions, which is 0 at rest, and the first light of its shapes. Two
-//! keys are a motion; an instance within others has several, the outermost first. Keys follow all
-//! that rays hit in the group.
+//! The last quadruple is the tag, the geometry and the primitive, and bits. That of an instance
+//! has, after the tag, the index of its first key, the number of its motions, which is 0 at rest,
+//! and the first light of its shapes. Two keys are a motion; an instance within others has several,
+//! the outermost first. Keys follow all that rays hit in the group.
 
 use std::f32::consts::TAU;
 

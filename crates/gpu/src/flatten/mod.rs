@@ -44,7 +44,7 @@ use scene::{GeometryEntry, Scene, View, ViewOptions};
 
 use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
-use crate::shaders::Parts;
+use crate::parts::Parts;
 use crate::tags::{SettingBit, bit};
 pub use openpbr::openpbr_table;
 use slab::Slab;
@@ -196,7 +196,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         largest_buffer,
         follows_bodies: bodies && !force_diffuse,
         begins_at_lights: light_paths,
-        parts: Parts { force_diffuse, ..Parts::default() },
+        parts: Parts { forced_diffuse: force_diffuse, ..Parts::default() },
         refusals: Vec::new(),
     };
     flattener.check(film, algorithm);

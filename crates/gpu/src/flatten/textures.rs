@@ -6,8 +6,8 @@
 //! | `Spectrum`, offset | a spectrum everywhere |
 //! | `Program`, count, 0, 0, and for each operation 4 words: code, target, slots of operands, argument | a program |
 //!
-//! Slots of operands are bytes of a word. Arguments of codes are numbers or offsets: of a spectrum, a direction, a mapping, or of one
-//! of these:
+//! Slots of operands are bytes of a word. Arguments of codes are numbers or
+//! offsets: of a spectrum, a direction, a mapping, or of one of these:
 //!
 //! | words | operation |
 //! |---|---|
