@@ -4,28 +4,8 @@
 // A thread makes a light path and then a camera path by one loop, so that drivers, which inline all
 // calls, have each long function once. Contributions to the film of light paths go to a list.
 
-// Light that arrives somewhere on the film, from the light path of a pixel of the batch.
-struct Splat {
-    film: vec2f,
-    path: u32,
-    unused: u32,
-    l: vec4f,
-}
-
-// A rectangle of pixels, the index of the sample of each, and splats with their number, of which
-// there is room for `most`.
-struct Batch {
-    low: vec2u,
-    size: vec2u,
-    index: u32,
-    most: u32,
-    count: atomic<u32>,
-    unused: u32,
-    splats: array<Splat>,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
-@group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
+@group(0) @binding(6) var<storage, read_write> samples: array<PixelSample>;
 
 var<private> light_vertices: array<Vertex, MOST_VERTICES>;
 
@@ -131,5 +111,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let path = id.y * batch.size.x + id.x;
     rays = 0;
     let l = light_of(camera, path);
-    samples[path] = Sample(l, rays, 0, camera.wavelength, camera.weight);
+    samples[path] = PixelSample(l, rays, 0, camera.wavelength, camera.weight);
 }

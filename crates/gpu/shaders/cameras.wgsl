@@ -139,16 +139,6 @@ struct CameraSample {
     share: f32,
 }
 
-// What kernels find for a pixel: radiance, the number of rays, 1 where only the first wavelength is
-// left, the random number of the wavelengths, and the weight in the pixel.
-struct Sample {
-    l: vec4f,
-    rays: u32,
-    is_terminated: u32,
-    wavelength: f32,
-    weight: f32,
-}
-
 // The wavelengths of a random number: uniform over the range that a spectral film wants. Where the
 // view fixes them, they are the format's.
 fn sampled_wavelengths(u: f32) -> SampledWavelengths {

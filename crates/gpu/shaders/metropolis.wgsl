@@ -16,37 +16,6 @@ const LIGHT_DIMENSIONS = 5u;
 const VERTEX_DIMENSIONS = 3u;
 const CONNECTION_DIMENSIONS = 3u;
 
-// A contribution to the film. The wavelength is the number that chose it.
-struct Splat {
-    film: vec2f,
-    wavelength: f32,
-    unused: u32,
-    l: vec4f,
-}
-
-// Some of the steps of all chains. Step 0 is the start, and the one after the last leaves the point
-// where the chain ends. Splats are those of the first step of all chains, then those of the next.
-struct Batch {
-    // The chains, the first of these steps, and how many there are.
-    count: u32,
-    step: u32,
-    steps: u32,
-    // The mutations of a chain, of which the first ones have one more.
-    mutations: u32,
-    longer: u32,
-    // Of the random numbers of candidates, and of mutations.
-    candidate_key: u32,
-    key: u32,
-    // The standard deviation of a small step, and the probability of a large one.
-    sigma: f32,
-    large: f32,
-    // The mean scalar contribution, and another estimate of it.
-    b: f32,
-    b0: f32,
-    unused: u32,
-    splats: array<Splat>,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 @group(0) @binding(6) var<storage, read_write> table: array<u32>;
 

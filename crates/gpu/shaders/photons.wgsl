@@ -12,33 +12,8 @@ const MARGIN = 1.000001;
 const PHOTON = 3u;
 const HERO_ONLY = 0x10000u;
 
-// A rectangle of pixels, or as many light paths, of which `first` is the first one.
-struct Batch {
-    low: vec2u,
-    size: vec2u,
-    pass_number: u32,
-    makes_photons: u32,
-    first: u32,
-    // The light paths of this batch, and the most photons of each.
-    count: u32,
-    most: u32,
-    radius: f32,
-    // The grid: cells per length, buckets, and the word where their starts are.
-    cells_per_length: f32,
-    buckets: u32,
-    starts: u32,
-    // n π r² for n light paths.
-    merging: f32,
-    rays: atomic<u32>,
-    unused: u32,
-    // The wavelengths of the pass, and their densities.
-    lambda: vec4f,
-    pdf: vec4f,
-    words: array<vec4u>,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
-@group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
+@group(0) @binding(6) var<storage, read_write> samples: array<PixelSample>;
 
 // Whether camera paths end at a surface of these lobes, and photons are stored.
 fn is_diffuse(flags: u32) -> bool {
@@ -191,6 +166,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (is_light_path) {
         atomicAdd(&batch.rays, rays);
     } else {
-        samples[index] = Sample(l, rays, 0, camera.wavelength, camera.weight);
+        samples[index] = PixelSample(l, rays, 0, camera.wavelength, camera.weight);
     }
 }

@@ -1,14 +1,7 @@
 // A sample of each pixel of a batch: the radiance along the camera ray.
 
-// A rectangle of pixels, and the index of the sample of each.
-struct Batch {
-    low: vec2u,
-    size: vec2u,
-    index: u32,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
-@group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
+@group(0) @binding(6) var<storage, read_write> samples: array<PixelSample>;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -23,5 +16,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         l = radiance(camera.ray, camera.near, &lambda) * camera.share;
     }
     let is_terminated = u32(SampledWavelengths_secondary_terminated(lambda));
-    samples[id.y * batch.size.x + id.x] = Sample(l, rays, is_terminated, camera.wavelength, camera.weight);
+    samples[id.y * batch.size.x + id.x] = PixelSample(l, rays, is_terminated, camera.wavelength, camera.weight);
 }

@@ -1,25 +1,5 @@
 // What all shaders of the raster pipeline share: the camera, the sky and the fog.
 
-struct Eye {
-    clip_from_render: mat4x4f,
-    render_from_clip: mat4x4f,
-    // Where the camera is; w is the radius of the scene.
-    position: vec4f,
-    // The plane behind which nothing is drawn, n·p + w = 0 with n towards what is; 0 for none.
-    cut: vec4f,
-    // The plane of water, its index of refraction, and what deep water reflects.
-    pond: vec4f,
-    water: vec4f,
-    // Extinction of the fog; the ball that it fills with its radius, 0 for all of space.
-    extinction: vec4f,
-    ball: vec4f,
-    // Width and height of the picture in pixels.
-    size: vec4f,
-    // Harmonics of irradiance, and of the light that the fog scatters.
-    irradiance: array<vec4f, 9>,
-    glow: array<vec4f, 9>,
-}
-
 @group(0) @binding(0) var<uniform> eye: Eye;
 @group(0) @binding(1) var sky: texture_cube<f32>;
 @group(0) @binding(2) var smooth_sampler: sampler;

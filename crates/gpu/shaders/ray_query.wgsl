@@ -20,7 +20,7 @@ struct InnerRay {
 
 fn inner_ray(o: vec3f, d: vec3f, item: u32) -> InnerRay {
     if (item == OUTSIDE) {
-        return InnerRay(o, d, world.roots, NO_HIT);
+        return InnerRay(o, d, world.top.roots, NO_HIT);
     }
     let row = instance_rows(item);
     let inner_o = vec3f(dot(row[0], vec4f(o, 1)), dot(row[1], vec4f(o, 1)), dot(row[2], vec4f(o, 1)));
@@ -59,8 +59,8 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
         flags |= RAY_FLAG_FORCE_OPAQUE;
     }
     // Shapes without bounds, which are not in the structure, come first.
-    let first_open = (world.unbounded & ~(LEAF | ITEMS)) >> COUNT_BITS;
-    var open = world.unbounded & ((1u << COUNT_BITS) - 1);
+    let first_open = (world.top.unbounded & ~(LEAF | ITEMS)) >> COUNT_BITS;
+    var open = world.top.unbounded & ((1u << COUNT_BITS) - 1);
     var query: ray_query;
     var is_begun = false;
     // Triangles are hit beyond.
@@ -69,7 +69,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     // with a wrong one if a triangle was found before.
     var mask = MaskBit_Triangles;
     loop {
-        var ray = InnerRay(o, d, world.roots, NO_HIT);
+        var ray = InnerRay(o, d, world.top.roots, NO_HIT);
         var hit = best;
         var shape = NO_HIT;
         if (open > 0) {
@@ -107,7 +107,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                         t_min = max(max(t_min, found.t) * 1.000001, 1e-30);
                     } else {
                         best = hit;
-                        if (world.roots.y == NO_HIT) {
+                        if (world.top.roots.y == NO_HIT) {
                             break;
                         }
                         t_min = 0;

@@ -1,39 +1,11 @@
 // The buffers of a scene, and the places of random numbers.
 //
-// Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` has
-// what Rust calls a `Head`. Tables are words; a record refers to another by the index of its first
+// Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` is
+// the `Head` of `src/flatten/mod.rs`. Tables are words; a record refers to another by the index of its first
 // word, which is a multiple of four: what is read together is four words. The files of
 // `src/flatten/` describe the records.
 
-struct World {
-    roots: vec2u,
-    unbounded: u32,
-    size: f32,
-    camera: u32,
-    pixel_filter: u32,
-    geometries: u32,
-    materials: u32,
-    lights: u32,
-    infinite: u32,
-    choice: u32,
-    light_count: u32,
-    infinite_count: u32,
-    random_numbers: u32,
-    is_centered: u32,
-    has_one_wavelength: u32,
-    max_depth: u32,
-    settings: u32,
-    white: u32,
-    white_scale: f32,
-    max_distance: f32,
-    cos_sample: u32,
-    has_footprints: u32,
-    sensor: u32,
-    light_paths: u32,
-    media: u32,
-}
-
-@group(0) @binding(0) var<storage, read_write> world: World;
+@group(0) @binding(0) var<storage, read_write> world: Head;
 @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
 @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;
 @group(0) @binding(4) var<storage, read_write> tables: array<vec4u>;

@@ -93,12 +93,12 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
     // What is next, if anything, and what waits.
     var next = vec2u(LEAF, 0);
     var stack: array<vec2u, STACK>;
-    stack[0] = vec2u(world.roots.y, 0);
-    stack[1] = vec2u(world.roots.x, 0);
-    stack[2] = vec2u(world.unbounded, 0);
+    stack[0] = vec2u(world.top.roots.y, 0);
+    stack[1] = vec2u(world.top.roots.x, 0);
+    stack[2] = vec2u(world.top.unbounded, 0);
     var top = 3u;
     // Within an instance the ray is another one; `outside` is the top of the stack there.
-    var ray = slabs(o, d, world.size);
+    var ray = slabs(o, d, world.top.size);
     var shear = sheared(o, d);
     var inner_o = o;
     var inner_d = d;
@@ -112,7 +112,7 @@ fn trace(o: vec3f, d: vec3f, t_max: f32, is_any: bool) -> Hit {
                 break;
             }
             if (instance != NO_HIT && top == outside) {
-                ray = slabs(o, d, world.size);
+                ray = slabs(o, d, world.top.size);
                 shear = sheared(o, d);
                 inner_o = o;
                 inner_d = d;

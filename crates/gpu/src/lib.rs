@@ -20,6 +20,7 @@ mod parts;
 mod pruning;
 mod raster;
 mod realtime;
+mod record;
 mod renderer;
 pub mod shaders;
 mod structure;

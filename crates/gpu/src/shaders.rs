@@ -4,17 +4,22 @@
 use std::borrow::Cow;
 
 use crate::Algorithm;
+use crate::bvh::Top;
+use crate::dynamic::Plan;
+use crate::flatten::Head;
 pub use crate::parts::Parts;
 pub use crate::pruning::parsed;
+use crate::raster::Eye;
+use crate::renderer::{Batch, PixelSample, Splat, chains, photons, wavefront};
 use crate::tags;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.
 const BY_HAND: [&str; 2] =
     [include_str!("../shaders/prelude.wgsl"), include_str!("../shaders/samplers.wgsl")];
 
-/// The tags of records, for what reads any.
+/// Tags, and where rays begin: what [`TRACE`] and [`RAY_QUERY`] need of Rust.
 pub fn tags() -> String {
-    tags::text()
+    tags::text() + Top::TEXT
 }
 
 /// Rays through the buffers of a [`Bvh`](crate::Bvh), for kernels that declare these and have
@@ -155,24 +160,29 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
         | Algorithm::RandomWalk(_)
         | Algorithm::Mlt(..) => {
             let pixels = include_str!("../shaders/pixels.wgsl");
-            return traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, &radiance(algorithm, parts), pixels]);
+            let own = [RANDOM_NUMBERS, NO_RESERVOIRS, &radiance(algorithm, parts), pixels];
+            return traced(parts, &[&[Batch::TEXT, Splat::TEXT], &own[..]].concat());
         }
     };
+    let batch = match algorithm {
+        Algorithm::Sppm(..) => [photons::Batch::TEXT, ""],
+        _ => [Batch::TEXT, Splat::TEXT],
+    };
     let own = [RANDOM_NUMBERS, &constants, &radiance(algorithm, parts)];
-    traced(parts, &[&SUBPATHS[..], &own].concat())
+    traced(parts, &[&SUBPATHS[..], &batch, &own].concat())
 }
 
 /// The kernels of the stages of path tracing by a wavefront: paths begin, are extended and shaded,
 /// the next turn is planned, and paths are connected to lights.
 pub fn wavefront(parts: Parts) -> [String; 5] {
-    let queues = include_str!("../shaders/wavefront/queues.wgsl");
+    let queues = [wavefront::Batch::TEXT, include_str!("../shaders/wavefront/queues.wgsl")].concat();
     let paths = include_str!("../shaders/wavefront/paths.wgsl");
-    let stage = |stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, queues, paths, stage]);
+    let stage = |stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, &queues, paths, stage]);
     [
         stage(include_str!("../shaders/wavefront/begin.wgsl")),
         stage(include_str!("../shaders/wavefront/extend.wgsl")),
         stage(include_str!("../shaders/wavefront/shade.wgsl")),
-        [queues, include_str!("../shaders/wavefront/plan.wgsl")].concat(),
+        [&*queues, include_str!("../shaders/wavefront/plan.wgsl")].concat(),
         stage(include_str!("../shaders/wavefront/connect.wgsl")),
     ]
 }
@@ -180,8 +190,9 @@ pub fn wavefront(parts: Parts) -> [String; 5] {
 /// The kernel of the chains of Metropolis light transport.
 pub fn chains(parts: Parts) -> String {
     let constants = subpaths(true, true, 1);
+    let records = [chains::Batch::TEXT, chains::Splat::TEXT];
     let own = [&constants, SENSOR, include_str!("../shaders/metropolis.wgsl")];
-    traced(parts, &[&SUBPATHS[..], &own].concat())
+    traced(parts, &[&SUBPATHS[..], &records, &own].concat())
 }
 
 /// What subpaths are made for: whether there are camera paths, whether light paths are connected to
@@ -296,53 +307,57 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     let (head, rays) =
         if parts.ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
     let of_scene = [direct, MEASURED, &surfaces, bodies, camera, skies];
-    let constants = tags() + &parts.text();
-    head.to_owned() + &with_laws(&[&[&*constants], &PLUMBING[..], &rays, &of_scene, texts].concat())
+    let declared = tags() + Head::TEXT + PixelSample::TEXT + &parts.text();
+    head.to_owned() + &with_laws(&[&[&*declared], &PLUMBING[..], &rays, &of_scene, texts].concat())
 }
 
-/// The text of a file of `shaders/dynamic/`.
+/// The text of files of `shaders/dynamic/`, after the plan that they share.
 macro_rules! dynamic {
-    ($($name:literal)*) => { [$(include_str!(concat!("../shaders/dynamic/", $name, ".wgsl"))),*].concat() };
+    ($($name:literal)*) => {
+        [
+            Plan::TEXT,
+            "@group(0) @binding(0) var<uniform> plan: Plan;\n",
+            $(include_str!(concat!("../shaders/dynamic/", $name, ".wgsl"))),*
+        ]
+        .concat()
+    };
 }
 
 /// The kernels that sort keys by a digit, in the order in which they run.
 pub fn sort() -> [String; 3] {
-    [
-        dynamic! { "plan" "digit" "count" },
-        dynamic! { "plan" "digit" "scan" "sum" },
-        dynamic! { "plan" "digit" "scan" "scatter" },
-    ]
+    [dynamic! { "digit" "count" }, dynamic! { "digit" "scan" "sum" }, dynamic! { "digit" "scan" "scatter" }]
 }
 
 /// The kernel that moves spheres.
 pub fn place_spheres() -> String {
-    tags() + &dynamic! { "plan" "box" "middles" "place_spheres" }
+    tags() + &dynamic! { "box" "middles" "place_spheres" }
 }
 
 /// The kernel that moves triangles.
 pub fn place_triangles() -> String {
-    dynamic! { "plan" "box" "middles" "place_triangles" }
+    dynamic! { "box" "middles" "place_triangles" }
 }
 
 /// The kernel that moves instances.
 pub fn place_instances() -> String {
-    dynamic! { "plan" "box" "place_instances" }
+    dynamic! { "box" "place_instances" }
 }
 
 /// The kernels that build a tree, but for the sort after the first, with their names.
 pub fn tree() -> [(&'static str, String); 7] {
     [
-        ("codes", dynamic! { "plan" "box" "codes" }),
-        ("split", dynamic! { "plan" "binary" "split" }),
-        ("leaves", dynamic! { "plan" "box" "leaves" }),
-        ("pyramid", dynamic! { "plan" "box" "pyramid" }),
-        ("bounds", dynamic! { "plan" "box" "binary" "bounds" }),
-        ("collapse", dynamic! { "plan" "box" "binary" "children" "collapse" }),
-        ("quantise", dynamic! { "plan" "box" "binary" "children" "quantise" }),
+        ("codes", dynamic! { "box" "codes" }),
+        ("split", dynamic! { "binary" "split" }),
+        ("leaves", dynamic! { "box" "leaves" }),
+        ("pyramid", dynamic! { "box" "pyramid" }),
+        ("bounds", dynamic! { "box" "binary" "bounds" }),
+        ("collapse", dynamic! { "box" "binary" "children" "collapse" }),
+        ("quantise", dynamic! { "box" "binary" "children" "quantise" }),
     ]
 }
 
 /// The shaders of the raster pipeline, one module.
 pub fn raster() -> String {
-    plumbing! { "raster" "raster_surfaces" "raster_sky" "raster_water" "raster_sprites" }.join("\n")
+    let texts = plumbing! { "raster" "raster_surfaces" "raster_sky" "raster_water" "raster_sprites" };
+    Eye::TEXT.to_owned() + &texts.join("\n")
 }

@@ -24,7 +24,7 @@ const KERNEL: &str = "
     fn ribbon_normal(geometry: u32, primitive: u32, u: f32) -> vec3f { return vec3f(); }
     const HAS_MOTION = false;
     fn moved_rows(first_key: u32, motions: u32) -> array<vec4f, 3> { return array<vec4f, 3>(); }
-    struct World { roots: vec2u, unbounded: u32, size: f32 }
+    struct World { top: Top }
     @group(0) @binding(0) var<storage, read_write> world: World;
     @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;
     @group(0) @binding(3) var<storage, read_write> items: array<vec4u>;

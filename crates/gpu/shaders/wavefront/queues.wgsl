@@ -11,27 +11,6 @@ const SHADOWS = 2u;
 const HITS = 3u;
 const QUEUES = 17u;
 
-// The samples of a rectangle of pixels, of each as many as of the others from an index on; and the
-// places for paths. Each sample has a number: those of the first index come first, row by row.
-struct Batch {
-    low: vec2u,
-    size: vec2u,
-    index: u32,
-    samples: u32,
-    places: u32,
-    // The kinds of materials that are hit, a bit for each, and the number of queues of hits.
-    kinds: u32,
-    sorts: u32,
-    // Of a turn: the number of the first sample that begins and how many do, the paths that go on,
-    // and the shadow rays of the turn before.
-    first: u32,
-    beginning: u32,
-    going_on: u32,
-    shadows: u32,
-    lengths: array<atomic<u32>, QUEUES>,
-    queues: array<u32>,
-}
-
 @group(0) @binding(5) var<storage, read_write> batch: Batch;
 
 // No path: what threads have beyond the end of a queue.

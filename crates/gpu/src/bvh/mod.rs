@@ -23,6 +23,8 @@ use item::Item;
 pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
+
+use crate::record::record;
 pub(crate) use node::{ITEMS, TRIANGLES};
 pub(crate) use placed::Placed;
 pub(crate) use structure::{MOST as MOST_FOR_RAY_QUERIES, Plan};
@@ -63,16 +65,16 @@ pub struct Bvh {
     pub(crate) plan: Option<Plan>,
 }
 
-/// Where rays begin.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
-pub struct Top {
-    /// The references of the triangles and of the items of the top group.
-    pub roots: [u32; 2],
-    /// The reference of a leaf of its items without bounds.
-    pub unbounded: u32,
-    /// The largest coordinate of any box of the top group.
-    pub size: f32,
+record! {
+    /// Where rays begin.
+    pub struct Top {
+        /// The references of the triangles and of the items of the top group.
+        roots: [u32; 2],
+        /// The reference of a leaf of its items without bounds.
+        unbounded: u32,
+        /// The largest coordinate of any box of the top group.
+        size: f32,
+    }
 }
 
 /// Why a world has no buffers.

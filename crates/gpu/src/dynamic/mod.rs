@@ -30,6 +30,7 @@ pub use moving::Moving;
 pub use sort::Sorter;
 
 use crate::device::{Buffer, Kernel};
+use crate::record::record;
 
 /// Starts a kernel on buffers, in a number of workgroups.
 pub type Start<'a> = dyn FnMut(&Kernel, &[&Buffer], u32) + 'a;
@@ -46,16 +47,22 @@ pub enum Update {
 /// The threads of a workgroup, but for nodes of eight children.
 const THREADS: u32 = 256;
 
-/// What kernels are told: `Plan` of `shaders/dynamic/plan.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
-struct Plan {
-    count: u32,
-    leaves: u32,
-    step: u32,
-    blocks: u32,
-    first_item: u32,
-    first_node: u32,
-    leaf_bits: u32,
-    leaf_stack: u32,
+record! {
+    /// What the kernels that build a tree are told.
+    pub(crate) struct Plan {
+        /// Primitives, and the leaves of the pyramid: a power of two.
+        count: u32,
+        leaves: u32,
+        /// Which of the runs of a kernel this is: the digit that is sorted by, from the lowest on;
+        /// the part of the pyramid, from its base on; the level of nodes, from the root on.
+        step: u32,
+        /// Blocks of keys.
+        blocks: u32,
+        /// The first of the items or triangles, and of the nodes.
+        first_item: u32,
+        first_node: u32,
+        /// The bits of references to leaves, and the entries of a ray's stack that a leaf needs.
+        leaf_bits: u32,
+        leaf_stack: u32,
+    }
 }

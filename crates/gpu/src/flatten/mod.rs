@@ -45,6 +45,7 @@ use scene::{GeometryEntry, Scene, View, ViewOptions};
 use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::parts::Parts;
+use crate::record::record;
 use crate::tags::{SettingBit, bit};
 pub use openpbr::openpbr_table;
 use slab::Slab;
@@ -85,46 +86,46 @@ pub struct Flat {
     pub(crate) passes: u32,
 }
 
-/// The first buffer: `World` of `shaders/scene.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
-pub(crate) struct Head {
-    /// Where rays begin.
-    pub(crate) top: Top,
-    /// The offsets of camera, filter, geometries, materials, offsets of lights, offsets of infinite
-    /// lights, and choice of lights.
-    pub(crate) camera: u32,
-    pub(crate) filter: u32,
-    pub(crate) geometries: u32,
-    pub(crate) materials: u32,
-    pub(crate) lights: u32,
-    pub(crate) infinite: u32,
-    pub(crate) choice: u32,
-    /// The numbers of lights, and of infinite ones.
-    pub(crate) light_count: u32,
-    pub(crate) infinite_count: u32,
-    /// The offset of the source of random numbers.
-    pub(crate) random_numbers: u32,
-    /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
-    pub(crate) is_centered: u32,
-    pub(crate) has_one_wavelength: u32,
-    /// The most scattering events, and a [`SettingBit`] for each setting.
-    pub(crate) max_depth: u32,
-    pub(crate) settings: u32,
-    /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
-    /// surfaces do not occlude, and whether directions follow the cosine.
-    pub(crate) white: u32,
-    pub(crate) white_scale: f32,
-    pub(crate) max_distance: f32,
-    pub(crate) cos_sample: u32,
-    /// Whether anything depends on the size of a pixel on surfaces.
-    pub(crate) has_footprints: u32,
-    /// The offset of the sensor.
-    pub(crate) sensor: u32,
-    /// The offset of what light paths need, if there are any.
-    pub(crate) light_paths: u32,
-    /// The offset of media, if there are any or interfaces between them.
-    pub(crate) media: u32,
+record! {
+    /// The first buffer of a scene, `world` of shaders.
+    pub(crate) struct Head {
+        /// Where rays begin.
+        top: Top,
+        /// The offsets of camera, filter, geometries, materials, offsets of lights, offsets of infinite
+        /// lights, and choice of lights.
+        camera: u32,
+        pixel_filter: u32,
+        geometries: u32,
+        materials: u32,
+        lights: u32,
+        infinite: u32,
+        choice: u32,
+        /// The numbers of lights, and of infinite ones.
+        light_count: u32,
+        infinite_count: u32,
+        /// The offset of the source of random numbers.
+        random_numbers: u32,
+        /// Whether all samples of a pixel go through its centre, and have the same wavelengths.
+        is_centered: u32,
+        has_one_wavelength: u32,
+        /// The most scattering events, and a [`SettingBit`] for each setting.
+        max_depth: u32,
+        settings: u32,
+        /// Of `ambient-occlusion`: the offset of the white, its scale, the distance from which on
+        /// surfaces do not occlude, and whether directions follow the cosine.
+        white: u32,
+        white_scale: f32,
+        max_distance: f32,
+        cos_sample: u32,
+        /// Whether anything depends on the size of a pixel on surfaces.
+        has_footprints: u32,
+        /// The offset of the sensor.
+        sensor: u32,
+        /// The offset of what light paths need, if there are any.
+        light_paths: u32,
+        /// The offset of media, if there are any or interfaces between them.
+        media: u32,
+    }
 }
 
 impl Flat {
@@ -208,7 +209,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
     };
     head.random_numbers = flattener.sampler(sampler);
     head.camera = flattener.camera(view, algorithm);
-    head.filter = flattener.filter(film.filter());
+    head.pixel_filter = flattener.filter(film.filter());
     head.sensor = flattener.sensor(film);
     head.geometries = flattener.geometries();
     let kinds;

@@ -1,26 +1,34 @@
-//! What shaders know of a camera: `Eye` of `shaders/raster.wgsl`.
+//! What shaders know of a camera.
 
 use math::{DMat4, Vec3};
 
 use super::fog::Fog;
 use super::lens::Lens;
 use super::pond::Pond;
+use crate::record::record;
 
-/// The uniforms of a pass.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::NoUninit)]
-pub struct Eye {
-    clip_from_render: [[f32; 4]; 4],
-    render_from_clip: [[f32; 4]; 4],
-    position: [f32; 4],
-    cut: [f32; 4],
-    pond: [f32; 4],
-    water: [f32; 4],
-    extinction: [f32; 4],
-    ball: [f32; 4],
-    size: [f32; 4],
-    irradiance: [[f32; 4]; 9],
-    glow: [[f32; 4]; 9],
+record! {
+    /// The uniforms of a pass.
+    pub struct Eye {
+        /// The matrices to and from the picture.
+        clip_from_render: [[f32; 4]; 4],
+        render_from_clip: [[f32; 4]; 4],
+        /// Where the camera is; w is the radius of the scene.
+        position: [f32; 4],
+        /// The plane behind which nothing is drawn, n·p + w = 0 with n towards what is; 0 for none.
+        cut: [f32; 4],
+        /// The plane of water, its index of refraction, and what deep water reflects.
+        pond: [f32; 4],
+        water: [f32; 4],
+        /// Extinction of the fog; the ball that it fills with its radius, 0 for all of space.
+        extinction: [f32; 4],
+        ball: [f32; 4],
+        /// Width and height of the picture in pixels.
+        size: [f32; 4],
+        /// Harmonics of irradiance, and of the light that the fog scatters.
+        irradiance: [[f32; 4]; 9],
+        glow: [[f32; 4]; 9],
+    }
 }
 
 impl Eye {

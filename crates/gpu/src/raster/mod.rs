@@ -36,7 +36,7 @@ use scene::{Scene, View};
 use crate::device::{Device, GpuError};
 use crate::flatten::Refusal;
 use colors::Colors;
-use eye::Eye;
+pub(crate) use eye::Eye;
 use fog::Fog;
 use lens::Lens;
 use models::{Model, Models};

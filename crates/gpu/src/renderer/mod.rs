@@ -7,12 +7,12 @@
 //!
 //! Metropolis light transport has [`Chains`] beside, and photon mapping [`Photons`] before.
 
-mod chains;
+pub(crate) mod chains;
 mod kernels;
-mod photons;
+pub(crate) mod photons;
 mod scene_buffers;
 mod strip;
-mod wavefront;
+pub(crate) mod wavefront;
 
 use std::sync::Arc;
 
@@ -26,13 +26,15 @@ use spectrum::SampledSpectrum;
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
+use crate::record::record;
 use crate::shaders::{self, Parts};
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
 pub use strip::FindFirstHit;
-use strip::{AddToTile, PixelSample, Started};
+pub(crate) use strip::PixelSample;
+use strip::{AddToTile, Started};
 use wavefront::Wavefront;
 
 /// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that
@@ -47,28 +49,29 @@ const SPLATS_OF_A_THREAD: usize = 1 << 12;
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
 
-/// What the kernel is to render: `Batch` of `shaders/pixels.wgsl` and `shaders/bidirectional.wgsl`,
-/// where splats follow.
-#[repr(C)]
-#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Batch {
-    low: [u32; 2],
-    size: [u32; 2],
-    index: u32,
-    most: u32,
-    count: u32,
-    unused: u32,
+record! {
+    /// What the kernel is to render, a sample of each pixel of a rectangle.
+    pub(crate) struct Batch {
+        low: [u32; 2],
+        size: [u32; 2],
+        /// The index of the sample of each pixel.
+        index: u32,
+        /// The splats for which there is room, and their number.
+        most: u32,
+        count: u32 as "atomic<u32>",
+        unused: u32,
+    }
+    "splats: array<Splat>"
 }
 
-/// Light on the film from the light path of a pixel of the batch: `Splat` of
-/// `shaders/bidirectional.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Splat {
-    film: [f32; 2],
-    path: u32,
-    unused: u32,
-    l: [f32; 4],
+record! {
+    /// Light on the film from the light path of a pixel of the batch.
+    pub(crate) struct Splat {
+        film: [f32; 2],
+        path: u32,
+        unused: u32,
+        l: [f32; 4],
+    }
 }
 
 /// How the work of `path` is cut into kernels. Other algorithms, and `vol-path` in media, have

@@ -7,18 +7,22 @@ use scene::{ShutterSample, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::device::Copied;
+use crate::record::record;
 
-/// What is found for a pixel: `Sample` of `shaders/cameras.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct PixelSample {
-    l: [f32; 4],
-    pub rays: u32,
-    /// The lowest bit: whether only the first wavelength is left.
-    flags: u32,
-    /// The random number of the wavelengths.
-    wavelength: f32,
-    weight: f32,
+record! {
+    /// What is found for a pixel.
+    pub(crate) struct PixelSample {
+        /// The radiance.
+        l: [f32; 4],
+        /// The number of rays.
+        rays: u32,
+        /// Whether only the first wavelength is left, the lowest bit.
+        flags: u32,
+        /// The random number of the wavelengths.
+        wavelength: f32,
+        /// The weight in the pixel.
+        weight: f32,
+    }
 }
 
 impl PixelSample {

@@ -21,6 +21,7 @@ use super::scene_buffers::SceneBuffers;
 use super::strip::PixelSample;
 use crate::device::{Buffer, Copied, GpuError, Kernel, Workgroups};
 use crate::flatten::Flat;
+use crate::record::record;
 use crate::shaders;
 
 /// Rows of the table of paths, of four words.
@@ -45,22 +46,28 @@ const TURNS: usize = 4;
 const WORKGROUPS: u64 = 16;
 const ALL_WORKGROUPS: u64 = 3 * WORKGROUPS;
 
-/// What the kernels are to do: `Batch` of `shaders/wavefront/queues.wgsl`, which the queues follow.
-#[repr(C)]
-#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Batch {
-    low: [u32; 2],
-    size: [u32; 2],
-    index: u32,
-    samples: u32,
-    places: u32,
-    kinds: u32,
-    sorts: u32,
-    first: u32,
-    beginning: u32,
-    going_on: u32,
-    shadows: u32,
-    lengths: [u32; MOST_QUEUES],
+record! {
+    /// The samples of a rectangle of pixels, of each as many as of the others from an index on; and
+    /// the places for paths. Each sample has a number: those of the first index come first, row by
+    /// row.
+    pub(crate) struct Batch {
+        low: [u32; 2],
+        size: [u32; 2],
+        index: u32,
+        samples: u32,
+        places: u32,
+        /// The kinds of materials that are hit, a bit for each, and the number of queues of hits.
+        kinds: u32,
+        sorts: u32,
+        /// Of a turn: the number of the first sample that begins and how many do, the paths that go
+        /// on, and the shadow rays of the turn before.
+        first: u32,
+        beginning: u32,
+        going_on: u32,
+        shadows: u32,
+        lengths: [u32; MOST_QUEUES] as "array<atomic<u32>, QUEUES>",
+    }
+    "queues: array<u32>"
 }
 
 /// The samples of a strip that are made together.

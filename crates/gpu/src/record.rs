@@ -1,0 +1,63 @@
+//! Records that Rust writes and shaders read, of one declaration.
+
+/// The type in WGSL of a field, or the one that is given.
+macro_rules! wgsl_type {
+    ($type:tt $wgsl:literal) => {
+        $wgsl
+    };
+    (u32) => {
+        "u32"
+    };
+    (f32) => {
+        "f32"
+    };
+    (Top) => {
+        "Top"
+    };
+    ([u32; 2]) => {
+        "vec2u"
+    };
+    ([f32; 2]) => {
+        "vec2f"
+    };
+    ([f32; 4]) => {
+        "vec4f"
+    };
+    ([[f32; 4]; 4]) => {
+        "mat4x4f"
+    };
+    ([[f32; 4]; 9]) => {
+        "array<vec4f, 9>"
+    };
+}
+pub(crate) use wgsl_type;
+
+/// Declares a record, and in WGSL a structure with the same name and fields, after which more may
+/// follow there.
+macro_rules! record {
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $name:ident {
+            $($(#[$of_field:meta])* $field:ident: $type:tt $(as $wgsl:literal)?,)*
+        }
+        $($rest:literal)?
+    ) => {
+        $(#[$meta])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+        $vis struct $name {
+            $($(#[$of_field])* pub $field: $type),*
+        }
+
+        impl $name {
+            /// The structure in WGSL.
+            pub const TEXT: &str = concat!(
+                "struct ", stringify!($name), " {\n",
+                $("    ", stringify!($field), ": ", $crate::record::wgsl_type!($type $($wgsl)?), ",\n",)*
+                $("    ", $rest, ",\n",)?
+                "}\n",
+            );
+        }
+    };
+}
+pub(crate) use record;
