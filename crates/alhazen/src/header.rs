@@ -21,7 +21,7 @@ pub struct Header {
 }
 
 /// The layers of identifiers that [`Header::names`] are for, and their keys in JSON.
-const ID_LAYERS: [(Layer, &str); 3] =
+const ID_LAYERS: [(Layer, &str); Layer::IDS.len()] =
     [(Layer::ObjectId, "objects"), (Layer::MaterialId, "materials"), (Layer::AssetId, "assets")];
 
 impl Header {

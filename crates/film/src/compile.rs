@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use description::schema::Settings;
-use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, GBufferSpace, SceneDesc, Spanned};
+use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, SceneDesc, Spanned};
 use math::Bounds2i;
 use spectrum::RgbColorSpace;
 
@@ -11,9 +11,6 @@ use crate::{Buckets, Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
 
 /// The range of white balance temperatures in kelvin.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
-
-/// The layers of the format's film `gbuffer`, apart from those of its space.
-const GBUFFER_LAYERS: [Layer; 3] = [Layer::Albedo, Layer::Uv, Layer::ColorVariance];
 
 /// The result of [`compile`].
 #[derive(Debug)]
@@ -52,16 +49,8 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
     match film.kind {
         FilmKind::Rgb => {}
         FilmKind::GBuffer { space } => {
-            let geometry = match space {
-                GBufferSpace::Camera => [
-                    Layer::CameraPosition,
-                    Layer::CameraNormal,
-                    Layer::CameraGeometricNormal,
-                    Layer::CameraSlope,
-                ],
-                GBufferSpace::World => [Layer::Position, Layer::Normal, Layer::GeometricNormal, Layer::Slope],
-            };
-            layers = GBUFFER_LAYERS.into_iter().chain(geometry).fold(layers, LayerSet::with);
+            let geometry = Layer::ALL.into_iter().filter(|layer| layer.is_in_gbuffer(space));
+            layers = geometry.fold(layers, LayerSet::with);
             gbuffer = Some(space);
         }
         FilmKind::Spectral { buckets: count, lambda_min, lambda_max } => {

@@ -38,20 +38,11 @@ fn murmur3(bytes: &[u8]) -> u32 {
     hash ^ hash >> 16
 }
 
-/// The name of a layer of identifiers in a picture.
-fn layer_name(layer: Layer) -> &'static str {
-    match layer {
-        Layer::MaterialId => "CryptoMaterial",
-        Layer::AssetId => "CryptoAsset",
-        _ => "CryptoObject",
-    }
-}
-
 /// The names of a layer's channels: of each rank identifier and coverage, two ranks in r, g, b and
 /// a of one layer.
 pub(crate) fn channels(layer: Layer) -> impl Iterator<Item = String> {
     (0..RANKS / 2).flat_map(move |level| {
-        ["r", "g", "b", "a"].map(|channel| format!("{}{level:02}.{channel}", layer_name(layer)))
+        ["r", "g", "b", "a"].map(|channel| format!("{}{level:02}.{channel}", layer.cryptomatte()))
     })
 }
 
@@ -105,7 +96,7 @@ fn quoted(text: &str) -> String {
 /// Marks a layer as Cryptomatte in a picture's header.
 pub(crate) fn describe(layer: Layer, metadata: &mut ImageMetadata) {
     let mut set = |key, value: &str| metadata.set(&attribute(layer, key), Attribute::Text(value.to_owned()));
-    set("name", layer_name(layer));
+    set("name", layer.cryptomatte());
     set("hash", "MurmurHash3_32");
     set("conversion", "uint32_to_float32");
 }
@@ -113,7 +104,7 @@ pub(crate) fn describe(layer: Layer, metadata: &mut ImageMetadata) {
 /// The attribute with this key of a layer; the first seven digits of the hash of its name
 /// distinguish it from other layers.
 fn attribute(layer: Layer, key: &str) -> String {
-    let digits = format!("{:08x}", id_of_name(layer_name(layer)));
+    let digits = format!("{:08x}", id_of_name(layer.cryptomatte()));
     format!("cryptomatte/{}/{key}", &digits[..7])
 }
 

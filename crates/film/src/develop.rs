@@ -11,6 +11,7 @@ use image::{
 use math::Vec3;
 use spectrum::{Matrix3, Rgb, SampledSpectrum, SampledWavelengths};
 
+use crate::layer::{Quantity, Statistic};
 use crate::splats::SPLAT_SUMS;
 use crate::sum::{Sums, reserved, value};
 use crate::{Buckets, Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
@@ -88,7 +89,7 @@ impl<'film> Development<'film> {
         let channel = |name: &str, depth| Channel { name: name.to_owned(), depth };
         let mut channels = ["R", "G", "B"].map(|name| channel(name, color_depth)).to_vec();
         for layer in layers.iter() {
-            let is_color = layer.is_part() || matches!(layer, Layer::Alpha | Layer::Albedo);
+            let is_color = matches!(layer.quantity(), Quantity::Light | Quantity::Opacity);
             let depth = if is_color { color_depth } else { SampleDepth::F32 };
             channels.extend(layer.channels(film.gbuffer).iter().map(|name| channel(name, depth)));
             if layer.is_id() {
@@ -205,13 +206,13 @@ impl<'film> Development<'film> {
         let sum = |c| self.sum(|film| &film.data, [tile, first, pixel], c);
         let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { (a / b) as f32 };
         let offset = self.film.layout.offset(layer).unwrap_or(0);
-        match layer {
-            Layer::Samples => put(self.count(first + pixel) as f32),
-            Layer::Variance => {
+        match layer.statistic() {
+            Statistic::Count => put(self.count(first + pixel) as f32),
+            Statistic::Variance => {
                 let moments = [0, 1, 2].each(|i| sum(offset + i));
                 put(self.variance([tile, first, pixel], moments, weight));
             }
-            _ if layer.is_id() => {
+            Statistic::Ids => {
                 let mut covered = BTreeMap::<u32, i128>::new();
                 for film in self.films() {
                     let ids = &film.ids_of(layer)[tile];
@@ -222,7 +223,7 @@ impl<'film> Development<'film> {
                 let covered = covered.into_iter().map(|(id, weight)| (id, value(weight)));
                 cryptomatte::ranks(covered, sum(1)).for_each(put);
             }
-            Layer::ColorVariance => {
+            Statistic::ColorVariance => {
                 let count = sum(offset);
                 let moments = [0, 1, 2].each(|c| (sum(offset + 1 + c), sum(offset + 4 + c)));
                 let mean = |sum: f64| if count == 0.0 { 0.0 } else { sum / count };
@@ -233,7 +234,7 @@ impl<'film> Development<'film> {
                 variance.into_iter().for_each(|variance| put(variance as f32));
                 variance.into_iter().zip(moments).for_each(|(v, (sum, _))| put(quotient(v, mean(sum))));
             }
-            _ if layer.is_part() => {
+            Statistic::Part | Statistic::Groups => {
                 let buckets = self.film.buckets.map_or(0, |buckets| buckets.count());
                 let splats = SPLAT_SUMS * (1 + self.film.layout.first_part(layer)) + buckets;
                 for i in (0..self.film.layout.sums(layer)).step_by(3) {
@@ -242,19 +243,17 @@ impl<'film> Development<'film> {
                     self.color([0, 1, 2].map(all)).into_iter().for_each(&mut put);
                 }
             }
-            _ => {
-                let divisor = if layer.is_mean_of_hits() { sum(0) } else { weight };
-                if layer == Layer::Depth && divisor == 0.0 {
-                    return put(FAR);
-                }
+            of @ (Statistic::Mean | Statistic::MeanOfHits) => {
+                let divisor = if of == Statistic::Mean { weight } else { sum(0) };
                 let mean = |i| quotient(sum(offset + i), divisor);
-                match layer {
+                match layer.quantity() {
+                    Quantity::Distance if divisor == 0.0 => put(FAR),
                     // The format's normals have unit length.
-                    _ if layer.is_normal() && self.film.gbuffer.is_some() => {
+                    Quantity::Direction if self.film.gbuffer.is_some() => {
                         let mean = Vec3::from_array([0, 1, 2].each(mean)).normalize_or_zero();
                         mean.to_array().into_iter().for_each(put);
                     }
-                    Layer::Slope | Layer::CameraSlope => (0..2).for_each(|i| put(mean(i).abs())),
+                    Quantity::Magnitude => (0..self.film.layout.sums(layer)).for_each(|i| put(mean(i).abs())),
                     _ => (0..self.film.layout.sums(layer)).for_each(|i| put(mean(i))),
                 }
             }

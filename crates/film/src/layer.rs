@@ -2,152 +2,237 @@
 
 use std::fmt;
 
-use description::GBufferSpace;
+use description::GBufferSpace::{self, Camera, World};
+use spectrum::SampledSpectrum;
 
-/// A layer beside the colour: a quantity of the samples of a pixel, or of their first hits.
-///
-/// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
-/// means over the samples that hit something, without those of negative filter weight: such a mean
-/// never lies outside the range of its values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Layer {
+/// How the numbers of a layer follow from the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Statistic {
+    /// A mean as the colour is.
+    Mean,
+    /// A mean over the samples that hit something, without those of negative filter weight.
+    MeanOfHits,
+    /// The identifiers that cover most of a pixel, and the coverage of each.
+    Ids,
+    /// The number of samples.
+    Count,
+    /// The variance of the mean luminance.
+    Variance,
+    /// The variance of each response to samples that hit something, also over its mean.
+    ColorVariance,
+    /// A mean of a part of the light, to which splats add.
+    Part,
+    /// The same for each group of lights.
+    Groups,
+}
+
+/// A layer's kind of number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A share from 0 to 1.
+    Opacity,
+    /// Colours.
+    Light,
+    /// A distance; 10¹⁰ where there is none.
+    Distance,
+    /// A direction of unit length.
+    Direction,
+    /// Coordinates of points.
+    Coordinates,
+    /// Numbers that are written without their signs.
+    Magnitude,
+    /// Any others.
+    Number,
+}
+
+/// The facts of a layer.
+struct Row {
+    name: &'static str,
+    statistic: Statistic,
+    quantity: Quantity,
+    /// None where they depend on the pixels or the scene.
+    channels: &'static [&'static str],
+    /// The spaces whose film `gbuffer` of the format has it.
+    spaces: &'static [GBufferSpace],
+    /// The format's names of its channels in such a film.
+    gbuffer: &'static [&'static str],
+    /// Its names in such a film of the other space, if one of the format's is among its own.
+    aside: &'static [&'static str],
+    /// The name of a layer of identifiers in a picture.
+    cryptomatte: &'static str,
+}
+
+/// Declares the layers, each by a row: its name, statistic, channels, quantity of [`FirstHit`], kind
+/// of number and further columns of [`Row`].
+macro_rules! layers {
+    ($(
+        $(#[doc = $about:literal])+
+        $layer:ident = $name:literal: $statistic:ident $([$($channel:literal),+])? $(of $hit:ident)?,
+        $quantity:ident $(, $column:ident: $value:expr)*;
+    )+) => {
+        /// A layer beside the colour: a quantity of the samples of a pixel, or of their first hits.
+        ///
+        /// Alpha, albedo and variance are means as the colour is. The other quantities of a first
+        /// hit are means over the samples that hit something, without those of negative filter
+        /// weight: such a mean never lies outside the range of its values.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Layer {
+            $($(#[doc = $about])+ $layer,)+
+        }
+
+        static ROWS: [Row; [$($name),+].len()] = [$(Row {
+            $($column: $value,)*
+            ..Row::new($name, Statistic::$statistic, Quantity::$quantity, &[$($($channel),+)?])
+        },)+];
+
+        impl Layer {
+            /// Every layer.
+            pub const ALL: [Self; ROWS.len()] = [$(Self::$layer),+];
+        }
+
+        /// The first hit of a sample.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct FirstHit {
+            $($(
+                #[doc = concat!("Of the layer `", $name, "`.")]
+                pub $hit: [f32; Layer::$layer.row().channels.len()],
+            )?)+
+            /// Reflectance at the sample's first group of wavelengths.
+            pub albedo: SampledSpectrum,
+            /// Identifiers of the object, the material and the asset, as [`Layer::IDS`] has them;
+            /// [`id_of_name`](crate::id_of_name) makes one of a name.
+            pub ids: [u32; Layer::IDS.len()],
+        }
+
+        impl FirstHit {
+            /// The numbers of a layer of means of hits.
+            pub(crate) fn numbers(&self, layer: Layer) -> &[f32] {
+                match layer {
+                    $($(Layer::$layer => &self.$hit,)?)+
+                    _ => &[],
+                }
+            }
+        }
+    };
+}
+
+// Films have the sums of layers in this order.
+layers! {
     /// Opacity: the fraction of a pixel that is covered.
-    Alpha,
+    Alpha = "alpha": Mean ["A"], Opacity;
     /// Distance from the plane of the camera along its axis, or from a spherical camera, in units
     /// of the scene.
-    Depth,
+    Depth = "depth": MeanOfHits ["Z"] of depth, Distance;
     /// Shading normal in world space, towards the camera.
-    Normal,
+    Normal = "normal": MeanOfHits ["N.X", "N.Y", "N.Z"] of normal, Direction, spaces: &[World],
+        gbuffer: &["Ns.X", "Ns.Y", "Ns.Z"], aside: &["Nsworld.X", "Nsworld.Y", "Nsworld.Z"];
     /// Reflectance under white light.
-    Albedo,
+    Albedo = "albedo": Mean ["albedo.R", "albedo.G", "albedo.B"], Light, spaces: &[Camera, World],
+        gbuffer: &["Albedo.R", "Albedo.G", "Albedo.B"];
     /// Position in world space.
-    Position,
+    Position = "position": MeanOfHits ["P.X", "P.Y", "P.Z"] of position, Coordinates, spaces: &[World],
+        gbuffer: &["P.X", "P.Y", "P.Z"], aside: &["Pworld.X", "Pworld.Y", "Pworld.Z"];
     /// Surface parameters (u, v).
-    Uv,
+    Uv = "uv": MeanOfHits ["uv.U", "uv.V"] of uv, Coordinates, spaces: &[Camera, World],
+        gbuffer: &["u", "v"];
     /// Motion of the point on the film while the shutter is open, in pixels.
-    Motion,
+    Motion = "motion": MeanOfHits ["motion.X", "motion.Y"] of motion, Number;
     /// Identifiers of the objects in the pixel, and the coverage of each.
-    ObjectId,
+    ObjectId = "object-id": Ids, Number, cryptomatte: "CryptoObject";
     /// Identifiers of the materials in the pixel, and the coverage of each.
-    MaterialId,
+    MaterialId = "material-id": Ids, Number, cryptomatte: "CryptoMaterial";
     /// Number of samples.
-    Samples,
+    Samples = "samples": Count ["samples"], Number;
     /// Estimated variance of the pixel's luminance from samples; that of splats is unknown.
-    Variance,
+    Variance = "variance": Variance ["variance"], Number;
     /// Position in camera space at the time of the sample: x to the right, y up, z forward.
-    CameraPosition,
+    CameraPosition = "camera-position": MeanOfHits ["Pcam.X", "Pcam.Y", "Pcam.Z"] of camera_position,
+        Coordinates, spaces: &[Camera], gbuffer: &["P.X", "P.Y", "P.Z"];
     /// Shading normal in camera space, towards the camera.
-    CameraNormal,
+    CameraNormal = "camera-normal": MeanOfHits ["Ncam.X", "Ncam.Y", "Ncam.Z"] of camera_normal,
+        Direction, spaces: &[Camera], gbuffer: &["Ns.X", "Ns.Y", "Ns.Z"];
     /// Geometric normal in world space, towards the camera.
-    GeometricNormal,
+    GeometricNormal = "geometric-normal": MeanOfHits ["Ng.X", "Ng.Y", "Ng.Z"] of geometric_normal,
+        Direction, spaces: &[World], gbuffer: &["N.X", "N.Y", "N.Z"];
     /// Geometric normal in camera space, towards the camera.
-    CameraGeometricNormal,
+    CameraGeometricNormal = "camera-geometric-normal": MeanOfHits ["Ngcam.X", "Ngcam.Y", "Ngcam.Z"]
+        of camera_geometric_normal, Direction, spaces: &[Camera], gbuffer: &["N.X", "N.Y", "N.Z"];
     /// How much world z changes to the right and down, over the footprint of a sample by which
     /// textures are filtered; the absolute value of the mean.
-    Slope,
+    Slope = "slope": MeanOfHits ["slope.X", "slope.Y"] of slope, Magnitude, spaces: &[World],
+        gbuffer: &["dzdx", "dzdy"];
     /// The same of z in camera space.
-    CameraSlope,
+    CameraSlope = "camera-slope": MeanOfHits ["slopecam.X", "slopecam.Y"] of camera_slope, Magnitude,
+        spaces: &[Camera], gbuffer: &["dzdx", "dzdy"];
     /// Variance of the sensor's responses to the samples that hit something, and that variance over
     /// their mean.
-    ColorVariance,
+    ColorVariance = "color-variance": ColorVariance [
+        "variance.R", "variance.G", "variance.B",
+        "relativeVariance.R", "relativeVariance.G", "relativeVariance.B"
+    ], Number, spaces: &[Camera, World], gbuffer: &[
+        "Variance.R", "Variance.G", "Variance.B",
+        "RelativeVariance.R", "RelativeVariance.G", "RelativeVariance.B",
+    ];
     /// Light that the first surface reflects, without what its facets mirror.
-    Diffuse,
+    Diffuse = "diffuse": Part ["diffuse.R", "diffuse.G", "diffuse.B"], Light;
     /// Light that facets of the first surface mirror.
-    Specular,
+    Specular = "specular": Part ["specular.R", "specular.G", "specular.B"], Light;
     /// Light that the first surface transmits.
-    Transmission,
+    Transmission = "transmission": Part ["transmission.R", "transmission.G", "transmission.B"], Light;
     /// Light that is scattered first by a participating medium.
-    Volume,
+    Volume = "volume": Part ["volume.R", "volume.G", "volume.B"], Light;
     /// Light that is not scattered: of lights that the camera sees.
-    Emission,
+    Emission = "emission": Part ["emission.R", "emission.G", "emission.B"], Light;
     /// Light that is scattered once or not at all.
-    Direct,
+    Direct = "direct": Part ["direct.R", "direct.G", "direct.B"], Light;
     /// Light that is scattered more than once.
-    Indirect,
+    Indirect = "indirect": Part ["indirect.R", "indirect.G", "indirect.B"], Light;
     /// Light of each group of lights.
-    LightGroups,
+    LightGroups = "light-groups": Groups, Light;
     /// Identifiers of the assets in the pixel, and the coverage of each.
-    AssetId,
+    AssetId = "asset-id": Ids, Number, cryptomatte: "CryptoAsset";
+}
+
+impl Row {
+    const fn new(
+        name: &'static str,
+        statistic: Statistic,
+        quantity: Quantity,
+        channels: &'static [&'static str],
+    ) -> Self {
+        Self { name, statistic, quantity, channels, spaces: &[], gbuffer: &[], aside: &[], cryptomatte: "" }
+    }
+}
+
+/// The layers of a statistic, of which there are `N`.
+const fn all_of<const N: usize>(statistic: Statistic) -> [Layer; N] {
+    let (mut layers, mut count, mut i) = ([Layer::Alpha; N], 0, 0);
+    while i < ROWS.len() {
+        if ROWS[i].statistic as u8 == statistic as u8 {
+            layers[count] = Layer::ALL[i];
+            count += 1;
+        }
+        i += 1;
+    }
+    assert!(count == N);
+    layers
 }
 
 impl Layer {
-    /// Every layer.
-    pub const ALL: [Self; 27] = [
-        Self::Alpha,
-        Self::Depth,
-        Self::Normal,
-        Self::Albedo,
-        Self::Position,
-        Self::Uv,
-        Self::Motion,
-        Self::ObjectId,
-        Self::MaterialId,
-        Self::Samples,
-        Self::Variance,
-        Self::CameraPosition,
-        Self::CameraNormal,
-        Self::GeometricNormal,
-        Self::CameraGeometricNormal,
-        Self::Slope,
-        Self::CameraSlope,
-        Self::ColorVariance,
-        Self::Diffuse,
-        Self::Specular,
-        Self::Transmission,
-        Self::Volume,
-        Self::Emission,
-        Self::Direct,
-        Self::Indirect,
-        Self::LightGroups,
-        Self::AssetId,
-    ];
-
     /// Those that count identifiers.
-    pub const IDS: [Self; 3] = [Self::ObjectId, Self::MaterialId, Self::AssetId];
+    pub const IDS: [Self; 3] = all_of(Statistic::Ids);
 
     /// The parts of the light by what paths do. The first five sum to the colour, and so do the
     /// last two.
-    pub const OF_PATHS: [Self; 7] = [
-        Self::Diffuse,
-        Self::Specular,
-        Self::Transmission,
-        Self::Volume,
-        Self::Emission,
-        Self::Direct,
-        Self::Indirect,
-    ];
+    pub const OF_PATHS: [Self; 7] = all_of(Statistic::Part);
+
+    const fn row(self) -> &'static Row {
+        &ROWS[self as usize]
+    }
 
     /// Its name, as the command line and film files have it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Alpha => "alpha",
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Albedo => "albedo",
-            Self::Position => "position",
-            Self::Uv => "uv",
-            Self::Motion => "motion",
-            Self::ObjectId => "object-id",
-            Self::MaterialId => "material-id",
-            Self::Samples => "samples",
-            Self::Variance => "variance",
-            Self::CameraPosition => "camera-position",
-            Self::CameraNormal => "camera-normal",
-            Self::GeometricNormal => "geometric-normal",
-            Self::CameraGeometricNormal => "camera-geometric-normal",
-            Self::Slope => "slope",
-            Self::CameraSlope => "camera-slope",
-            Self::ColorVariance => "color-variance",
-            Self::Diffuse => "diffuse",
-            Self::Specular => "specular",
-            Self::Transmission => "transmission",
-            Self::Volume => "volume",
-            Self::Emission => "emission",
-            Self::Direct => "direct",
-            Self::Indirect => "indirect",
-            Self::LightGroups => "light-groups",
-            Self::AssetId => "asset-id",
-        }
+        self.row().name
     }
 
     /// The layer of this name.
@@ -156,130 +241,70 @@ impl Layer {
     }
 
     /// The names of its channels in a picture; none where they depend on the pixels or the scene. A
-    /// geometry buffer has the format's names.
+    /// geometry buffer has the format's names, and layers of the other space that would have the
+    /// same names have others.
     pub fn channels(self, gbuffer: Option<GBufferSpace>) -> &'static [&'static str] {
+        let row = self.row();
         match gbuffer {
-            Some(space) => self.format_channels(space).unwrap_or(self.own_channels()),
-            None => self.own_channels(),
+            Some(space) if self.is_in_gbuffer(space) => row.gbuffer,
+            Some(_) if !row.aside.is_empty() => row.aside,
+            _ => row.channels,
         }
     }
 
-    fn own_channels(self) -> &'static [&'static str] {
-        match self {
-            Self::Alpha => &["A"],
-            Self::Depth => &["Z"],
-            Self::Normal => &["N.X", "N.Y", "N.Z"],
-            Self::Albedo => &["albedo.R", "albedo.G", "albedo.B"],
-            Self::Position => &["P.X", "P.Y", "P.Z"],
-            Self::Uv => &["uv.U", "uv.V"],
-            Self::Motion => &["motion.X", "motion.Y"],
-            Self::Samples => &["samples"],
-            Self::Variance => &["variance"],
-            Self::CameraPosition => &["Pcam.X", "Pcam.Y", "Pcam.Z"],
-            Self::CameraNormal => &["Ncam.X", "Ncam.Y", "Ncam.Z"],
-            Self::GeometricNormal => &["Ng.X", "Ng.Y", "Ng.Z"],
-            Self::CameraGeometricNormal => &["Ngcam.X", "Ngcam.Y", "Ngcam.Z"],
-            Self::Slope => &["slope.X", "slope.Y"],
-            Self::CameraSlope => &["slopecam.X", "slopecam.Y"],
-            Self::ColorVariance => &[
-                "variance.R",
-                "variance.G",
-                "variance.B",
-                "relativeVariance.R",
-                "relativeVariance.G",
-                "relativeVariance.B",
-            ],
-            Self::Diffuse => &["diffuse.R", "diffuse.G", "diffuse.B"],
-            Self::Specular => &["specular.R", "specular.G", "specular.B"],
-            Self::Transmission => &["transmission.R", "transmission.G", "transmission.B"],
-            Self::Volume => &["volume.R", "volume.G", "volume.B"],
-            Self::Emission => &["emission.R", "emission.G", "emission.B"],
-            Self::Direct => &["direct.R", "direct.G", "direct.B"],
-            Self::Indirect => &["indirect.R", "indirect.G", "indirect.B"],
-            Self::ObjectId | Self::MaterialId | Self::AssetId | Self::LightGroups => &[],
-        }
+    /// Whether the format's film `gbuffer` in this space has it.
+    pub(crate) fn is_in_gbuffer(self, space: GBufferSpace) -> bool {
+        self.row().spaces.contains(&space)
     }
 
-    /// The names of the format's film `gbuffer` in this space. Layers of the other space that would
-    /// have the same names have others.
-    fn format_channels(self, space: GBufferSpace) -> Option<&'static [&'static str]> {
-        let (p, n, ns) = (&["P.X", "P.Y", "P.Z"], &["N.X", "N.Y", "N.Z"], &["Ns.X", "Ns.Y", "Ns.Z"]);
-        let slopes = &["dzdx", "dzdy"];
-        Some(match (self, space) {
-            (Self::Albedo, _) => &["Albedo.R", "Albedo.G", "Albedo.B"],
-            (Self::Uv, _) => &["u", "v"],
-            (Self::ColorVariance, _) => &[
-                "Variance.R",
-                "Variance.G",
-                "Variance.B",
-                "RelativeVariance.R",
-                "RelativeVariance.G",
-                "RelativeVariance.B",
-            ],
-            (Self::CameraPosition, GBufferSpace::Camera) | (Self::Position, GBufferSpace::World) => p,
-            (Self::CameraNormal, GBufferSpace::Camera) | (Self::Normal, GBufferSpace::World) => ns,
-            (Self::CameraGeometricNormal, GBufferSpace::Camera)
-            | (Self::GeometricNormal, GBufferSpace::World) => n,
-            (Self::CameraSlope, GBufferSpace::Camera) | (Self::Slope, GBufferSpace::World) => slopes,
-            (Self::Position, GBufferSpace::Camera) => &["Pworld.X", "Pworld.Y", "Pworld.Z"],
-            (Self::Normal, GBufferSpace::Camera) => &["Nsworld.X", "Nsworld.Y", "Nsworld.Z"],
-            _ => return None,
-        })
+    /// The name of a layer of identifiers in a picture, with which those of its channels begin;
+    /// empty for other layers.
+    pub fn cryptomatte(self) -> &'static str {
+        self.row().cryptomatte
+    }
+
+    /// How it follows from samples.
+    pub(crate) fn statistic(self) -> Statistic {
+        self.row().statistic
+    }
+
+    /// The kind of its numbers.
+    pub fn quantity(self) -> Quantity {
+        self.row().quantity
     }
 
     /// The number of its sums per pixel, of a film with this number of groups of lights.
     pub(crate) fn sums(self, groups: usize) -> usize {
-        match self {
-            Self::LightGroups => 3 * groups,
+        match self.statistic() {
+            Statistic::Mean | Statistic::MeanOfHits | Statistic::Part => self.row().channels.len(),
+            Statistic::Groups => 3 * groups,
             // Σ w², Σ w² y and Σ w² y² of the luminance y.
-            Self::Variance => 3,
-            // Samples are counted in any case.
-            Self::Samples => 0,
+            Statistic::Variance => 3,
             // The number of samples that hit, Σ c and Σ c² of each response c.
-            Self::ColorVariance => 7,
-            _ => self.own_channels().len(),
+            Statistic::ColorVariance => 7,
+            // Samples are counted in any case.
+            Statistic::Count | Statistic::Ids => 0,
         }
     }
 
-    /// Whether it is a mean over the samples that hit something.
-    pub(crate) fn is_mean_of_hits(self) -> bool {
-        matches!(
-            self,
-            Self::Depth
-                | Self::Normal
-                | Self::Position
-                | Self::Uv
-                | Self::Motion
-                | Self::CameraPosition
-                | Self::CameraNormal
-                | Self::GeometricNormal
-                | Self::CameraGeometricNormal
-                | Self::Slope
-                | Self::CameraSlope
-        )
-    }
-
-    /// Whether it is a normal.
-    pub(crate) fn is_normal(self) -> bool {
-        matches!(
-            self,
-            Self::Normal | Self::CameraNormal | Self::GeometricNormal | Self::CameraGeometricNormal
-        )
+    /// Whether it needs the weights of the samples that hit something, and of all.
+    fn is_of_coverage(self) -> bool {
+        matches!(self.statistic(), Statistic::MeanOfHits | Statistic::Ids)
     }
 
     /// Whether it is a part of the colour.
     pub fn is_part(self) -> bool {
-        self == Self::LightGroups || Self::OF_PATHS.contains(&self)
+        matches!(self.statistic(), Statistic::Part | Statistic::Groups)
     }
 
     /// Whether it counts identifiers.
     pub(crate) fn is_id(self) -> bool {
-        Self::IDS.contains(&self)
+        self.statistic() == Statistic::Ids
     }
 
     /// Whether it needs a sample's first hit, or whether there is one.
     fn is_of_first_hit(self) -> bool {
-        !(self.is_part() || matches!(self, Self::Samples | Self::Variance))
+        !self.is_part() && !matches!(self.statistic(), Statistic::Count | Statistic::Variance)
     }
 }
 
@@ -348,7 +373,7 @@ pub(crate) struct Layout {
 impl Layout {
     /// The layout of these layers, with this number of groups of lights.
     pub(crate) fn new(layers: LayerSet, groups: usize) -> Self {
-        let coverage = layers.iter().any(|layer| layer.is_mean_of_hits() || layer.is_id());
+        let coverage = layers.iter().any(Layer::is_of_coverage);
         let mut count = if coverage { 2 } else { 0 };
         let mut offsets = [0; Layer::ALL.len()];
         for layer in layers.iter() {
@@ -397,7 +422,7 @@ impl Layout {
 
     /// Whether the sums begin with the weights of samples.
     pub(crate) fn has_coverage(&self) -> bool {
-        self.layers.iter().any(|layer| layer.is_mean_of_hits() || layer.is_id())
+        self.layers.iter().any(Layer::is_of_coverage)
     }
 
     /// The first sum of a layer, if the film has it.

@@ -37,11 +37,11 @@ pub use file::{FilmFile, FilmFileError, FilmHeader, FilmWriter, ReadLimits, Stat
 pub use film::{Film, FilmSettings, PIXEL_BYTES};
 pub use filter::{Filter, FilterSample};
 pub use grid::TILE_SIZE;
-pub use layer::{Layer, LayerSet};
+pub use layer::{FirstHit, Layer, LayerSet, Quantity};
 pub use parts::{FirstEvent, Parts};
 pub use passes::PassSet;
 pub use rejected::{MAX_REJECTED_PIXELS, Rejected};
-pub use sample::{FirstHit, Sample};
+pub use sample::Sample;
 pub use sensor::PixelSensor;
 pub use splats::{SPLAT_BYTES, Splatter};
 pub use tile::FilmTile;

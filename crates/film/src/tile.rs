@@ -10,7 +10,7 @@ use crate::exposure::Exposure;
 use crate::grid::index_in;
 use crate::layer::Layout;
 use crate::sum::{MAX_TERM, TileSums, can_add, units};
-use crate::{Buckets, FirstHit, Layer, LayerSet, Parts, Sample};
+use crate::{Buckets, Layer, LayerSet, Parts, Sample};
 
 /// The weights of identifiers in a tile, in units of sums: by pixel and identifier.
 pub(crate) type IdSums = BTreeMap<(u16, u32), i128>;
@@ -235,17 +235,7 @@ impl TileData<'_> {
             if self.layout.offset(Layer::Albedo).is_some() {
                 add(Layer::Albedo, weight, &exposure.albedo(&hit.albedo, &sample.lambda[0]));
             }
-            add(Layer::Depth, positive, &[hit.depth]);
-            add(Layer::Normal, positive, &hit.normal);
-            add(Layer::Position, positive, &hit.position);
-            add(Layer::CameraPosition, positive, &hit.camera_position);
-            add(Layer::CameraNormal, positive, &hit.camera_normal);
-            add(Layer::GeometricNormal, positive, &hit.geometric_normal);
-            add(Layer::CameraGeometricNormal, positive, &hit.camera_geometric_normal);
-            add(Layer::Slope, positive, &hit.slope);
-            add(Layer::CameraSlope, positive, &hit.camera_slope);
-            add(Layer::Uv, positive, &hit.uv);
-            add(Layer::Motion, positive, &hit.motion);
+            self.layout.layers().iter().for_each(|layer| add(layer, positive, hit.numbers(layer)));
         }
         if let Some(offset) = self.layout.offset(Layer::Variance) {
             // The luminance-like response is the second one, that of the observer's ȳ.
@@ -266,8 +256,8 @@ impl TileData<'_> {
         if self.layout.has_coverage() {
             sums.add(pixel, 0, if sample.first_hit.is_some() { positive } else { 0.0 });
             sums.add(pixel, 1, positive);
-            if let Some(FirstHit { object, material, asset, .. }) = sample.first_hit {
-                for (ids, id) in self.ids.iter_mut().zip([object, material, asset]) {
+            if let Some(hit) = sample.first_hit {
+                for (ids, id) in self.ids.iter_mut().zip(hit.ids) {
                     if let Some(ids) = ids {
                         *ids.entry((pixel as u16, id)).or_insert(0) += units(positive);
                     }

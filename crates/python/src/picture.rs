@@ -91,10 +91,10 @@ impl Picture {
     fn find_rendered(&self, name: &str) -> Option<(usize, usize)> {
         let layer = Layer::from_name(name)?;
         let wanted: Box<dyn Fn(&str) -> bool> = match layer {
-            Layer::ObjectId => Box::new(|channel| channel.starts_with("CryptoObject")),
-            Layer::MaterialId => Box::new(|channel| channel.starts_with("CryptoMaterial")),
-            Layer::AssetId => Box::new(|channel| channel.starts_with("CryptoAsset")),
             Layer::LightGroups => return None,
+            _ if !layer.cryptomatte().is_empty() => {
+                Box::new(|channel| channel.starts_with(layer.cryptomatte()))
+            }
             _ => {
                 // In a geometry buffer some names depend on its space.
                 let spaces = [GBufferSpace::Camera, GBufferSpace::World].map(Some);

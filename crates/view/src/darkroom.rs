@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::thread::available_parallelism;
 
-use alhazen::film::Layer;
+use alhazen::film::{Layer, Quantity};
 use alhazen::image::{ColorEncoding, Display, DisplaySettings};
 
 use crate::Frame;
@@ -49,14 +49,11 @@ enum Shown {
 
 impl Shown {
     fn of(frame: &Frame) -> Self {
-        match frame.layer {
-            None => Self::Light,
-            Some(layer) if layer.is_part() || layer == Layer::Albedo => Self::Light,
-            Some(
-                Layer::Normal | Layer::GeometricNormal | Layer::CameraNormal | Layer::CameraGeometricNormal,
-            ) => Self::Direction,
-            Some(Layer::Uv | Layer::Position | Layer::CameraPosition) => Self::Coordinates,
-            Some(_) => {
+        match frame.layer.map_or(Quantity::Light, Layer::quantity) {
+            Quantity::Light => Self::Light,
+            Quantity::Direction => Self::Direction,
+            Quantity::Coordinates => Self::Coordinates,
+            Quantity::Opacity | Quantity::Distance | Quantity::Magnitude | Quantity::Number => {
                 let values = frame.pixels.iter().flatten().filter(|value| value.abs() < FAR);
                 let range = |[low, high]: [f32; 2], value: &f32| [low.min(*value), high.max(*value)];
                 Self::Range(values.fold([f32::INFINITY, f32::NEG_INFINITY], range))

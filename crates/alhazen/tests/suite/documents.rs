@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use alhazen::description::schema::{Setting, Value};
+use alhazen::film::Layer;
 use alhazen::{Group, PARTS, integrator_names};
 
 fn document(name: &str) -> String {
@@ -45,6 +46,14 @@ fn tables() -> String {
 #[test]
 fn the_page_of_settings_is_generated() {
     testkit::check_generated("docs/settings.md", ["## integrator\n", ""], &tables());
+}
+
+#[test]
+fn the_page_of_rendering_names_every_layer() {
+    let page = document("docs/rendering.md");
+    for layer in Layer::ALL {
+        assert!(page.contains(&format!("`{layer}`")), "docs/rendering.md does not name `{layer}`");
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn film(layers: impl IntoIterator<Item = Layer>) -> Film {
 
 fn hit(depth: f32, object: &str) -> FirstHit {
     FirstHit {
-        depth,
+        depth: [depth],
         position: [depth, 2.0, -3.0],
         normal: [0.0, 0.6, 0.8],
         camera_position: [5.0, -6.0, depth],
@@ -42,9 +42,7 @@ fn hit(depth: f32, object: &str) -> FirstHit {
         albedo: SampledSpectrum::splat(0.5),
         uv: [0.25, 0.75],
         motion: [-2.0, 4.0],
-        object: id_of_name(object),
-        material: id_of_name("gold"),
-        asset: id_of_name("toys"),
+        ids: [object, "gold", "toys"].map(id_of_name),
     }
 }
 

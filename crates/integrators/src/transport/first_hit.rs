@@ -55,7 +55,7 @@ pub(crate) fn first_hit(
         let names = tracer.scene.names();
         let [object, asset] = names.object(&hit).map(|name| id_of_name(&name));
         return Some(FirstHit {
-            depth,
+            depth: [depth],
             position: world_from_render.transform_point3(p.as_dvec3()).as_vec3().to_array(),
             normal: in_world(normal).normalize_or_zero().to_array(),
             geometric_normal: in_world(geometric).normalize_or_zero().to_array(),
@@ -67,9 +67,7 @@ pub(crate) fn first_hit(
             albedo,
             uv: surface.surface.uv.to_array(),
             motion: motion(tracer, &hit, p).to_array(),
-            object,
-            material: id_of_name(names.material(surface.material)),
-            asset,
+            ids: [object, id_of_name(names.material(surface.material)), asset],
         });
     }
     None
