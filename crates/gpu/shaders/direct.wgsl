@@ -56,7 +56,7 @@ fn all_lights(
     has_shadows: bool,
     has_ambient: bool,
 ) -> vec4f {
-    let flags = bsdf_flags(bsdf);
+    let flags = bxdf_flags(bsdf);
     var sum = vec4f();
     if (!is_non_specular(flags)) {
         return sum;

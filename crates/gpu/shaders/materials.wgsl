@@ -208,42 +208,32 @@ fn facets_of(u: f32, v: f32, remap: u32) -> TrowbridgeReitz {
     return TrowbridgeReitz_new(alpha.x, alpha.y);
 }
 
-fn bsdf_flags(bsdf: Bsdf) -> u32 {
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
-        return Layered_Diffuse_flags(coated_diffuse(bsdf));
-    }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
-        return Layered_Conductor_flags(coated_conductor(bsdf));
-    }
-    switch (bsdf.kind) {
-        case MaterialTag_Hair: { return BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION; }
-        case MaterialTag_Measured: { return BxdfFlags_GLOSSY_REFLECTION; }
-        case MaterialTag_Exit: { return BxdfFlags_DIFFUSE_REFLECTION; }
-        case MaterialTag_Diffuse: {
-            return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a));
-        }
-        case MaterialTag_DiffuseTransmission: {
-            return select(BxdfFlags_DIFFUSE_REFLECTION, 0, is_black(bsdf.a))
-                | select(BxdfFlags_DIFFUSE_TRANSMISSION, 0, is_black(bsdf.b));
-        }
-        case MaterialTag_Principled: { return OpenPbr_flags(bsdf.surface); }
-        default: {}
-    }
-    let is_smooth = HAS_FACETS && TrowbridgeReitz_effectively_smooth(bsdf.facets);
-    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
-        return select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
-    }
-    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
-        let is_specular = bsdf.eta == 1 || is_smooth;
-        return select(BxdfFlags_GLOSSY_TRANSMISSION, BxdfFlags_SPECULAR_TRANSMISSION, is_specular)
-            | select(BxdfFlags_REFLECTION, 0, bsdf.eta == 1);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
-        let mirrors = select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
-        return BxdfFlags_DIFFUSE_REFLECTION | select(mirrors, 0, bsdf.eta == 1);
-    }
-    return BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION;
+// A dielectric, of bodies without what is under it.
+fn Boundary_flags(bsdf: Bsdf) -> u32 {
+    return Dielectric_flags(Dielectric(bsdf.eta, bsdf.facets));
 }
+
+fn Boundary_f(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
+    var factor = 1.0;
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
+        factor = boundary_factor(bsdf, wo, wi, false);
+    }
+    return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode) * factor;
+}
+
+fn Boundary_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32, directions: u32) -> f32 {
+    return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, directions);
+}
+
+fn Boundary_sample_f(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
+    var sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
+    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
+        sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
+    }
+    return sample;
+}
+
+// `src/bxdfs.rs` makes the functions `bxdf_…` of a BSDF in its frame.
 
 fn is_non_specular(flags: u32) -> bool {
     return (flags & (BxdfFlags_DIFFUSE | BxdfFlags_GLOSSY)) != 0;
@@ -273,42 +263,7 @@ fn bsdf_f(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> vec4f {
     if (!is_normal(wo.z)) {
         return vec4f();
     }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
-        return Layered_Diffuse_f(coated_diffuse(bsdf), wo, wi, bsdf.mode);
-    }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
-        return Layered_Conductor_f(coated_conductor(bsdf), wo, wi, bsdf.mode);
-    }
-    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
-        return Hair_f(bsdf.fibre, wo, wi, bsdf.mode);
-    }
-    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
-        return Measured_f(bsdf.measured, wo, wi, bsdf.mode);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
-        return exit_f(bsdf, wo, wi);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
-        return body_f(bsdf, wo, wi);
-    }
-    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
-        return Conductor_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, bsdf.mode);
-    }
-    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
-        var factor = 1.0;
-        if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
-            factor = boundary_factor(bsdf, wo, wi, false);
-        }
-        return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) * factor;
-    }
-    switch (bsdf.kind) {
-        case MaterialTag_Diffuse: { return Diffuse_f(Diffuse(bsdf.a), wo, wi, bsdf.mode); }
-        case MaterialTag_DiffuseTransmission: {
-            return DiffuseTransmission_f(DiffuseTransmission(bsdf.a, bsdf.b), wo, wi, bsdf.mode);
-        }
-        case MaterialTag_Principled: { return OpenPbr_f(bsdf.surface, wo, wi, bsdf.mode); }
-        default: { return vec4f(); }
-    }
+    return bxdf_f(bsdf, wo, wi);
 }
 
 fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
@@ -317,40 +272,7 @@ fn bsdf_pdf(bsdf: Bsdf, outer_o: vec3f, outer_i: vec3f) -> f32 {
     if (!is_normal(wo.z)) {
         return 0;
     }
-    let mode = bsdf.mode;
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
-        return Layered_Diffuse_pdf(coated_diffuse(bsdf), wo, wi, mode, Directions_All);
-    }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
-        return Layered_Conductor_pdf(coated_conductor(bsdf), wo, wi, mode, Directions_All);
-    }
-    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
-        return Hair_pdf(bsdf.fibre, wo, wi, mode, Directions_All);
-    }
-    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
-        return Measured_pdf(bsdf.measured, wo, wi, mode, Directions_All);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
-        return exit_pdf(wo, wi);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface) {
-        return body_pdf(bsdf, wo, wi);
-    }
-    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
-        return Conductor_pdf(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, wi, mode, Directions_All);
-    }
-    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
-        return Dielectric_pdf(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode, Directions_All);
-    }
-    switch (bsdf.kind) {
-        case MaterialTag_Diffuse: { return Diffuse_pdf(Diffuse(bsdf.a), wo, wi, mode, Directions_All); }
-        case MaterialTag_DiffuseTransmission: {
-            let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
-            return DiffuseTransmission_pdf(bxdf, wo, wi, mode, Directions_All);
-        }
-        case MaterialTag_Principled: { return OpenPbr_pdf(bsdf.surface, wo, wi, mode, Directions_All); }
-        default: { return 0; }
-    }
+    return bxdf_pdf(bsdf, wo, wi);
 }
 
 // A direction in render space; not valid where it carries no light.
@@ -361,52 +283,10 @@ fn bsdf_sample(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f) -> BsdfSample {
 // The same, of one side.
 fn bsdf_sample_of(bsdf: Bsdf, outer_o: vec3f, uc: f32, u: vec2f, directions: u32) -> BsdfSample {
     let wo = Frame_to_local(bsdf.frame, outer_o);
-    if (!is_normal(wo.z) || bsdf_flags(bsdf) == 0) {
+    if (!is_normal(wo.z) || bxdf_flags(bsdf) == 0) {
         return BsdfSample_invalid();
     }
-    let mode = bsdf.mode;
-    var sample: BsdfSample;
-    switch (bsdf.kind) {
-        case MaterialTag_Diffuse: { sample = Diffuse_sample_f(Diffuse(bsdf.a), wo, uc, u, mode, directions); }
-        case MaterialTag_DiffuseTransmission: {
-            let bxdf = DiffuseTransmission(bsdf.a, bsdf.b);
-            sample = DiffuseTransmission_sample_f(bxdf, wo, uc, u, mode, directions);
-        }
-        case MaterialTag_Principled: {
-            sample = OpenPbr_sample_f(bsdf.surface, wo, uc, u, mode, directions);
-        }
-        default: {}
-    }
-    if (HAS_FACETS && bsdf.kind == MaterialTag_Conductor) {
-        sample = Conductor_sample_f(Conductor(bsdf.facets, bsdf.a, bsdf.b), wo, uc, u, mode, directions);
-    }
-    if (HAS_FACETS && (bsdf.kind == MaterialTag_Dielectric || bsdf.kind == MaterialTag_Boundary)) {
-        sample = Dielectric_sample_f(Dielectric(bsdf.eta, bsdf.facets), wo, uc, u, mode, directions);
-        if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Boundary) {
-            sample.f *= boundary_factor(bsdf, wo, sample.wi, true);
-        }
-    }
-    if (HAS_FACETS && bsdf.kind == MaterialTag_ThinDielectric) {
-        sample = ThinDielectric_sample_f(ThinDielectric(bsdf.eta), wo, uc, u, mode, directions);
-    }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedDiffuse) {
-        sample = Layered_Diffuse_sample_f(coated_diffuse(bsdf), wo, uc, u, mode, directions);
-    }
-    if (HAS_COATS && bsdf.kind == MaterialTag_CoatedConductor) {
-        sample = Layered_Conductor_sample_f(coated_conductor(bsdf), wo, uc, u, mode, directions);
-    }
-    if (HAS_HAIR && bsdf.kind == MaterialTag_Hair) {
-        sample = Hair_sample_f(bsdf.fibre, wo, uc, u, mode, directions);
-    }
-    if (HAS_MEASURED && bsdf.kind == MaterialTag_Measured) {
-        sample = Measured_sample_f(bsdf.measured, wo, uc, u, mode, directions);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Exit) {
-        sample = exit_sample(bsdf, wo, u);
-    }
-    if (HAS_SUBSURFACE && bsdf.kind == MaterialTag_Subsurface && directions != Directions_Transmission) {
-        sample = body_sample(bsdf, wo, uc, u);
-    }
+    var sample = bxdf_sample_f(bsdf, wo, uc, u, directions);
     sample.valid = sample.valid && !is_black(sample.f) && sample.pdf != 0 && is_normal(sample.wi.z);
     sample.wi = Frame_from_local(bsdf.frame, sample.wi);
     return sample;

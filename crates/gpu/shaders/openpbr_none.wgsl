@@ -35,21 +35,5 @@ fn entering_part(surface: OpenPbr) -> OpenPbr {
     return surface;
 }
 
-fn OpenPbr_flags(surface: OpenPbr) -> u32 {
-    return 0;
-}
-
-fn OpenPbr_f(surface: OpenPbr, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
-    return vec4f();
-}
-
-fn OpenPbr_pdf(surface: OpenPbr, wo: vec3f, wi: vec3f, mode: u32, directions: u32) -> f32 {
-    return 0;
-}
-
-fn OpenPbr_sample_f(surface: OpenPbr, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
-    return BsdfSample_invalid();
-}
-
 fn OpenPbr_regularize(surface: ptr<function, OpenPbr>, mask: bool) {
 }

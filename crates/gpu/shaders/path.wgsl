@@ -150,7 +150,7 @@ fn shade(
             regularize(&bsdf);
         }
     }
-    let flags = bsdf_flags(bsdf);
+    let flags = bxdf_flags(bsdf);
     let context = light_context(s, flags);
     // What chooses the light and its point, and the lobe and its direction.
     var u: array<vec2f, 4>;

@@ -59,7 +59,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
                 u[i] = next_numbers((i & 1) == 1);
             }
         }
-        let flags = bsdf_flags(bsdf);
+        let flags = bxdf_flags(bsdf);
         if (samples_lights) {
             let context = light_context(s, flags);
             let choice = choose_light(context, u[0].x);

@@ -329,7 +329,7 @@ fn arrive(walk: ptr<function, Subpath>, s: ptr<function, Surface>, t: f32) -> Ar
         regularize(&bsdf);
     }
     (*walk).depth++;
-    let flags = bsdf_flags(bsdf);
+    let flags = bxdf_flags(bsdf);
     let context = light_context(*s, flags);
     let hero_only = SampledWavelengths_secondary_terminated(lambda);
     let beta = (*walk).beta;

@@ -234,20 +234,24 @@ fn boundary_factor(bsdf: Bsdf, wo: vec3f, wi: vec3f, is_sample: bool) -> f32 {
 }
 
 // The lobe by which light enters a body, over all that does; a path from the camera leaves by it.
-fn exit_f(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> vec4f {
+fn Exit_flags(bsdf: Bsdf) -> u32 {
+    return BxdfFlags_DIFFUSE_REFLECTION;
+}
+
+fn Exit_f(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
     let norm = number(table_of(bsdf.record)) * 0.31830987;
     let passes = (1 - fr_dielectric(wi.z, bsdf.eta)) * norm;
     return vec4f(select(0, passes, wo.z > 0 && wi.z > 0));
 }
 
-fn exit_pdf(wo: vec3f, wi: vec3f) -> f32 {
+fn Exit_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32, directions: u32) -> f32 {
     return select(0, cosine_hemisphere_pdf(wi.z), wo.z > 0 && wi.z > 0);
 }
 
-fn exit_sample(bsdf: Bsdf, wo: vec3f, u: vec2f) -> BsdfSample {
+fn Exit_sample_f(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
     let wi = sample_cosine_hemisphere(u);
-    let pdf = exit_pdf(wo, wi);
-    var sample = BsdfSample_new(exit_f(bsdf, wo, wi), wi, pdf, BxdfFlags_DIFFUSE_REFLECTION);
+    let pdf = Exit_pdf(bsdf, wo, wi, mode, directions);
+    var sample = BsdfSample_new(Exit_f(bsdf, wo, wi, mode), wi, pdf, BxdfFlags_DIFFUSE_REFLECTION);
     sample.valid = pdf > 0;
     return sample;
 }
@@ -278,12 +282,18 @@ fn effective_albedo(bsdf: Bsdf) -> vec4f {
 }
 
 // The surface of a body as if light left where it entered: its boundary, and a diffuse base.
-fn body_f(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> vec4f {
+fn Body_flags(bsdf: Bsdf) -> u32 {
+    let is_smooth = TrowbridgeReitz_effectively_smooth(bsdf.facets);
+    let mirrors = select(BxdfFlags_GLOSSY_REFLECTION, BxdfFlags_SPECULAR_REFLECTION, is_smooth);
+    return BxdfFlags_DIFFUSE_REFLECTION | select(mirrors, 0, bsdf.eta == 1);
+}
+
+fn Body_f(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
     if (!(wo.z > 0 && wi.z > 0)) {
         return vec4f();
     }
-    let diffused = exit_f(bsdf, wo, wi) * effective_albedo(bsdf) * (1 - fr_dielectric(wo.z, bsdf.eta));
-    return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, bsdf.mode) + diffused;
+    let diffused = Exit_f(bsdf, wo, wi, mode) * effective_albedo(bsdf) * (1 - fr_dielectric(wo.z, bsdf.eta));
+    return Dielectric_f(Dielectric(bsdf.eta, bsdf.facets), wo, wi, mode) + diffused;
 }
 
 // The probability to sample the boundary, and not the base.
@@ -293,17 +303,17 @@ fn boundary_probability(bsdf: Bsdf, wo: vec3f) -> f32 {
     return select(0, reflected / (reflected + diffused), reflected > 0);
 }
 
-fn body_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
+fn Body_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f, mode: u32, directions: u32) -> f32 {
     if (!(wo.z > 0 && wi.z > 0)) {
         return 0;
     }
     let boundary = Dielectric(bsdf.eta, bsdf.facets);
-    let mirrored = Dielectric_pdf(boundary, wo, wi, bsdf.mode, Directions_Reflection);
+    let mirrored = Dielectric_pdf(boundary, wo, wi, mode, Directions_Reflection);
     return mix(cosine_hemisphere_pdf(wi.z), mirrored, boundary_probability(bsdf, wo));
 }
 
-fn body_sample(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f) -> BsdfSample {
-    if (!(wo.z > 0)) {
+fn Body_sample_f(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions: u32) -> BsdfSample {
+    if (!(wo.z > 0) || directions == Directions_Transmission) {
         return BsdfSample_invalid();
     }
     let p = boundary_probability(bsdf, wo);
@@ -311,7 +321,7 @@ fn body_sample(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f) -> BsdfSample {
     var lobe = BxdfFlags_DIFFUSE_REFLECTION;
     if (uc < p) {
         let boundary = Dielectric(bsdf.eta, bsdf.facets);
-        var mirrored = Dielectric_sample_f(boundary, wo, uc / p, u, bsdf.mode, Directions_Reflection);
+        var mirrored = Dielectric_sample_f(boundary, wo, uc / p, u, mode, Directions_Reflection);
         if (!mirrored.valid || (mirrored.flags & BxdfFlags_SPECULAR) != 0) {
             mirrored.pdf *= p;
             return mirrored;
@@ -319,8 +329,8 @@ fn body_sample(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f) -> BsdfSample {
         wi = mirrored.wi;
         lobe = mirrored.flags;
     }
-    let pdf = body_pdf(bsdf, wo, wi);
-    var sample = BsdfSample_new(body_f(bsdf, wo, wi), wi, pdf, lobe);
+    let pdf = Body_pdf(bsdf, wo, wi, mode, directions);
+    var sample = BsdfSample_new(Body_f(bsdf, wo, wi, mode), wi, pdf, lobe);
     sample.valid = pdf > 0;
     return sample;
 }

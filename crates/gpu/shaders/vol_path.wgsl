@@ -231,7 +231,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             s.wo = s.ns;
             textures = texture_context(s, path.near);
             bsdf = exit_lobe(s);
-            flags = bsdf_flags(bsdf);
+            flags = bxdf_flags(bsdf);
         } else {
             if (!hit.found) {
                 l += carried(path) * escaped(path, *lambda);
@@ -259,7 +259,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             if (has_setting(SettingBit_Regularizes) && path.rough_before) {
                 regularize(&bsdf);
             }
-            flags = bsdf_flags(bsdf);
+            flags = bxdf_flags(bsdf);
         }
         path.depth += select(1u, 0u, is_exit);
         var context = context_of(s);

@@ -36,7 +36,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             continue;
         }
         l += branch.beta * all_lights(s, bsdf, *lambda, true, HAS_AMBIENT);
-        if ((bsdf_flags(bsdf) & BxdfFlags_SPECULAR) == 0) {
+        if ((bxdf_flags(bsdf) & BxdfFlags_SPECULAR) == 0) {
             continue;
         }
         // The refracted ray waits for all that the reflected one finds.

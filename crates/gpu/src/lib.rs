@@ -12,6 +12,7 @@
 
 mod algorithm;
 mod bvh;
+mod bxdfs;
 mod commands;
 mod device;
 mod dynamic;

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use crate::Algorithm;
 use crate::bvh::Top;
+use crate::bxdfs;
 use crate::dynamic::Plan;
 use crate::flatten::Head;
 pub use crate::parts::Parts;
@@ -307,7 +308,7 @@ fn traced(parts: Parts, texts: &[&str]) -> String {
     let (head, rays) =
         if parts.ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
     let of_scene = [direct, MEASURED, &surfaces, bodies, camera, skies];
-    let declared = tags() + Head::TEXT + PixelSample::TEXT + &parts.text();
+    let declared = tags() + Head::TEXT + PixelSample::TEXT + &parts.text() + &bxdfs::text(parts);
     head.to_owned() + &with_laws(&[&[&*declared], &PLUMBING[..], &rays, &of_scene, texts].concat())
 }
 

@@ -12,6 +12,11 @@ macro_rules! tags {
             #[repr(u32)]
             pub(crate) enum $set { $($tag $(= $value)?),* }
 
+            impl $set {
+                /// All tags.
+                pub(crate) const ALL: &[Self] = &[$(Self::$tag),*];
+            }
+
             impl From<$set> for u32 {
                 fn from(tag: $set) -> Self {
                     tag as Self
@@ -21,8 +26,11 @@ macro_rules! tags {
 
         /// The constants of shaders.
         pub(crate) fn text() -> String {
-            let line = |set: &str, tag: &str, value: u32| format!("const {set}_{tag} = {value}u;\n");
-            [$($(line(stringify!($set), stringify!($tag), $set::$tag as u32)),*),*].concat()
+            let mut text = String::new();
+            $(for tag in $set::ALL {
+                text += &format!("const {}_{tag:?} = {}u;\n", stringify!($set), *tag as u32);
+            })*
+            text
         }
     };
 }

@@ -13,6 +13,10 @@ fn DiffuseTransmission_probability_of_reflection(this_: DiffuseTransmission, dir
     return Directions_probability_of_reflection(directions, r, t);
 }
 
+fn DiffuseTransmission_flags(this_: DiffuseTransmission) -> u32 {
+    return BxdfFlags_only_where(!SampledSpectrum_is_black(this_.reflectance), BxdfFlags_DIFFUSE_REFLECTION) | BxdfFlags_only_where(!SampledSpectrum_is_black(this_.transmittance), BxdfFlags_DIFFUSE_TRANSMISSION);
+}
+
 fn DiffuseTransmission_f(this_: DiffuseTransmission, wo: vec3f, wi: vec3f, unused_3: u32) -> vec4f {
     let reflects = same_hemisphere(wo, wi);
     return SampledSpectrum_select(reflects, this_.reflectance, this_.transmittance) * 0.31830987f;

@@ -223,6 +223,10 @@ fn sample_logistic(u: f32, s: f32) -> f32 {
     return real_min(real_max(x, -3.1415927f), 3.1415927f);
 }
 
+fn Hair_flags(this_: Hair) -> u32 {
+    return BxdfFlags_splat(BxdfFlags_GLOSSY_REFLECTION | BxdfFlags_TRANSMISSION);
+}
+
 fn Hair_f(this_: Hair, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
     var chosen: Tuple_Vec3_Vec3;
     if (mode == TransportMode_Radiance) {

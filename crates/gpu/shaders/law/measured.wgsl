@@ -61,6 +61,10 @@ fn in_square(theta: f32, phi: f32) -> vec2f {
     return vec2f(x, (phi * (1.0f / 6.2831855f)) + 0.5f);
 }
 
+fn Measured_flags(this_: Measured) -> u32 {
+    return BxdfFlags_splat(BxdfFlags_GLOSSY_REFLECTION);
+}
+
 fn Measured_f(this_: Measured, wo: vec3f, wi: vec3f, mode: u32) -> vec4f {
     var chosen: Tuple_Vec3_Vec3;
     if (mode == TransportMode_Radiance) {

@@ -6,6 +6,14 @@ struct ThinDielectric {
     eta: f32,
 }
 
+fn ThinDielectric_flags(this_: ThinDielectric) -> u32 {
+    return BxdfFlags_splat(BxdfFlags_SPECULAR_REFLECTION | BxdfFlags_SPECULAR_TRANSMISSION);
+}
+
+fn ThinDielectric_f(this_: ThinDielectric, unused_1: vec3f, unused_2: vec3f, unused_3: u32) -> vec4f {
+    return SampledSpectrum_zero();
+}
+
 fn ThinDielectric_sample_f(this_: ThinDielectric, wo: vec3f, uc: f32, unused_3: vec2f, unused_4: u32, directions: u32) -> BsdfSample {
     let fresnel = fr_dielectric(abs(wo.z), this_.eta);
     let r = (fresnel * 2.0f) / (1.0f + fresnel);
@@ -21,4 +29,8 @@ fn ThinDielectric_sample_f(this_: ThinDielectric, wo: vec3f, uc: f32, unused_3: 
     let valid_1 = valid & (wo.z != 0.0f);
     let rest = BsdfSample_new(f, wi, probability, lobe);
     return BsdfSample(rest.f, rest.wi, rest.pdf, rest.flags, rest.eta, rest.pdf_is_proportional, valid_1);
+}
+
+fn ThinDielectric_pdf(this_: ThinDielectric, unused_1: vec3f, unused_2: vec3f, unused_3: u32, unused_4: u32) -> f32 {
+    return 0.0f;
 }

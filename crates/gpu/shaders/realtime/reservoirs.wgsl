@@ -80,7 +80,7 @@ fn receiver_of(r: Reservoir, near: Differentials, lambda: ptr<function, SampledW
     // The walks in coats are the same whenever a sample is evaluated.
     place.dimension = 0;
     found.bsdf = bsdf_at(&s, texture_context(s, near), lambda);
-    let flags = bsdf_flags(found.bsdf);
+    let flags = bxdf_flags(found.bsdf);
     found.s = s;
     found.context = light_context(s, flags);
     found.receives = is_non_specular(flags);
