@@ -26,12 +26,11 @@ impl Arrangement {
     pub fn differs_for(&self, samples: u32) -> bool {
         let mut other = self.sampler.clone();
         other.set_samples_per_pixel(samples);
-        let footprints = match &self.integrator {
-            IntegratorDesc::Mlt(mlt) => [mlt.mutations_per_pixel, samples],
-            _ => [self.sampler.arranged_samples(), other.arranged_samples()],
-        };
+        let mut integrator = self.integrator.clone();
+        integrator.set_samples_per_pixel(samples);
+        let planned = self.integrator.samples_per_pixel(&self.sampler);
         self.points(&self.sampler) != self.points(&other)
-            || self.needs_footprints && footprints[0] != footprints[1]
+            || self.needs_footprints && planned != integrator.samples_per_pixel(&other)
     }
 
     /// The numbers for which the points of camera paths and of light paths are arranged.
@@ -44,8 +43,8 @@ impl Arrangement {
             PaddedSobol { .. } => [Some(samples), None],
             ZSobol { .. } | Pmj02Bn { .. } => [Some(sampler.arranged_samples()), None],
         };
-        let of_lights = self.integrator.samples_light_paths().then(|| sampler.arranged_samples());
-        let most = (self.is_adaptive && self.integrator.estimates_pixels()).then_some(samples);
+        let of_lights = self.integrator.facts().samples_light_paths.then(|| sampler.arranged_samples());
+        let most = (self.is_adaptive && self.integrator.facts().estimates_pixels).then_some(samples);
         [columns, rows, of_lights, most]
     }
 }

@@ -80,10 +80,7 @@ impl Overrides {
             if !(1..=i32::MAX as u32).contains(&samples) {
                 return Err(OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)));
             }
-            desc.sampler.kind.set_samples_per_pixel(samples);
-            if let IntegratorDesc::Mlt(mlt) = &mut desc.integrator.value {
-                mlt.mutations_per_pixel = samples;
-            }
+            desc.set_samples_per_pixel(samples);
         }
         if let Some(resolution) = self.resolution {
             desc.film.resolution = resolution;
@@ -114,9 +111,7 @@ impl Overrides {
         if let Some(seed) = self.seed {
             desc.options.seed = seed;
             desc.sampler.seed = Some(seed);
-            if let IntegratorDesc::Sppm(sppm) = &mut desc.integrator.value {
-                sppm.seed = None;
-            }
+            desc.integrator.seed_mut().into_iter().for_each(|seed| *seed = None);
         }
         Ok(())
     }

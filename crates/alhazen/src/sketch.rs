@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use description::{BdptDesc, Diagnostic, IntegratorDesc, RadiosityDesc, SceneDesc};
+use description::{Diagnostic, IntegratorDesc, RadiosityDesc, SceneDesc};
 use film::Film;
 use image::{Image, Pixels, Window};
 use integrators::{Control, Limits, Session, SessionState};
@@ -90,13 +90,11 @@ fn lighten(desc: &mut SceneDesc, n: u32, samples: u32) {
     desc.film.resolution = desc.film.resolution.map(|side| div_ceil(side, n as i32));
     desc.film.crop_window = None;
     desc.film.pixel_bounds = Some([min[0], max[0], min[1], max[1]]);
-    desc.sampler.kind.set_samples_per_pixel(samples);
-    if let IntegratorDesc::Mlt(mlt) = &mut desc.integrator.value {
-        mlt.mutations_per_pixel = samples;
-    }
+    desc.set_samples_per_pixel(samples);
     if n == 1 {
         return;
     }
+    desc.integrator.remove_extra_outputs();
     let fewer = |count: &mut u32| *count = count.div_ceil(n.saturating_pow(2));
     match &mut desc.integrator.value {
         // At glass, rays double at each event.
@@ -106,9 +104,6 @@ fn lighten(desc: &mut SceneDesc, n: u32, samples: u32) {
             fewer(&mut desc.caustic_photons);
         }
         IntegratorDesc::Sppm(desc) => desc.photons_per_iteration.iter_mut().for_each(fewer),
-        IntegratorDesc::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
-            (*visualize_strategies, *visualize_weights) = (false, false);
-        }
         IntegratorDesc::Radiosity(desc) => {
             *desc = RadiosityDesc {
                 subdivision: 0,
@@ -116,7 +111,6 @@ fn lighten(desc: &mut SceneDesc, n: u32, samples: u32) {
                 tolerance: desc.tolerance.max(0.3),
                 steps: 1,
                 gather: 0,
-                mesh_out: None,
                 ..desc.clone()
             };
         }

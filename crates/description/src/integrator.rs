@@ -3,151 +3,165 @@
 //! The depth of a path is the number of its scattering events: 0 shows emission only, 1 adds direct
 //! light.
 
-use crate::schema::{SettingType, above, at_least, between, choices, from, settings, with_extension};
+use crate::SamplerKind;
+use crate::schema::{
+    SettingType, Settings, above, at_least, between, choices, from, settings, with_extension,
+};
+
+/// Facts of an algorithm that do not depend on its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct IntegratorFacts {
+    /// Whether it draws participating media.
+    pub knows_media: bool,
+    /// Whether it draws scattering under surfaces, or no scattering at all.
+    pub knows_subsurface: bool,
+    /// Whether it estimates pixels one by one, with nothing else.
+    pub estimates_pixels: bool,
+    /// Whether it makes layers of parts of the light.
+    pub makes_parts: bool,
+    /// Whether it takes the numbers of paths from the lights from a sampler.
+    pub samples_light_paths: bool,
+    /// Whether it stores photons.
+    pub stores_photons: bool,
+    /// Whether a scene without light has a picture, too.
+    pub needs_no_light: bool,
+    /// The light that it finds only by connections of light paths to the camera.
+    pub connected: Connected,
+}
+
+/// Light that an algorithm finds only by connections of light paths to the camera.
+#[derive(Clone, Copy, Debug)]
+pub enum Connected {
+    /// None.
+    Nothing,
+    /// Some of it; a clause says how the picture is without them.
+    Some(&'static str),
+    /// All of it.
+    All,
+}
+
+impl IntegratorFacts {
+    const NONE: Self = Self {
+        knows_media: false,
+        knows_subsurface: false,
+        estimates_pixels: false,
+        makes_parts: false,
+        samples_light_paths: false,
+        stores_photons: false,
+        needs_no_light: false,
+        connected: Connected::Nothing,
+    };
+}
+
+/// No other strategy finds light of a delta light that is scattered by deltas only until it reaches
+/// the first surface.
+const CAUSTICS: Connected = Connected::Some("caustics of point, spot and distant lights are missing");
 
 settings! {
     /// An algorithm with its settings.
     #[derive(Clone, Debug, PartialEq)]
-    pub enum IntegratorDesc = VolPath {
+    pub enum IntegratorDesc: IntegratorFacts = VolPath {
         /// Primary rays only; lights are added without shadows.
-        RayCasting = "ray-casting" | "raycasting",
+        RayCasting = "ray-casting" | "raycasting" [knows_media, estimates_pixels],
         /// Primary and shadow rays, mirror reflection and refraction.
-        Whitted(WhittedDesc) = "whitted",
+        Whitted(WhittedDesc) = "whitted" [knows_media, estimates_pixels],
         /// The unoccluded share of the hemisphere over each point.
-        AmbientOcclusion(AmbientOcclusionDesc) = "ambient-occlusion" | "ambientocclusion",
+        AmbientOcclusion(AmbientOcclusionDesc) = "ambient-occlusion" | "ambientocclusion"
+            [knows_subsurface, estimates_pixels, needs_no_light],
         /// Paths in uniform directions, without next-event estimation.
-        RandomWalk(RandomWalkDesc) = "random-walk" | "randomwalk",
+        RandomWalk(RandomWalkDesc) = "random-walk" | "randomwalk" [estimates_pixels],
         /// Paths that sample lights or the BSDF, without weighting one against the other.
-        SimplePath(SimplePathDesc) = "simple-path" | "simplepath",
+        SimplePath(SimplePathDesc) = "simple-path" | "simplepath" [estimates_pixels],
         /// Path tracing with next-event estimation and multiple importance sampling.
-        Path(PathDesc) = "path",
+        Path(PathDesc) = "path" [knows_subsurface, estimates_pixels, makes_parts],
         /// Path tracing through participating media; without media, like `path`: the format's
         /// default.
-        VolPath(PathDesc) = "vol-path" | "volpath",
+        VolPath(PathDesc) = "vol-path" | "volpath"
+            [knows_media, knows_subsurface, estimates_pixels, makes_parts],
         /// Paths from lights, each vertex connected to the camera.
-        LightTracing(LightTracingDesc) = "light-tracing" | "lighttracing" | "lightpath",
+        LightTracing(LightTracingDesc) = "light-tracing" | "lighttracing" | "lightpath"
+            [knows_media, knows_subsurface, samples_light_paths, connected: Connected::All],
         /// Bidirectional path tracing.
-        Bdpt(BdptDesc) = "bdpt",
+        Bdpt(BdptDesc) = "bdpt"
+            [knows_media, knows_subsurface, makes_parts, samples_light_paths, connected: CAUSTICS],
         /// Metropolis light transport in primary sample space.
-        Mlt(MltDesc) = "mlt",
+        Mlt(MltDesc) = "mlt" [knows_media, knows_subsurface, connected: CAUSTICS],
         /// Photon mapping with a caustic and a global map.
-        PhotonMapping(PhotonMappingDesc) = "photon-mapping" | "photonmapping",
+        PhotonMapping(PhotonMappingDesc) = "photon-mapping" | "photonmapping"
+            [knows_media, knows_subsurface, stores_photons],
         /// Stochastic progressive photon mapping.
-        Sppm(SppmDesc) = "sppm",
+        Sppm(SppmDesc) = "sppm" [knows_media, knows_subsurface, stores_photons],
         /// Vertex connection and merging.
-        Vcm(VcmDesc) = "vcm",
+        Vcm(VcmDesc) = "vcm" [
+            knows_media, knows_subsurface, makes_parts, samples_light_paths, stores_photons,
+            connected: Connected::Some("photons take their place")
+        ],
         /// Radiosity by progressive shooting.
-        Radiosity(RadiosityDesc) = "radiosity",
+        Radiosity(RadiosityDesc) = "radiosity" [],
         /// Path tracing through participating media, without next-event estimation.
-        SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath",
+        SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath"
+            [knows_media, knows_subsurface, estimates_pixels, makes_parts],
         /// The integral of an analytic function over the unit square instead of a scene, for the
         /// study of samplers.
-        Function(FunctionDesc) = "function",
+        // Path tracing takes the place of functions.
+        Function(FunctionDesc) = "function" [knows_subsurface],
     }
 }
 
 impl IntegratorDesc {
+    /// The names of the algorithms with some fact, as a list in a sentence.
+    pub fn names_with(fact: impl Fn(&IntegratorFacts) -> bool) -> String {
+        let members = Self::members().into_iter().filter(|desc| fact(desc.facts()));
+        let names: Vec<_> = members.map(|desc| format!("`{}`", desc.name())).collect();
+        match names.split_last() {
+            Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+            _ => names.concat(),
+        }
+    }
+
+    /// Samples per pixel: for Metropolis, mutations; else those for which the sampler arranges its
+    /// points.
+    pub fn samples_per_pixel(&self, sampler: &SamplerKind) -> u32 {
+        match self {
+            Self::Mlt(mlt) => mlt.mutations_per_pixel.max(1),
+            _ => sampler.arranged_samples(),
+        }
+    }
+
+    /// Sets the samples per pixel that are not the sampler's.
+    pub fn set_samples_per_pixel(&mut self, samples: u32) {
+        if let Self::Mlt(mlt) = self {
+            mlt.mutations_per_pixel = samples;
+        }
+    }
+
+    /// The seed of what it draws beside the numbers of its samplers, if it has a setting for that.
+    pub fn seed_mut(&mut self) -> Option<&mut Option<i32>> {
+        match self {
+            Self::Sppm(sppm) => Some(&mut sppm.seed),
+            _ => None,
+        }
+    }
+
     /// The files that it writes beside the picture.
     pub fn files(&self) -> Vec<String> {
         match self {
-            Self::Radiosity(RadiosityDesc { mesh_out, .. }) => mesh_out.iter().cloned().collect(),
+            Self::Radiosity(radiosity) => radiosity.mesh_out.iter().cloned().collect(),
             Self::Function(function) => {
                 std::iter::once(function.error_file()).chain(function.image_filename.clone()).collect()
             }
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::AmbientOcclusion(_)
-            | Self::RandomWalk(_)
-            | Self::SimplePath(_)
-            | Self::Path(_)
-            | Self::VolPath(_)
-            | Self::SimpleVolPath(_)
-            | Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::Mlt(_)
-            | Self::PhotonMapping(_)
-            | Self::Sppm(_)
-            | Self::Vcm(_) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
-    /// Whether the algorithm draws participating media.
-    pub fn knows_media(&self) -> bool {
+    /// Turns off outputs other than the picture; returns whether there were any.
+    pub fn remove_extra_outputs(&mut self) -> bool {
         match self {
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::VolPath(_)
-            | Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::Mlt(_)
-            | Self::PhotonMapping(_)
-            | Self::Sppm(_)
-            | Self::Vcm(_)
-            | Self::SimpleVolPath(_) => true,
-            Self::AmbientOcclusion(_)
-            | Self::RandomWalk(_)
-            | Self::SimplePath(_)
-            | Self::Path(_)
-            | Self::Radiosity(_)
-            | Self::Function(_) => false,
-        }
-    }
-
-    /// Whether the algorithm makes layers of parts of the light.
-    pub fn makes_parts(&self) -> bool {
-        matches!(
-            self,
-            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::Bdpt(_) | Self::Vcm(_)
-        )
-    }
-
-    /// Whether the algorithm takes the numbers of paths from the lights from a sampler.
-    pub fn samples_light_paths(&self) -> bool {
-        matches!(self, Self::LightTracing(_) | Self::Bdpt(_) | Self::Vcm(_))
-    }
-
-    /// Whether the algorithm estimates pixels one by one, with nothing else.
-    pub fn estimates_pixels(&self) -> bool {
-        match self {
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::AmbientOcclusion(_)
-            | Self::RandomWalk(_)
-            | Self::SimplePath(_)
-            | Self::Path(_)
-            | Self::VolPath(_)
-            | Self::SimpleVolPath(_) => true,
-            Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::Mlt(_)
-            | Self::PhotonMapping(_)
-            | Self::Sppm(_)
-            | Self::Vcm(_)
-            | Self::Radiosity(_)
-            | Self::Function(_) => false,
-        }
-    }
-
-    /// Whether the algorithm draws scattering under surfaces, or no scattering at all.
-    pub fn knows_subsurface(&self) -> bool {
-        match self {
-            Self::Path(_)
-            | Self::VolPath(_)
-            | Self::SimpleVolPath(_)
-            | Self::AmbientOcclusion(_)
-            | Self::LightTracing(_)
-            | Self::Bdpt(_)
-            | Self::Mlt(_)
-            | Self::PhotonMapping(_)
-            | Self::Sppm(_)
-            | Self::Vcm(_) => true,
-            // Path tracing takes the place of functions.
-            Self::Function(_) => true,
-            Self::RayCasting
-            | Self::Whitted(_)
-            | Self::RandomWalk(_)
-            | Self::SimplePath(_)
-            | Self::Radiosity(_) => false,
+            Self::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
+                std::mem::take(visualize_strategies) | std::mem::take(visualize_weights)
+            }
+            Self::Radiosity(radiosity) => radiosity.mesh_out.take().is_some(),
+            _ => false,
         }
     }
 }

@@ -50,10 +50,10 @@ pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use inside::{HairColor, SubsurfaceScattering};
 pub use integrator::{
-    AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
-    LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, RadiosityDesc, RandomWalkDesc, ReflectionsDesc, SimplePathDesc, SimpleVolPathDesc,
-    SppmDesc, VcmDesc, WhittedDesc, merging_radius,
+    AmbientOcclusionDesc, BdptDesc, Connected, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
+    IntegratorFacts, LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel,
+    PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, RandomWalkDesc, ReflectionsDesc, SimplePathDesc,
+    SimpleVolPathDesc, SppmDesc, VcmDesc, WhittedDesc, merging_radius,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{

@@ -77,6 +77,22 @@ impl SceneDesc {
         names
     }
 
+    /// Samples per pixel, those for which the sampler arranges its points or the algorithm's own.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.integrator.samples_per_pixel(&self.sampler.kind)
+    }
+
+    /// Sets the samples per pixel of the sampler and of an algorithm with samples of its own.
+    pub fn set_samples_per_pixel(&mut self, samples: u32) {
+        self.sampler.kind.set_samples_per_pixel(samples);
+        self.integrator.set_samples_per_pixel(samples);
+    }
+
+    /// Whether the picture of the scene without light is black.
+    pub fn needs_light(&self) -> bool {
+        !self.integrator.facts().needs_no_light
+    }
+
     /// The same settings, with nothing in the world.
     pub fn settings(&self) -> Self {
         Self {

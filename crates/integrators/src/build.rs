@@ -2,7 +2,7 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, MaterialKind,
+    BdptDesc, CameraKind, Connected, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, MaterialKind,
     MltTechnique, PathDesc, Randomization, ReflectionsDesc, SamplerKind, SceneDesc, Spanned,
 };
 use film::Layer;
@@ -67,7 +67,7 @@ pub fn seed_of_integrator(scene: &SceneDesc) -> u32 {
     const PHOTONS: u32 = 0x7068_6f74;
     let given = match &scene.integrator.value {
         IntegratorDesc::Sppm(desc) => desc.seed,
-        IntegratorDesc::PhotonMapping(_) | IntegratorDesc::Vcm(_) => None,
+        other if other.facts().stores_photons => None,
         _ => return seed(scene),
     };
     hash(&[given.map_or(seed(scene), |seed| seed as u32), PHOTONS]) as u32
@@ -116,7 +116,7 @@ impl Builder<'_> {
     /// Warns if there are media, but the algorithm does not know them.
     fn media(&mut self) {
         let integrator = &self.desc.integrator;
-        if self.desc.media.is_empty() || integrator.knows_media() {
+        if self.desc.media.is_empty() || integrator.facts().knows_media {
             return;
         }
         let message =
@@ -138,14 +138,15 @@ impl Builder<'_> {
     /// Checks that the algorithm makes the layers of parts of the light, if there are any.
     fn parts(&mut self) {
         let integrator = &self.desc.integrator;
-        if integrator.makes_parts() {
+        if integrator.facts().makes_parts {
             return;
         }
         let error = |name: &Spanned<String>| {
             let message =
                 format!("integrator `{}` does not make the layer `{}`", integrator.name(), name.value);
             let error = Diagnostic::error("invalid-film", message, name.span);
-            error.with_help("`path`, `vol-path`, `bdpt` and `vcm` make it")
+            let makers = IntegratorDesc::names_with(|facts| facts.makes_parts);
+            error.with_help(format!("{makers} make it"))
         };
         let errors: Vec<_> = self.parts_of_film().map(error).collect();
         self.diagnostics.extend(errors);
@@ -165,7 +166,7 @@ impl Builder<'_> {
     /// know them.
     fn subsurface(&mut self) {
         let integrator = &self.desc.integrator;
-        if integrator.knows_subsurface() || !self.has_subsurface() {
+        if integrator.facts().knows_subsurface || !self.has_subsurface() {
             return;
         }
         let message = format!(
@@ -180,7 +181,7 @@ impl Builder<'_> {
     /// Warns if pixels cannot take different numbers of samples.
     fn samples(&mut self) {
         let integrator = &self.desc.integrator;
-        if self.desc.options.adaptive.is_none() || integrator.estimates_pixels() {
+        if self.desc.options.adaptive.is_none() || integrator.facts().estimates_pixels {
             return;
         }
         let message = format!(
@@ -241,21 +242,18 @@ impl Builder<'_> {
             return;
         }
         let (name, span) = (self.desc.integrator.name(), self.desc.integrator.origin.span);
-        let lost = match &self.desc.integrator.value {
-            IntegratorDesc::LightTracing(_) => {
+        let over_paths = MltTechnique::Path;
+        let is_over_camera_paths =
+            matches!(&self.desc.integrator.value, IntegratorDesc::Mlt(mlt) if mlt.technique == over_paths);
+        let lost = match self.desc.integrator.facts().connected {
+            Connected::All => {
                 let message = format!("`{name}` cannot connect light paths to a `realistic` camera");
                 let error = Diagnostic::error("invalid-integrator", message, span);
                 self.diagnostics.push(error.with_help("use an algorithm with camera paths, as `path`"));
                 return;
             }
-            IntegratorDesc::Mlt(desc) if desc.technique == MltTechnique::Path => return,
-            // No other strategy finds light of a delta light that is scattered by deltas only until
-            // it reaches the first surface.
-            IntegratorDesc::Bdpt(_) | IntegratorDesc::Mlt(_) => {
-                "caustics of point, spot and distant lights are missing"
-            }
-            IntegratorDesc::Vcm(_) => "photons take their place",
-            _ => return,
+            Connected::Some(lost) if !is_over_camera_paths => lost,
+            Connected::Some(_) | Connected::Nothing => return,
         };
         let message = format!("`{name}` cannot connect light paths to a `realistic` camera; {lost}");
         self.diagnostics.push(Diagnostic::warning("camera-connections", message, span));

@@ -6,7 +6,7 @@
 use crate::camera::{self, Camera};
 use crate::compile::media::medium_id;
 use crate::medium::MediumId;
-use description::{Diagnostic, FilmKind, IntegratorDesc, SceneDesc};
+use description::{Diagnostic, FilmKind, SceneDesc};
 use math::DMat4;
 
 /// Options of the format that apply to all algorithms.
@@ -69,7 +69,7 @@ impl View {
             FilmKind::Spectral { lambda_min, lambda_max, .. } => Some([lambda_min, lambda_max]),
             FilmKind::Rgb | FilmKind::GBuffer { .. } => None,
         };
-        let view = Self { camera, medium, samples_per_pixel: samples_per_pixel(desc), options, wavelengths };
+        let view = Self { camera, medium, samples_per_pixel: desc.samples_per_pixel(), options, wavelengths };
         Ok(CompiledView { view, warnings: diagnostics })
     }
 
@@ -84,13 +84,4 @@ impl View {
 /// its transform to world space.
 pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
     camera::world_from_render(&desc.camera.camera_from_world, desc.options.render_space)
-}
-
-/// Samples per pixel of a description: for Metropolis, mutations per pixel; else those for which
-/// the sampler arranges its points.
-fn samples_per_pixel(desc: &SceneDesc) -> u32 {
-    if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
-        return mlt.mutations_per_pixel.max(1);
-    }
-    desc.sampler.kind.arranged_samples()
 }

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use description::SceneDesc;
 use description::schema::Settings;
-use description::{BdptDesc, IntegratorDesc, SceneDesc};
 
 use crate::settings::{applies, integrator_called};
 use crate::{OverrideError, Overrides};
@@ -36,12 +36,12 @@ impl Contender {
         let error = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
         let with_settings = |settings: &[(String, String)]| {
             let mut desc = scene.clone();
-            remove_extra_outputs(&mut desc.integrator);
+            desc.integrator.remove_extra_outputs();
             let overrides = Overrides { settings: settings.to_vec(), ..overrides.clone() };
             overrides.apply(&mut desc).map(|()| desc).map_err(|problem| error(&problem))
         };
         let mut desc = with_settings(&overrides.settings)?;
-        if remove_extra_outputs(&mut desc.integrator) {
+        if desc.integrator.remove_extra_outputs() {
             return Err(error(&"a comparison writes no files but its report"));
         }
         if !self.settings.is_empty() {
@@ -64,17 +64,6 @@ impl Contender {
     pub(super) fn title(&self, desc: &SceneDesc) -> String {
         let settings = self.settings.iter().map(|(key, value)| format!(":{key}={value}"));
         settings.fold(desc.integrator.name().to_owned(), |title, setting| title + &setting)
-    }
-}
-
-/// Turns off outputs other than the picture; returns whether there were any.
-fn remove_extra_outputs(integrator: &mut IntegratorDesc) -> bool {
-    match integrator {
-        IntegratorDesc::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
-            std::mem::take(visualize_strategies) | std::mem::take(visualize_weights)
-        }
-        IntegratorDesc::Radiosity(radiosity) => radiosity.mesh_out.take().is_some(),
-        _ => false,
     }
 }
 
@@ -105,7 +94,7 @@ impl fmt::Display for Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use description::{PathDesc, VcmDesc};
+    use description::{IntegratorDesc, PathDesc, VcmDesc};
 
     fn scene(text: &str) -> Result<SceneDesc, String> {
         let contender: Contender = text.parse()?;

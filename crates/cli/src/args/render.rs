@@ -4,6 +4,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use alhazen::description::IntegratorDesc;
+use alhazen::film::Layer;
 use alhazen::image::{DisplaySettings, DisplayView, DisplayWhite};
 use alhazen::{Overrides, Shard};
 use clap::Args;
@@ -172,13 +174,8 @@ pub struct Changes {
     /// Render one pixel only: its column and row, counted from 0 at the upper left.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<[i32; 2]>,
-    /// Layers of the picture beside its colours, written to .exr files: alpha, depth, normal,
-    /// albedo, position, uv, motion, object-id, material-id, asset-id, samples, variance (of the
-    /// mean luminance; splats are not part of it), camera-position, camera-normal,
-    /// geometric-normal, camera-geometric-normal, slope, camera-slope, color-variance; of `path`,
-    /// `vol-path`, `bdpt` and `vcm` parts of the light, too: diffuse, specular, transmission,
-    /// volume, emission, direct, indirect, light-groups. [default: the scene's]
-    #[arg(long, value_name = "LAYER,LAYER,…", value_delimiter = ',')]
+    /// Layers of the picture beside its colours.
+    #[arg(long, value_name = "LAYER,LAYER,…", value_delimiter = ',', help = layers_help())]
     pub aov: Vec<String>,
     /// Seed of all random numbers: the same seed gives the same picture, bit for bit.
     /// [default: the scene's]
@@ -241,4 +238,19 @@ pub struct Resume {
     /// Write one JSON object to standard output instead of text, errors too.
     #[arg(long)]
     pub json: bool,
+}
+
+/// The help of `--aov`, with the names of all layers.
+fn layers_help() -> String {
+    let names = |of_parts| {
+        let layers = Layer::ALL.into_iter().filter(|layer| layer.is_part() == of_parts);
+        layers.map(Layer::name).collect::<Vec<_>>().join(", ")
+    };
+    format!(
+        "Layers of the picture beside its colours, written to .exr files: {}; of {} parts of the light, too: \
+         {}. [default: the scene's]",
+        names(false),
+        IntegratorDesc::names_with(|facts| facts.makes_parts),
+        names(true)
+    )
 }

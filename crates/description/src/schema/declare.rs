@@ -36,6 +36,10 @@
 ///     }
 /// }
 /// ```
+///
+/// `pub enum Set: Facts = First` gives each member a constant of the type `Facts`, which has a
+/// constant `NONE`. A member then does not compile without a list of what differs from `NONE`, where
+/// a field alone is `true`: `First(FirstDesc) = "first" [is_quick, order: 2]`.
 macro_rules! settings {
     ($(#[$meta:meta])* pub struct $name:ident {
         $($(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr $(=> $keys:tt)?;)*
@@ -70,10 +74,11 @@ macro_rules! settings {
         }
     };
 
-    ($(#[$meta:meta])* pub enum $name:ident = $first:ident {
+    ($(#[$meta:meta])* pub enum $name:ident $(: $facts:ident)? = $first:ident {
         $(
             $(#[doc = $about:literal])+
-            $variant:ident $(($settings:ty))? = $($spelling:literal)|+ $(($not:ident drawn))? $({
+            $variant:ident $(($settings:ty))? = $($spelling:literal)|+ $(($not:ident drawn))?
+                $([$($fact:ident $(: $value:expr)?),*])? $({
                 $($(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr $(=> $keys:tt)?;)*
             })?,
         )*
@@ -82,6 +87,8 @@ macro_rules! settings {
         pub enum $name {
             $($(#[doc = $about])+ $variant $(($settings))? $({ $($(#[doc = $help])+ $field: $type,)* })?,)*
         }
+
+        $crate::schema::settings!(@facts $name [$($facts)?] $($variant $([$($fact $(: $value)?),*])?)*);
 
         impl Default for $name {
             fn default() -> Self {
@@ -124,6 +131,23 @@ macro_rules! settings {
             }
         }
     };
+
+    (@facts $name:ident [] $($variant:ident)*) => {};
+    (@facts $name:ident [$facts:ident] $($variant:ident [$($fact:ident $(: $value:expr)?),*])*) => {
+        impl $name {
+            /// The facts of the member, which do not depend on its settings.
+            pub fn facts(&self) -> &'static $facts {
+                match self {
+                    $(Self::$variant { .. } => const {
+                        &$facts { $($fact: $crate::schema::settings!(@fact $($value)?),)* ..$facts::NONE }
+                    },)*
+                }
+            }
+        }
+    };
+
+    (@fact) => { true };
+    (@fact $value:expr) => { $value };
 
     (@visit $visitor:ident ($field:expr) ($help:expr)) => {};
     (@visit $visitor:ident ($field:expr) ($help:expr) ..) => {

@@ -27,8 +27,8 @@ use crate::traits::SceneTraits;
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
-    AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, InstanceDesc, IntegratorDesc,
-    ObjectDesc, SceneDesc, ShapeDesc, Span, SpectrumDesc, SpectrumParameter,
+    AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, InstanceDesc, ObjectDesc,
+    SceneDesc, ShapeDesc, Span, SpectrumDesc, SpectrumParameter,
 };
 use geometry::{BuildQuality, GeometryId, World, WorldBuilder};
 use math::DMat4;
@@ -177,11 +177,10 @@ impl Compiler<'_> {
 
     /// Warns if the picture will be black.
     fn warn_of_darkness(&mut self, lights: &LightTable) {
-        let needs_light = !matches!(*self.desc.integrator, IntegratorDesc::AmbientOcclusion { .. });
         if self.entries.is_empty() && lights.infinite().is_empty() {
             let message = "the scene has neither shapes nor an infinite light; the picture is black";
             self.warn("empty-scene", message, Span::NONE);
-        } else if lights.is_empty() && needs_light {
+        } else if lights.is_empty() && self.desc.needs_light() {
             self.warn("no-light", "the scene has no light; the picture is black", Span::NONE);
         }
     }
