@@ -1,4 +1,4 @@
-//! `cargo xtask wgsl`: translates the laws that all engines share from Rust to WGSL.
+//! A compiler from Rust to WGSL, for the laws that all engines share (`cargo xtask wgsl`).
 //!
 //! A law is written once, for numbers with lanes (`R: Real`); a GPU has one lane in each of its
 //! threads. So `R` becomes `f32`, `R::Mask` `bool`, `R::Int` `u32`, a spectrum `vec4f`, a method a
@@ -27,14 +27,13 @@ mod value;
 mod tests;
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use body::Body;
 use library::Library;
 use translator::Translator;
 
 /// The result of a translation, or what has none.
-type Result<T> = std::result::Result<T, String>;
+pub type Result<T> = std::result::Result<T, String>;
 
 /// The files that hold laws, and after each the functions and methods of it that are wanted.
 const LAWS: &str = include_str!("laws.txt");
@@ -50,22 +49,6 @@ const BY_HAND: [&str; 3] = [
 
 /// Where the translations are.
 pub const FOLDER: &str = "crates/gpu/shaders/law";
-
-/// Translates everything and writes the files into the workspace at `root`.
-pub fn run(root: &Path) -> Result<()> {
-    let read =
-        |path: &str| std::fs::read_to_string(root.join(path)).map_err(|error| format!("{path}: {error}"));
-    let files = generate(read)?;
-    let folder = root.join(FOLDER);
-    let write = || {
-        std::fs::remove_dir_all(&folder)?;
-        std::fs::create_dir_all(&folder)?;
-        files.iter().try_for_each(|(path, text)| std::fs::write(root.join(path), text))
-    };
-    write().map_err(|error: std::io::Error| format!("{}: {error}", folder.display()))?;
-    println!("{} files in {FOLDER}", files.len());
-    Ok(())
-}
 
 /// The translations by their paths, given what reads a source.
 pub fn generate(read: impl Fn(&str) -> Result<String>) -> Result<BTreeMap<String, String>> {
