@@ -62,8 +62,8 @@ struct Row {
     cryptomatte: &'static str,
 }
 
-/// Declares the layers, each by a row: its name, statistic, channels, quantity of [`FirstHit`], kind
-/// of number and further columns of [`Row`].
+/// Declares the layers, each by a row: its name, statistic, channels, quantity of [`FirstHit`],
+/// kind of number and further columns of [`Row`].
 macro_rules! layers {
     ($(
         $(#[doc = $about:literal])+

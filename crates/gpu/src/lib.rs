@@ -21,7 +21,7 @@ mod parts;
 mod pruning;
 mod raster;
 mod realtime;
-mod record;
+mod records;
 mod renderer;
 pub mod shaders;
 mod structure;

@@ -11,7 +11,8 @@ use crate::flatten::Head;
 pub use crate::parts::Parts;
 pub use crate::pruning::parsed;
 use crate::raster::Eye;
-use crate::renderer::{Batch, PixelSample, Splat, chains, photons, wavefront};
+use crate::records::pixels::{Batch, PixelSample, Splat};
+use crate::records::{chains, photons, wavefront};
 use crate::tags;
 
 /// What translated laws use and WGSL has not, and what computes with wide words.

@@ -38,8 +38,8 @@
 /// ```
 ///
 /// `pub enum Set: Facts = First` gives each member a constant of the type `Facts`, which has a
-/// constant `NONE`. A member then does not compile without a list of what differs from `NONE`, where
-/// a field alone is `true`: `First(FirstDesc) = "first" [is_quick, order: 2]`.
+/// constant `NONE`. A member then does not compile without a list of what differs from `NONE`,
+/// where a field alone is `true`: `First(FirstDesc) = "first" [is_quick, order: 2]`.
 macro_rules! settings {
     ($(#[$meta:meta])* pub struct $name:ident {
         $($(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr $(=> $keys:tt)?;)*

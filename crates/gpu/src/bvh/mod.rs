@@ -24,7 +24,7 @@ pub(crate) use item::angle;
 use math::Bounds3;
 use node::Writer;
 
-use crate::record::record;
+use crate::records::record;
 pub(crate) use node::{ITEMS, TRIANGLES};
 pub(crate) use placed::Placed;
 pub(crate) use structure::{MOST as MOST_FOR_RAY_QUERIES, Plan};

@@ -30,7 +30,7 @@ pub use moving::Moving;
 pub use sort::Sorter;
 
 use crate::device::{Buffer, Kernel};
-use crate::record::record;
+use crate::records::record;
 
 /// Starts a kernel on buffers, in a number of workgroups.
 pub type Start<'a> = dyn FnMut(&Kernel, &[&Buffer], u32) + 'a;

@@ -45,7 +45,7 @@ use scene::{GeometryEntry, Scene, View, ViewOptions};
 use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::parts::Parts;
-use crate::record::record;
+use crate::records::record;
 use crate::tags::{SettingBit, bit};
 pub use openpbr::openpbr_table;
 use slab::Slab;
@@ -91,8 +91,8 @@ record! {
     pub(crate) struct Head {
         /// Where rays begin.
         top: Top,
-        /// The offsets of camera, filter, geometries, materials, offsets of lights, offsets of infinite
-        /// lights, and choice of lights.
+        /// The offsets of camera, filter, geometries, materials, offsets of lights, offsets of
+        /// infinite lights, and choice of lights.
         camera: u32,
         pixel_filter: u32,
         geometries: u32,

@@ -5,7 +5,7 @@ use math::{DMat4, Vec3};
 use super::fog::Fog;
 use super::lens::Lens;
 use super::pond::Pond;
-use crate::record::record;
+use crate::records::record;
 
 record! {
     /// The uniforms of a pass.

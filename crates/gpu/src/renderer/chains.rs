@@ -24,7 +24,7 @@ use super::Kernels;
 use super::scene_buffers::SceneBuffers;
 use crate::device::{Buffer, GpuError, Kernel};
 use crate::flatten::Flat;
-use crate::record::record;
+use crate::records::chains::{Batch, Splat};
 use crate::shaders;
 use crate::tags::ChainRow;
 
@@ -49,42 +49,6 @@ const WORKGROUP: usize = 64;
 
 /// The splats that a thread adds at a time.
 const SPLATS_OF_A_THREAD: usize = 1 << 12;
-
-record! {
-    /// Some of the steps of all chains. Step 0 is the start, and the one after the last leaves the
-    /// point where the chain ends. Splats are those of the first step of all chains, then those of
-    /// the next.
-    pub(crate) struct Batch {
-        /// The chains, the first of these steps, and how many there are.
-        count: u32,
-        step: u32,
-        steps: u32,
-        /// The mutations of a chain, of which the first ones have one more.
-        mutations: u32,
-        longer: u32,
-        /// Of the random numbers of candidates, and of mutations.
-        candidate_key: u32,
-        key: u32,
-        /// The standard deviation of a small step, and the probability of a large one.
-        sigma: f32,
-        large: f32,
-        /// The mean scalar contribution, and another estimate of it.
-        b: f32,
-        b0: f32,
-        unused: u32,
-    }
-    "splats: array<Splat>"
-}
-
-record! {
-    /// A contribution to the film. The wavelength is the number that chose it.
-    pub(crate) struct Splat {
-        film: [f32; 2],
-        wavelength: f32,
-        unused: u32,
-        l: [f32; 4],
-    }
-}
 
 /// The chains of passes.
 pub(super) struct Chains {

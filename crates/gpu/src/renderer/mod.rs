@@ -7,12 +7,12 @@
 //!
 //! Metropolis light transport has [`Chains`] beside, and photon mapping [`Photons`] before.
 
-pub(crate) mod chains;
+mod chains;
 mod kernels;
-pub(crate) mod photons;
+mod photons;
 mod scene_buffers;
 mod strip;
-pub(crate) mod wavefront;
+mod wavefront;
 
 use std::sync::Arc;
 
@@ -26,14 +26,13 @@ use spectrum::SampledSpectrum;
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
-use crate::record::record;
+use crate::records::pixels::{Batch, PixelSample, Splat};
 use crate::shaders::{self, Parts};
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
 pub use strip::FindFirstHit;
-pub(crate) use strip::PixelSample;
 use strip::{AddToTile, Started};
 use wavefront::Wavefront;
 
@@ -48,31 +47,6 @@ const SPLATS_OF_A_THREAD: usize = 1 << 12;
 
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
-
-record! {
-    /// What the kernel is to render, a sample of each pixel of a rectangle.
-    pub(crate) struct Batch {
-        low: [u32; 2],
-        size: [u32; 2],
-        /// The index of the sample of each pixel.
-        index: u32,
-        /// The splats for which there is room, and their number.
-        most: u32,
-        count: u32 as "atomic<u32>",
-        unused: u32,
-    }
-    "splats: array<Splat>"
-}
-
-record! {
-    /// Light on the film from the light path of a pixel of the batch.
-    pub(crate) struct Splat {
-        film: [f32; 2],
-        path: u32,
-        unused: u32,
-        l: [f32; 4],
-    }
-}
 
 /// How the work of `path` is cut into kernels. Other algorithms, and `vol-path` in media, have
 /// a megakernel.

@@ -7,23 +7,7 @@ use scene::{ShutterSample, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::device::Copied;
-use crate::record::record;
-
-record! {
-    /// What is found for a pixel.
-    pub(crate) struct PixelSample {
-        /// The radiance.
-        l: [f32; 4],
-        /// The number of rays.
-        rays: u32,
-        /// Whether only the first wavelength is left, the lowest bit.
-        flags: u32,
-        /// The random number of the wavelengths.
-        wavelength: f32,
-        /// The weight in the pixel.
-        weight: f32,
-    }
-}
+use crate::records::pixels::PixelSample;
 
 impl PixelSample {
     /// Its wavelengths before any path terminates them.

@@ -18,18 +18,17 @@ use math::Bounds2i;
 
 use super::kernels::Kernels;
 use super::scene_buffers::SceneBuffers;
-use super::strip::PixelSample;
 use crate::device::{Buffer, Copied, GpuError, Kernel, Workgroups};
 use crate::flatten::Flat;
-use crate::record::record;
+use crate::records::pixels::PixelSample;
+use crate::records::wavefront::Batch;
 use crate::shaders;
 
 /// Rows of the table of paths, of four words.
 const ROWS: usize = 18;
 
-/// The queues of `shaders/wavefront/queues.wgsl`: before those of kinds of materials, and the most.
+/// The queues of `shaders/wavefront/queues.wgsl` before those of kinds of materials.
 const QUEUES: usize = 4;
-const MOST_QUEUES: usize = 17;
 
 /// The queue of places of paths that have ended.
 const ENDED: usize = 1;
@@ -45,30 +44,6 @@ const TURNS: usize = 4;
 /// shadow rays.
 const WORKGROUPS: u64 = 16;
 const ALL_WORKGROUPS: u64 = 3 * WORKGROUPS;
-
-record! {
-    /// The samples of a rectangle of pixels, of each as many as of the others from an index on; and
-    /// the places for paths. Each sample has a number: those of the first index come first, row by
-    /// row.
-    pub(crate) struct Batch {
-        low: [u32; 2],
-        size: [u32; 2],
-        index: u32,
-        samples: u32,
-        places: u32,
-        /// The kinds of materials that are hit, a bit for each, and the number of queues of hits.
-        kinds: u32,
-        sorts: u32,
-        /// Of a turn: the number of the first sample that begins and how many do, the paths that go
-        /// on, and the shadow rays of the turn before.
-        first: u32,
-        beginning: u32,
-        going_on: u32,
-        shadows: u32,
-        lengths: [u32; MOST_QUEUES] as "array<atomic<u32>, QUEUES>",
-    }
-    "queues: array<u32>"
-}
 
 /// The samples of a strip that are made together.
 #[derive(Clone, Copy)]

@@ -1,5 +1,10 @@
 //! Records that Rust writes and shaders read, of one declaration.
 
+pub mod chains;
+pub mod photons;
+pub mod pixels;
+pub mod wavefront;
+
 /// The type in WGSL of a field, or the one that is given.
 macro_rules! wgsl_type {
     ($type:tt $wgsl:literal) => {
@@ -53,7 +58,7 @@ macro_rules! record {
             /// The structure in WGSL.
             pub const TEXT: &str = concat!(
                 "struct ", stringify!($name), " {\n",
-                $("    ", stringify!($field), ": ", $crate::record::wgsl_type!($type $($wgsl)?), ",\n",)*
+                $("    ", stringify!($field), ": ", $crate::records::wgsl_type!($type $($wgsl)?), ",\n",)*
                 $("    ", $rest, ",\n",)?
                 "}\n",
             );
