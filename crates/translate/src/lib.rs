@@ -5,12 +5,12 @@
 //! function `Type_method`, and a tuple that a function returns a struct. Tuples, arrays of values,
 //! closures and functions that take some are resolved by the translation.
 //!
-//! [`LAWS`] lists the roots. What they use is translated, too, so that all of it must be in the
-//! files listed; nothing else is. What is not worth a translation is [`BY_HAND`].
+//! `LAWS` lists the roots. What they use is translated, too, so that all of it must be in the
+//! files listed; nothing else is. What is not worth a translation is `BY_HAND`.
 //!
 //! The subset: structs, enums without data, constants; `let` with patterns, assignments, `if`,
 //! `match` on enums and literals, `for` over ranges and arrays, `while`; operators, calls, methods
-//! of the types in [`intrinsics`] and of the library; macros of one name that define items.
+//! of the types in `intrinsics` and of the library; macros of one name that define items.
 //! Anything else is an error.
 
 mod body;
