@@ -345,8 +345,8 @@ pub const LAWS: [Law; 50] = [
         let base = bases[u32(8.0 * x[9]) % 8];
         let index = u32(x[8] * 5000.0);
         let hash = bitcast<u32>(x[11]);
-        y[0] = halton(index, base, 0, hash); y[1] = halton(index, base, PERMUTE_DIGITS, hash);
-        y[2] = halton(index, base, FAST_OWEN, hash); y[3] = f32(base);"),
+        y[0] = halton(index, base, 0, hash); y[1] = halton(index, base, Randomize_PermuteDigits, hash);
+        y[2] = halton(index, base, Randomize_FastOwen, hash); y[3] = f32(base);"),
     law!("Pmj02Bn" 0.0 0.0,
         x => {
             let samples = [1, 6, 64, 4096][(4.0 * x[10]) as usize % 4];
