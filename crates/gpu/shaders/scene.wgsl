@@ -1,9 +1,9 @@
 // The buffers of a scene, and the places of random numbers.
 //
 // Kernels have bindings of their own at 5 and 6, and what rays are traced through at 1. `world` is
-// the `Head` of `src/flatten/mod.rs`. Tables are words; a record refers to another by the index of its first
-// word, which is a multiple of four: what is read together is four words. The files of
-// `src/flatten/` describe the records.
+// the `Head` of `src/flatten/mod.rs`. Tables are words; a record refers to another by the
+// index of its first word, which is a multiple of four: what is read together is four words. The
+// files of `src/flatten/` describe the records.
 
 @group(0) @binding(0) var<storage, read_write> world: Head;
 @group(0) @binding(2) var<storage, read_write> triangles: array<vec4u>;

@@ -1,4 +1,4 @@
-//! What scatters at surfaces: the functions of shaders that choose it by the tag of the material.
+//! Dispatch over BxDFs: the functions of shaders that choose one by the tag of the material.
 
 use crate::parts::Parts;
 use crate::tags::MaterialTag;

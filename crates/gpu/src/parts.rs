@@ -3,7 +3,7 @@
 /// Declares the parts, each of which is a constant of shaders: `HAS_` and its name.
 macro_rules! parts {
     ($($(#[$meta:meta])* $part:ident)*) => {
-        /// What kernels have only for scenes that need it, because it is much code.
+        /// Parts that kernels have only for scenes that need them, because they are much code.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Parts {
             $($(#[$meta])* pub $part: bool),*
@@ -44,7 +44,7 @@ parts! {
     sky_images
     /// Lights with surfaces.
     surface_lights
-    /// Those whose surfaces are neither triangles nor rectangles.
+    /// Lights whose surfaces are neither triangles nor rectangles.
     round_lights
     /// Lights with surfaces whose images are their emission, or choose their points.
     emission_images

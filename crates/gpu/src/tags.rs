@@ -42,7 +42,7 @@ tags! {
         Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, Mix, CoatedDiffuse,
         CoatedConductor, Principled, Interface, Hair, Measured, Subsurface, Boundary, Exit,
     }
-    /// What the absorption of hair is given by.
+    /// Parameters that give the absorption of hair.
     AbsorptionTag { Coefficient, Color, Pigments }
     /// Lights.
     LightTag {

@@ -48,12 +48,12 @@ pub enum Update {
 const THREADS: u32 = 256;
 
 record! {
-    /// What the kernels that build a tree are told.
+    /// Arguments of the kernels that build a tree.
     pub(crate) struct Plan {
         /// Primitives, and the leaves of the pyramid: a power of two.
         count: u32,
         leaves: u32,
-        /// Which of the runs of a kernel this is: the digit that is sorted by, from the lowest on;
+        /// The index of the run of a kernel: the digit that is sorted by, from the lowest on;
         /// the part of the pyramid, from its base on; the level of nodes, from the root on.
         step: u32,
         /// Blocks of keys.

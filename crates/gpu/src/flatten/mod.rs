@@ -233,7 +233,7 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         | Algorithm::SimpleVolPath(SimpleVolPathDesc { max_depth })
         | Algorithm::RandomWalk(RandomWalkDesc { max_depth })
         | Algorithm::LightTracing(LightTracingDesc { max_depth })
-        // What makes photons has the rest.
+        // The pass of photons has the rest.
         | Algorithm::Sppm(SppmDesc { max_depth, photons_per_iteration: _, radius: _, seed: _ }, _) => {
             (max_depth, 0)
         }

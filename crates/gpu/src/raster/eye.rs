@@ -1,4 +1,4 @@
-//! What shaders know of a camera.
+//! The camera of a raster pass, as shaders have it.
 
 use math::{DMat4, Vec3};
 

@@ -3,7 +3,7 @@
 use super::record;
 
 record! {
-    /// What the kernel is to do: a rectangle of pixels, or as many light paths.
+    /// The work of a kernel: a rectangle of pixels, or as many light paths.
     pub struct Batch {
         low: [u32; 2],
         size: [u32; 2],

@@ -3,7 +3,7 @@
 use super::record;
 
 record! {
-    /// What the kernel is to render, a sample of each pixel of a rectangle.
+    /// The work of a kernel: a sample of each pixel of a rectangle.
     pub struct Batch {
         low: [u32; 2],
         size: [u32; 2],
@@ -28,7 +28,7 @@ record! {
 }
 
 record! {
-    /// What is found for a pixel.
+    /// The result of a pixel.
     pub struct PixelSample {
         /// The radiance.
         l: [f32; 4],
