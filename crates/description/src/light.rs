@@ -134,8 +134,13 @@ impl Default for InfiniteRadiance {
 impl Settings for InfiniteRadiance {
     fn visit(&mut self, visitor: Visitor) {
         const RADIANCE: &Field = &Field::new("L", "Radiance, unless an image gives it.");
-        if let Self::Constant(radiance) = self {
-            visitor(RADIANCE, radiance);
+        let mut radiance = match self {
+            Self::Constant(radiance) => Some(radiance.clone()),
+            Self::Image(_) => None,
+        };
+        visitor(RADIANCE, &mut radiance);
+        if let Some(radiance) = radiance {
+            *self = Self::Constant(radiance);
         }
     }
 }

@@ -96,6 +96,9 @@ pub(crate) fn area_light(
         uv_lookup(&mut statement, &picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
     }
     parameters(&mut statement, &light, names);
+    if light.image.is_some() {
+        statement.space = None;
+    }
     write_group(&mut statement, group.as_deref(), extensions);
     statement
 }

@@ -69,13 +69,16 @@ pub(crate) fn statement<T: Settings + Clone + Default>(
 
 /// The parameters of a member of a scene that differ from its defaults.
 pub(crate) fn parameters<T: Settings + Clone + Default>(to: &mut Statement, desc: &T, names: &Names) {
-    for Setting { value, .. } in desc.settings() {
-        if let Value::Spectrum(SpectrumDesc::Illuminant(space)) = value {
-            to.space = Some(space);
+    for (Setting { field, value, .. }, usual) in with_defaults(desc) {
+        match (&value, &usual.value) {
+            // The white of the colour space in force.
+            (
+                Value::Spectrum(SpectrumDesc::Illuminant(space)),
+                Value::Spectrum(SpectrumDesc::Illuminant(_)),
+            ) => to.space = Some(*space),
+            (value, usual) if value == usual => (),
+            (value, _) => write(to, field, value, Some(names)),
         }
-    }
-    for Setting { field, value, .. } in changed(desc) {
-        write(to, field, &value, Some(names));
     }
 }
 
@@ -86,8 +89,6 @@ fn write(to: &mut Statement, field: &Field, value: &Value, names: Option<&Names>
         (Value::Spectrum(SpectrumDesc::Constant(value)), _) if field.domain.takes_numbers => {
             to.floats(name, [*value]);
         }
-        // The white of the colour space in force is the default.
-        (Value::Spectrum(SpectrumDesc::Illuminant(_)), _) => (),
         (Value::Point(point), _) => to.triples("point3", name, &[*point]),
         (Value::List(values), _) if matches!(values[..], [Value::Point(_), ..]) => {
             let points: Vec<Point3> = values.iter().filter_map(Point3::from_value).collect();
@@ -111,9 +112,13 @@ fn write(to: &mut Statement, field: &Field, value: &Value, names: Option<&Names>
 
 /// The settings that differ from those of the same member with its defaults.
 fn changed<T: Settings + Clone + Default>(desc: &T) -> Vec<Setting> {
-    let default = T::called(desc.name()).unwrap_or_default().settings();
-    let settings = desc.settings().into_iter();
-    settings.zip(default).filter(|(own, usual)| own.value != usual.value).map(|(own, _)| own).collect()
+    let settings = with_defaults(desc);
+    settings.filter(|(own, usual)| own.value != usual.value).map(|(own, _)| own).collect()
+}
+
+/// The settings, each with that of the same member with its defaults.
+fn with_defaults<T: Settings + Clone + Default>(desc: &T) -> impl Iterator<Item = (Setting, Setting)> {
+    desc.settings().into_iter().zip(T::called(desc.name()).unwrap_or_default().settings())
 }
 
 /// The type of a value in the format, and its numbers or texts; nothing if it cannot be written.

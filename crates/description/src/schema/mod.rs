@@ -83,7 +83,8 @@ pub type Visitor<'a> = &'a mut dyn FnMut(&'static Field, &mut dyn Slot);
 
 /// A part of a scene's description that consists of settings.
 pub trait Settings {
-    /// Calls `visitor` for each setting, in the order of their declaration.
+    /// Calls `visitor` for each setting, in the order of their declaration: the same settings for
+    /// each value of a struct or member.
     fn visit(&mut self, visitor: Visitor);
 
     /// The member of the set; `None` if the type is not a set.

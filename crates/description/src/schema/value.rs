@@ -91,15 +91,9 @@ impl Kind {
         match self {
             Self::Bool => text.parse().ok().map(Value::Bool),
             Self::Integer | Self::Count => text.parse::<i32>().ok().map(|value| Value::Integer(value.into())),
-            Self::Number | Self::FloatParameter => text.parse().ok().map(Value::Number),
-            Self::Spectrum | Self::SpectrumParameter => {
-                text.parse().ok().map(|value| Value::Spectrum(SpectrumDesc::Constant(value)))
-            }
-            Self::Point => {
-                let numbers: Option<Vec<f32>> = text.split(' ').map(|number| number.parse().ok()).collect();
-                let &[x, y, z] = numbers?.as_slice() else { return None };
-                Some(Value::Point(Point3::new(x, y, z)))
-            }
+            Self::Number => text.parse().ok().map(Value::Number),
+            // Members of a scene are not set by users' texts.
+            Self::Point | Self::Spectrum | Self::FloatParameter | Self::SpectrumParameter => None,
             Self::Choice(names) => names.contains(&text).then(|| Value::Text(text.to_owned())),
             Self::Text => Some(Value::Text(text.to_owned())),
             Self::List(kind, count) => {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use alhazen_export::{ExportError, export, export_camera};
 use description::{
-    AreaLightDesc, CameraDesc, CameraKind, CoatedConductorDesc, ConductorDesc, ImageDesc, ImageTextureDesc,
-    InfiniteRadiance, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, RoughnessDesc,
-    SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind, TransformDesc, UvImageDesc,
-    WrapMode,
+    AreaLightDesc, CameraDesc, CameraKind, CoatedConductorDesc, ColorSpaceDesc, ConductorDesc, ImageDesc,
+    ImageTextureDesc, InfiniteRadiance, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc,
+    ObjectDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TextureDesc, TextureKind,
+    TransformDesc, UvImageDesc, WrapMode,
 };
 use image::{ColorEncoding, Image, Pixels};
 use import::MemoryAssets;
@@ -43,6 +43,30 @@ fn constants_are_kept() {
     let light = AreaLightDesc { group: Some("glow".into()), ..AreaLightDesc::new(0.1.into()) };
     let area_light = Some(desc.area_lights.push(light));
     desc.shapes.push(ShapeDesc { material: Some(material), area_light, ..sphere() });
+    check(&desc);
+}
+
+/// The white of a colour space is the default of lights alone.
+#[test]
+fn white_surfaces_are_written() {
+    let mut desc = SceneDesc::default();
+    let white = SpectrumDesc::Illuminant(ColorSpaceDesc::Srgb);
+    desc.materials.push(MaterialKind::Diffuse { reflectance: white.into() }.into());
+    let (exported, _) = round_trip(&desc);
+    assert!(exported.text.contains(r#""spectrum reflectance" "stdillum-D65""#), "{}", exported.text);
+}
+
+/// Parameters of a light keep their values beside an image.
+#[test]
+fn parameters_beside_images_of_skies_are_kept() {
+    let mut desc = SceneDesc::default();
+    let image = Image::from_fn(4, 4, ["R", "G", "B"], |x, y| [x as f32, y as f32, 1.0]);
+    let image = desc.images.push(ImageDesc { name: "sky".into(), image: Arc::new(image) });
+    let portal = Some([Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
+    for (illuminance, portal) in [(Some(3.0), portal), (None, portal), (Some(2.0), None)] {
+        let radiance = InfiniteRadiance::Image(image);
+        desc.lights.push(LightKind::Infinite { radiance, illuminance, portal }.into());
+    }
     check(&desc);
 }
 
