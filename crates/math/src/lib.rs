@@ -6,6 +6,7 @@
 mod animated;
 mod balance;
 mod bounds;
+mod closed_set;
 mod cone;
 mod elementary;
 mod error;

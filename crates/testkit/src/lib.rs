@@ -5,12 +5,14 @@
 //! `[f32; 3]` and `f64`, so that every crate can use them.
 //!
 //! [`lanes_agree`] runs a [`LaneFunction`] on every instruction set. [`data`] finds files of other
-//! authors. [`check_generated`] compares a page with the code that it is made of.
+//! authors. [`check_generated`] compares a page with the code that it is made of;
+//! [`assert_complete`] holds the table of a contract to its closed set.
 //!
 //! Every test has a generator with a fixed seed ([`Random`]), so that its result is reproducible,
 //! and corrects its significance for the number of tests (Šidák's correction).
 
 mod chi2;
+mod complete;
 mod data;
 mod generated;
 mod lane_function;
@@ -20,6 +22,7 @@ mod random;
 mod special;
 
 pub use chi2::Chi2;
+pub use complete::assert_complete;
 pub use data::{data, skip};
 pub use generated::check_generated;
 pub use lane_function::{LaneFunction, lanes_agree};

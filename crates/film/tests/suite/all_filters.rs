@@ -3,9 +3,10 @@
 use alhazen_film::Filter;
 use alhazen_film::filter::MAX_RADIUS;
 use description::FilterDesc;
+use description::schema::Settings;
 use lanes::Real;
 use math::Vec2;
-use testkit::{Chi2, LaneFunction, Moments, Random, integrate, lanes_agree, t_test};
+use testkit::{Chi2, LaneFunction, Moments, Random, assert_complete, integrate, lanes_agree, t_test};
 
 /// Filters of every kind, with names for failures.
 fn all() -> Vec<(&'static str, Filter)> {
@@ -20,6 +21,12 @@ fn all() -> Vec<(&'static str, Filter)> {
         ("sinc", FilterDesc::LanczosSinc { radius: [4.0, 4.0], tau: 3.0 }),
     ];
     describe.into_iter().map(|(name, desc)| (name, Filter::new(&desc).expect("a filter"))).collect()
+}
+
+#[test]
+fn every_filter_is_tested() {
+    let set: Vec<_> = FilterDesc::members().iter().map(FilterDesc::name).collect();
+    assert_complete(&set, all().into_iter().map(|(name, _)| name));
 }
 
 fn support(filter: &Filter) -> [[f32; 2]; 2] {

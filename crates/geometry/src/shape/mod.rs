@@ -51,54 +51,38 @@ pub use triangle::Triangle;
 
 use crate::flat_shape::FlatShape;
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3};
+use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3, closed_set};
 
-/// Any shape.
-#[derive(Clone, Debug)]
-pub enum Shape {
-    /// Sphere, or a part of it.
-    Sphere(Box<Sphere>),
-    /// Cylinder without caps.
-    Cylinder(Box<Cylinder>),
-    /// Cone without a base.
-    Cone(Box<Cone>),
-    /// Paraboloid.
-    Paraboloid(Box<Paraboloid>),
-    /// Hyperboloid of one sheet.
-    Hyperboloid(Box<Hyperboloid>),
-    /// Disk or annulus.
-    Disk(Box<Disk>),
-    /// Infinite plane.
-    Plane(Box<Plane>),
-    /// Implicit surface of a formula.
-    Implicit(Box<Implicit>),
-    /// Constructive solid geometry.
-    Solid(Box<Solid>),
-    /// Bilinear patch.
-    BilinearPatch(Box<BilinearPatch>),
-    /// Triangle.
-    Triangle(Triangle),
-    /// Triangle whose corners move.
-    MovingTriangle(MovingTriangle),
-}
-
-macro_rules! each_shape {
-    ($self:expr, $shape:ident => $result:expr) => {
-        match $self {
-            Shape::Sphere($shape) => $result,
-            Shape::Cylinder($shape) => $result,
-            Shape::Cone($shape) => $result,
-            Shape::Paraboloid($shape) => $result,
-            Shape::Hyperboloid($shape) => $result,
-            Shape::Disk($shape) => $result,
-            Shape::Plane($shape) => $result,
-            Shape::Implicit($shape) => $result,
-            Shape::Solid($shape) => $result,
-            Shape::BilinearPatch($shape) => $result,
-            Shape::Triangle($shape) => $result,
-            Shape::MovingTriangle($shape) => $result,
-        }
-    };
+closed_set! {
+    /// Any shape.
+    #[derive(Clone, Debug)]
+    pub enum Shape {
+        /// Sphere, or a part of it.
+        Sphere(Box<Sphere>),
+        /// Cylinder without caps.
+        Cylinder(Box<Cylinder>),
+        /// Cone without a base.
+        Cone(Box<Cone>),
+        /// Paraboloid.
+        Paraboloid(Box<Paraboloid>),
+        /// Hyperboloid of one sheet.
+        Hyperboloid(Box<Hyperboloid>),
+        /// Disk or annulus.
+        Disk(Box<Disk>),
+        /// Infinite plane.
+        Plane(Box<Plane>),
+        /// Implicit surface of a formula.
+        Implicit(Box<Implicit>),
+        /// Constructive solid geometry.
+        Solid(Box<Solid>),
+        /// Bilinear patch.
+        BilinearPatch(Box<BilinearPatch>),
+        /// Triangle.
+        Triangle(Triangle),
+        /// Triangle whose corners move.
+        MovingTriangle(MovingTriangle),
+    }
+    each each_shape $
 }
 
 macro_rules! from_shape {

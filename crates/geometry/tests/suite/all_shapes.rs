@@ -5,7 +5,7 @@ use crate::common::*;
 use alhazen_geometry::*;
 use math::*;
 use sampling::Rng;
-use testkit::Chi2;
+use testkit::{Chi2, assert_complete};
 
 fn transforms() -> [Transform; 3] {
     let turn = Transform::rotate(0.7, Vec3::new(0.3, 1.0, -0.2));
@@ -28,6 +28,15 @@ fn references() -> Vec<(&'static str, ShapeSampleContext)> {
         ("within", at(Vec3::new(0.2, -0.3, 0.1))),
         ("on a surface", lit(Vec3::new(1.5, -1.2, 0.9), Vec3::new(-1.0, 0.3, -0.4))),
     ]
+}
+
+#[test]
+fn every_shape_is_tested() {
+    // Shapes that are not sampled, and triangles that move, have tests of their own.
+    let elsewhere = ["Plane", "Implicit", "Solid", "MovingTriangle"];
+    let shapes = shapes(&Transform::IDENTITY);
+    let table = shapes.iter().map(|(_, shape)| shape.member()).chain(elsewhere);
+    assert_complete(Shape::MEMBERS, table);
 }
 
 fn each(mut f: impl FnMut(String, &Shape, &ShapeSampleContext)) {

@@ -34,44 +34,32 @@ pub use zsobol::ZSobol;
 
 use address::AddressArrays;
 use lanes::{Each, MAX_LANES, Real};
-use math::Vec2;
+use math::{Vec2, closed_set};
 
-/// The source of a pixel sample's coordinates.
-#[derive(Clone, Debug)]
-pub enum Sampler {
-    /// Uniform random numbers.
-    Independent(Independent),
-    /// One sample in each cell of a grid.
-    Stratified(Stratified),
-    /// Radical inverses in prime bases, randomised for each pixel.
-    Halton(Halton),
-    /// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel.
-    PaddedSobol(PaddedSobol),
-    /// Sobol' points of all dimensions, one sequence over the picture.
-    Sobol(Sobol),
-    /// Two-dimensional Sobol' points, distributed over pixels along a Z-order curve, which gives
-    /// blue-noise error.
-    ZSobol(ZSobol),
-    /// Progressive multi-jittered (0, 2) points, distributed over pixels in the order of a Z-order
-    /// curve, which gives blue-noise error.
-    Pmj02Bn(Pmj02Bn),
-    /// Uniform random numbers that can be mutated: primary sample space.
-    PrimarySample(PrimarySample),
-}
-
-macro_rules! each_sampler {
-    ($self:expr, $sampler:ident => $result:expr) => {
-        match $self {
-            Sampler::Independent($sampler) => $result,
-            Sampler::Stratified($sampler) => $result,
-            Sampler::Halton($sampler) => $result,
-            Sampler::PaddedSobol($sampler) => $result,
-            Sampler::Sobol($sampler) => $result,
-            Sampler::ZSobol($sampler) => $result,
-            Sampler::Pmj02Bn($sampler) => $result,
-            Sampler::PrimarySample($sampler) => $result,
-        }
-    };
+closed_set! {
+    /// The source of a pixel sample's coordinates.
+    #[derive(Clone, Debug)]
+    pub enum Sampler {
+        /// Uniform random numbers.
+        Independent(Independent),
+        /// One sample in each cell of a grid.
+        Stratified(Stratified),
+        /// Radical inverses in prime bases, randomised for each pixel.
+        Halton(Halton),
+        /// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel.
+        PaddedSobol(PaddedSobol),
+        /// Sobol' points of all dimensions, one sequence over the picture.
+        Sobol(Sobol),
+        /// Two-dimensional Sobol' points, distributed over pixels along a Z-order curve, which gives
+        /// blue-noise error.
+        ZSobol(ZSobol),
+        /// Progressive multi-jittered (0, 2) points, distributed over pixels in the order of a Z-order
+        /// curve, which gives blue-noise error.
+        Pmj02Bn(Pmj02Bn),
+        /// Uniform random numbers that can be mutated: primary sample space.
+        PrimarySample(PrimarySample),
+    }
+    each each_sampler $
 }
 
 impl Sampler {

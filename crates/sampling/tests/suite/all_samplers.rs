@@ -6,7 +6,7 @@ use alhazen_sampling::sampler::*;
 use math::Vec2;
 use std::collections::HashSet;
 use std::f64::consts::TAU;
-use testkit::{Chi2, Moments, t_test};
+use testkit::{Chi2, Moments, assert_complete, t_test};
 
 const SPP: u32 = 16;
 const RESOLUTION: [i32; 2] = [20, 13];
@@ -57,6 +57,12 @@ fn all_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
     add("sobol None", Sampler::Sobol(Sobol::new(spp, RESOLUTION, Randomize::None, seed)));
     add("zsobol None", Sampler::ZSobol(ZSobol::new(spp, RESOLUTION, Randomize::None, seed)));
     samplers
+}
+
+#[test]
+fn every_sampler_is_tested() {
+    let samplers = all_samplers(SPP, 0);
+    assert_complete(Sampler::MEMBERS, samplers.iter().map(|(_, sampler)| sampler.member()));
 }
 
 /// The dimensions that a path might use.

@@ -32,40 +32,43 @@ pub use subsurface::{Subsurface, SubsurfacePart};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};
-use math::{Vec2, Vector3};
+use math::{Vec2, Vector3, closed_set};
 use spectrum::SampledSpectrum;
 
-/// Any BxDF, by value: made at each hit, without allocation. It may refer to tables of the scene.
-#[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a BxDF is made at each hit, where a box would have to be allocated"
-)]
-pub enum Bxdf<'a> {
-    /// Lambertian reflection.
-    Diffuse(Diffuse),
-    /// Lambertian reflection and transmission.
-    DiffuseTransmission(DiffuseTransmission),
-    /// Metal, smooth or rough.
-    Conductor(Conductor),
-    /// Glass, smooth or rough.
-    Dielectric(Dielectric),
-    /// A smooth pane of glass without volume.
-    ThinDielectric(ThinDielectric),
-    /// A diffuse surface under a coat.
-    CoatedDiffuse(Layered<Diffuse>),
-    /// Metal under a coat.
-    CoatedConductor(Layered<Conductor>),
-    /// A fibre.
-    Hair(Hair),
-    /// A measured surface.
-    Measured(Measured<'a>),
-    /// A body that scatters light under its surface.
-    Subsurface(Subsurface<'a>),
-    /// Light that enters such a body.
-    NormalizedFresnel(NormalizedFresnel),
-    /// A principled surface.
-    OpenPbr(OpenPbr<'a>),
+closed_set! {
+    /// Any BxDF, by value: made at each hit, without allocation. It may refer to tables of the
+    /// scene.
+    #[derive(Clone, Copy, Debug)]
+    #[expect(
+        clippy::large_enum_variant,
+        reason = "a BxDF is made at each hit, where a box would have to be allocated"
+    )]
+    pub enum Bxdf<'a> {
+        /// Lambertian reflection.
+        Diffuse(Diffuse),
+        /// Lambertian reflection and transmission.
+        DiffuseTransmission(DiffuseTransmission),
+        /// Metal, smooth or rough.
+        Conductor(Conductor),
+        /// Glass, smooth or rough.
+        Dielectric(Dielectric),
+        /// A smooth pane of glass without volume.
+        ThinDielectric(ThinDielectric),
+        /// A diffuse surface under a coat.
+        CoatedDiffuse(Layered<Diffuse>),
+        /// Metal under a coat.
+        CoatedConductor(Layered<Conductor>),
+        /// A fibre.
+        Hair(Hair),
+        /// A measured surface.
+        Measured(Measured<'a>),
+        /// A body that scatters light under its surface.
+        Subsurface(Subsurface<'a>),
+        /// Light that enters such a body.
+        NormalizedFresnel(NormalizedFresnel),
+        /// A principled surface.
+        OpenPbr(OpenPbr<'a>),
+    }
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a

@@ -64,47 +64,33 @@ pub use table::{LightPart, LightRef, Lights};
 pub use uniform_infinite::UniformInfiniteLight;
 
 use geometry::SurfacePoint;
-use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3};
+use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3, closed_set};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-/// A row of the table of lights.
-#[derive(Clone, Debug)]
-pub enum Light {
-    /// See [`PointLight`].
-    Point(PointLight),
-    /// See [`SpotLight`].
-    Spot(SpotLight),
-    /// See [`DistantLight`].
-    Distant(DistantLight),
-    /// See [`AreaLight`].
-    Area(AreaLight),
-    /// See [`UniformInfiniteLight`].
-    UniformInfinite(UniformInfiniteLight),
-    /// See [`ImageInfiniteLight`].
-    ImageInfinite(Box<ImageInfiniteLight>),
-    /// See [`PortalInfiniteLight`].
-    PortalInfinite(Box<PortalInfiniteLight>),
-    /// See [`GoniometricLight`].
-    Goniometric(Box<GoniometricLight>),
-    /// See [`ProjectionLight`].
-    Projection(Box<ProjectionLight>),
-}
-
-/// Dispatches to the kind of light.
-macro_rules! each_light {
-    ($self:expr, $light:ident => $e:expr) => {
-        match $self {
-            Light::Point($light) => $e,
-            Light::Spot($light) => $e,
-            Light::Distant($light) => $e,
-            Light::Area($light) => $e,
-            Light::UniformInfinite($light) => $e,
-            Light::ImageInfinite($light) => $e,
-            Light::PortalInfinite($light) => $e,
-            Light::Goniometric($light) => $e,
-            Light::Projection($light) => $e,
-        }
-    };
+closed_set! {
+    /// A row of the table of lights.
+    #[derive(Clone, Debug)]
+    pub enum Light {
+        /// See [`PointLight`].
+        Point(PointLight),
+        /// See [`SpotLight`].
+        Spot(SpotLight),
+        /// See [`DistantLight`].
+        Distant(DistantLight),
+        /// See [`AreaLight`].
+        Area(AreaLight),
+        /// See [`UniformInfiniteLight`].
+        UniformInfinite(UniformInfiniteLight),
+        /// See [`ImageInfiniteLight`].
+        ImageInfinite(Box<ImageInfiniteLight>),
+        /// See [`PortalInfiniteLight`].
+        PortalInfinite(Box<PortalInfiniteLight>),
+        /// See [`GoniometricLight`].
+        Goniometric(Box<GoniometricLight>),
+        /// See [`ProjectionLight`].
+        Projection(Box<ProjectionLight>),
+    }
+    each each_light $
 }
 
 use each_light;

@@ -40,7 +40,7 @@ pub use rgb_grid::RgbGridMedium;
 pub use temperature::Temperature;
 pub use uniform_grid::{EmissionSource, GridEmission, UniformGridMedium};
 
-use math::{Bounds3, Normal3, Point3, Ray, Vector3};
+use math::{Bounds3, Normal3, Point3, Ray, Vector3, closed_set};
 use scattering::HenyeyGreenstein;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -53,32 +53,22 @@ pub struct Medium {
     pub phase: HenyeyGreenstein,
 }
 
-/// The kinds of media.
-#[derive(Clone, Debug)]
-pub enum MediumKind {
-    /// See [`HomogeneousMedium`].
-    Homogeneous(HomogeneousMedium),
-    /// See [`UniformGridMedium`].
-    UniformGrid(Box<UniformGridMedium>),
-    /// See [`RgbGridMedium`].
-    RgbGrid(Box<RgbGridMedium>),
-    /// See [`CloudMedium`].
-    Cloud(Box<CloudMedium>),
-    /// See [`NanoVdbMedium`].
-    NanoVdb(Box<NanoVdbMedium>),
-}
-
-/// Dispatches to the kind of medium.
-macro_rules! each_medium {
-    ($self:expr, $medium:ident => $e:expr) => {
-        match $self {
-            MediumKind::Homogeneous($medium) => $e,
-            MediumKind::UniformGrid($medium) => $e,
-            MediumKind::RgbGrid($medium) => $e,
-            MediumKind::Cloud($medium) => $e,
-            MediumKind::NanoVdb($medium) => $e,
-        }
-    };
+closed_set! {
+    /// The kinds of media.
+    #[derive(Clone, Debug)]
+    pub enum MediumKind {
+        /// See [`HomogeneousMedium`].
+        Homogeneous(HomogeneousMedium),
+        /// See [`UniformGridMedium`].
+        UniformGrid(Box<UniformGridMedium>),
+        /// See [`RgbGridMedium`].
+        RgbGrid(Box<RgbGridMedium>),
+        /// See [`CloudMedium`].
+        Cloud(Box<CloudMedium>),
+        /// See [`NanoVdbMedium`].
+        NanoVdb(Box<NanoVdbMedium>),
+    }
+    each each_medium $
 }
 
 /// The interface of a kind of medium. Points and rays are in render space.

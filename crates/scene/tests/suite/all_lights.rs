@@ -4,12 +4,19 @@
 use crate::common::lights::*;
 use crate::common::*;
 use alhazen_scene::Interfaces;
-use alhazen_scene::light::{LightId, LightSampleContext};
+use alhazen_scene::light::{Light, LightId, LightSampleContext};
 use description::{EdgeMode, SceneDesc, ShapeDesc, ShapeKind, TransformDesc, UvImageDesc, WrapMode};
 use image::Projection;
 use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
-use testkit::{Chi2, Moments, Random, welch_test};
+use testkit::{Chi2, Moments, Random, assert_complete, welch_test};
+
+#[test]
+fn every_light_is_tested() {
+    let (hittable, delta) = (hittable_lights(), delta_lights());
+    let table = hittable.iter().chain(&delta).map(|case| case.light().row().member());
+    assert_complete(Light::MEMBERS, table);
+}
 
 #[test]
 fn samples_have_their_density() {

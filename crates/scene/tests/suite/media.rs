@@ -5,13 +5,13 @@ use std::sync::Arc;
 use alhazen_scene::medium::{CloudMedium, Medium, MediumId, MediumInterface, MediumKind as MediumRow};
 use alhazen_scene::{Scene, compile};
 use description::{
-    CoefficientsDesc, ColorSpaceDesc, GridDesc, MediumDesc, MediumKind, SceneDesc, SpectrumDesc,
+    CoefficientsDesc, ColorSpaceDesc, GridDesc, MediumDesc, MediumKind, MediumType, SceneDesc, SpectrumDesc,
     TemperatureDesc, TransformDesc, VoxelsDesc,
 };
 use lanes::InstructionSet;
 use math::{DMat4, DVec3, Point3, Ray, Vec3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
-use testkit::Random;
+use testkit::{Random, assert_complete};
 
 fn lambda() -> SampledWavelengths {
     SampledWavelengths::sample_visible(0.4)
@@ -123,6 +123,12 @@ fn all() -> Vec<(&'static str, MediumKind)> {
         ("voxels", nano_vdb()),
         ("fog", MediumKind::Homogeneous { coefficients: grey(), le: None, le_scale: 1.0 }),
     ]
+}
+
+#[test]
+fn every_medium_is_tested() {
+    let media = all();
+    assert_complete(MediumType::NAMES, media.iter().map(|(_, kind)| kind.name()));
 }
 
 fn medium(scene: &Scene) -> &Medium {
