@@ -50,11 +50,11 @@ closed_set! {
         PaddedSobol(PaddedSobol),
         /// Sobol' points of all dimensions, one sequence over the picture.
         Sobol(Sobol),
-        /// Two-dimensional Sobol' points, distributed over pixels along a Z-order curve, which gives
-        /// blue-noise error.
+        /// Two-dimensional Sobol' points, distributed over pixels along a Z-order curve, which
+        /// gives blue-noise error.
         ZSobol(ZSobol),
-        /// Progressive multi-jittered (0, 2) points, distributed over pixels in the order of a Z-order
-        /// curve, which gives blue-noise error.
+        /// Progressive multi-jittered (0, 2) points, distributed over pixels in the order of a
+        /// Z-order curve, which gives blue-noise error.
         Pmj02Bn(Pmj02Bn),
         /// Uniform random numbers that can be mutated: primary sample space.
         PrimarySample(PrimarySample),

@@ -39,10 +39,6 @@ closed_set! {
     /// Any BxDF, by value: made at each hit, without allocation. It may refer to tables of the
     /// scene.
     #[derive(Clone, Copy, Debug)]
-    #[expect(
-        clippy::large_enum_variant,
-        reason = "a BxDF is made at each hit, where a box would have to be allocated"
-    )]
     pub enum Bxdf<'a> {
         /// Lambertian reflection.
         Diffuse(Diffuse),

@@ -1,6 +1,7 @@
 //! The contracts of BxDFs and microfacet distributions.
 
 mod all_bxdfs;
+mod completeness;
 mod hair;
 mod layers;
 mod measured;
