@@ -14,7 +14,7 @@ const TESTED: &str = "alhazen-cli/portable,alhazen-cli/gpu";
 
 /// Crates beside the program, and those of the program whose tests depend on features.
 const TESTS: &str = "-p alhazen-bench -p alhazen-cli -p alhazen-gpu -p alhazen-import -p alhazen-python \
-                     -p alhazen-translate -p alhazen-view -p xtask";
+                     -p alhazen-showcase -p alhazen-translate -p alhazen-view -p xtask";
 
 /// The names of steps, and what they ask of cargo. All have the profile of `cargo test`, so that
 /// what both build is built once. Lints and documentation share one check of the workspace, which

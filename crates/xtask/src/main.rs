@@ -56,7 +56,7 @@ fn main() -> ExitCode {
         ["wheel"] => python::wheel(workspace()),
         ["dist", ref arguments @ ..] => dist::run(workspace(), arguments),
         ["gallery", ref names @ ..] => gallery::make(workspace(), names),
-        ["scenes", ref names @ ..] => scenes::run(workspace(), names, scenes::Size::Whole),
+        ["scenes", ref names @ ..] => scenes::run(workspace(), names, showcase::Size::Whole),
         ["wgsl"] => wgsl::run(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {

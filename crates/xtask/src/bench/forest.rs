@@ -10,6 +10,7 @@ use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
+use showcase::Size;
 
 use crate::command::{cargo, succeed, target};
 use crate::scenes;
@@ -32,7 +33,7 @@ struct Cost {
 /// `target/forest.svg`.
 pub fn measure(root: &Path) -> Result<(), String> {
     succeed(cargo(root).args(["build", "--release", "--quiet", "--package", "alhazen-cli"]))?;
-    scenes::run(root, &["forest"], scenes::Size::Whole)?;
+    scenes::run(root, &["forest"], Size::Whole)?;
     let costs = FORESTS.iter().map(|name| cost(root, name)).collect::<Result<Vec<_>, _>>()?;
     println!("| triangles | trees | memory | ns a ray | tests of extents and primitives a ray |");
     println!("|---|---|---|---|---|");

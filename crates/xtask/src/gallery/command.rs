@@ -7,9 +7,10 @@ use std::process::Command;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
+use showcase::Size;
 
 use crate::command::{QUICK_KERNELS, target};
-use crate::scenes::Size;
+use crate::scenes::folder;
 
 /// What a command has drawn.
 #[derive(Default)]
@@ -58,7 +59,7 @@ fn run_and_keep(
     also: Option<&Path>,
 ) -> Result<Drawn, String> {
     let failed = |problem: String| format!("`{line}`: {problem}");
-    let line_of_size = line.replace(Size::Whole.folder(), size.folder());
+    let line_of_size = line.replace(folder(Size::Whole), folder(size));
     let words: Vec<&str> = line_of_size.split_whitespace().collect();
     let ["alhazen", name @ ("render" | "trace-pixel" | "view"), rest @ ..] = &words[..] else {
         return Err(failed("it is none of `alhazen render`, `trace-pixel` and `view`".into()));

@@ -14,8 +14,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use super::scenes::{self, Size};
+use super::scenes;
 use page::Page;
+use showcase::Size;
 
 /// The folders of texts and of pages.
 const TEXTS: &str = "docs/gallery/pages";
@@ -93,7 +94,8 @@ fn make_scenes<'a>(root: &Path, pages: impl Iterator<Item = &'a Page>, size: Siz
 /// The names of the scenes in `target/scenes` that commands draw.
 fn made_scenes(commands: &[String]) -> BTreeSet<&str> {
     let words = commands.iter().flat_map(|line| line.split_whitespace());
-    let in_scenes = words.filter_map(|word| word.strip_prefix(Size::Whole.folder())?.strip_prefix('/'));
+    let in_scenes =
+        words.filter_map(|word| word.strip_prefix(scenes::folder(Size::Whole))?.strip_prefix('/'));
     in_scenes.filter_map(|rest| rest.split('/').next()).collect()
 }
 

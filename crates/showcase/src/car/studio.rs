@@ -6,7 +6,7 @@ use std::path::Path;
 
 use math::Vec3;
 
-use crate::scenes::mesh::Mesh;
+use crate::mesh::Mesh;
 
 /// Where the camera of the studio looks, on the ground.
 const VIEW: [f32; 2] = [-0.587, -0.81];

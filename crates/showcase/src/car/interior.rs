@@ -4,8 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use math::Vec3;
 
-use crate::scenes::cage::Cage;
-use crate::scenes::mesh::Mesh;
+use crate::cage::Cage;
+use crate::mesh::Mesh;
 
 /// The middle of the driver's seat; the other one is its mirror image.
 const SEAT: f32 = 0.365;

@@ -56,7 +56,7 @@ impl Detail {
     pub const SMALL: Self = Self { growth: 0.45, cells: 0.2 };
 }
 
-pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
+pub fn make(folder: &Path, detail: Detail) -> io::Result<String> {
     let Detail { growth, cells } = detail;
     let [oak, birch, bush] = [
         Broadleaf { trunk: 2.2, crown: [3.6, 3.6], points: 15000, leaf: [0.1, 0.06], leaves: 4 },
@@ -124,8 +124,7 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
             VIEW.replace("PICTURE", &name).replace("TREES", &trees).replace("TRIANGLES", &sum.to_string());
         fs::write(folder.join(format!("{name}.pbrt")), scene)?;
     }
-    println!("{} trees of {total} triangles in all", stand.len());
-    Ok(())
+    Ok(format!("{} trees of {total} triangles in all", stand.len()))
 }
 
 fn ground(cells: f32) -> Mesh {

@@ -4,7 +4,7 @@ use math::{Vec2, Vec3, smooth_step};
 
 use super::hair::hairline;
 use super::pores::lip;
-use crate::scenes::noise::fbm;
+use crate::noise::fbm;
 
 /// What of the front the picture of colours shows: middle and extent of x and z.
 const MIDDLE: [f32; 2] = [0.0, 0.0];

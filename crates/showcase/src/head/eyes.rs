@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use math::{Vec2, Vec3, smooth_step};
 
 use super::face::{CORNEA, EYE, EYEBALL};
-use crate::scenes::mesh::Mesh;
-use crate::scenes::noise::fbm;
+use crate::mesh::Mesh;
+use crate::noise::fbm;
 
 /// Radii of the iris and the pupil.
 const IRIS: f32 = 6.0;

@@ -6,8 +6,8 @@ use std::f32::consts::TAU;
 use math::Vec3;
 
 use super::body::WHEEL;
-use crate::scenes::cage::Cage;
-use crate::scenes::mesh::Mesh;
+use crate::cage::Cage;
+use crate::mesh::Mesh;
 
 /// Half the width of the tyre.
 const HALF: f32 = 0.122;

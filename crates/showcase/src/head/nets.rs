@@ -11,7 +11,7 @@ use std::thread;
 use math::Vec3;
 
 use super::sculpture::Sculpture;
-use crate::scenes::mesh::Mesh;
+use crate::mesh::Mesh;
 
 /// Cells of a block along an edge.
 const BLOCK: i32 = 16;

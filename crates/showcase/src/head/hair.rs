@@ -12,7 +12,7 @@ use sampling::Rng;
 
 use super::face::{EYE, EYEBALL, lids};
 use super::sculpture::Sculpture;
-use crate::scenes::mesh::Mesh;
+use crate::mesh::Mesh;
 
 /// Steps of a hair.
 const STEPS: usize = 6;
@@ -251,7 +251,7 @@ pub fn thinned(hairs: &[Hair], every: usize, wider: f32) -> Vec<Hair> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::head::{LOW_HIGH, nets};
+    use crate::head::{LOW_HIGH, nets};
 
     #[test]
     fn hairs_grow_out_of_the_scalp_alone() {

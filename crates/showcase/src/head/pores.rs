@@ -7,8 +7,8 @@ use math::{Vec3, smooth_step};
 
 use super::nets;
 use super::sculpture::Sculpture;
-use crate::scenes::cage::edge;
-use crate::scenes::mesh::Mesh;
+use crate::cage::edge;
+use crate::mesh::Mesh;
 
 /// Cuts the triangles of the face into four, so many times, and displaces their points.
 pub fn add(mesh: &mut Mesh, solid: &Sculpture, steps: u32) {

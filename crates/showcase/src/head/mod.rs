@@ -45,14 +45,13 @@ impl Detail {
 }
 
 /// Makes the scenes.
-pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
+pub fn make(folder: &Path, detail: Detail) -> io::Result<String> {
     let solid = Sculpture::new();
     let mut mesh = nets::mesh(&solid, LOW_HIGH, detail.cell);
     let hairs = hair::scalp(&solid, &mesh, detail.hairs);
     pores::add(&mut mesh, &solid, detail.steps);
     mesh.uvs = mesh.positions.iter().map(|p| skin::coordinates(*p)).collect();
     mesh.write(&folder.join("skin.ply"))?;
-    println!("{} triangles of skin, {} hairs", mesh.triangles.len(), hairs.len());
 
     eyes::balls().write(&folder.join("eyes.ply"))?;
     eyes::corneas().write(&folder.join("corneas.ply"))?;
@@ -63,7 +62,8 @@ pub fn make(folder: &Path, detail: Detail) -> io::Result<()> {
     fs::write(folder.join("hair.pbrt"), hair::curves(&hairs))?;
     fs::write(folder.join("brows.pbrt"), hair::curves(&brows) + &hair::curves(&lashes))?;
     fs::write(folder.join("hair-realtime.pbrt"), hair::curves(&hair::thinned(&hairs, 5, 2.4)))?;
-    studio::write(folder)
+    studio::write(folder)?;
+    Ok(format!("{} triangles of skin, {} hairs", mesh.triangles.len(), hairs.len()))
 }
 
 #[cfg(test)]

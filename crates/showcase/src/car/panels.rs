@@ -11,8 +11,8 @@ use math::{Vec2, Vec3};
 
 use super::body::{Grid, Panel, Tag};
 use super::paint::SCALE;
-use crate::scenes::cage::{Cage, edge};
-use crate::scenes::mesh::Mesh;
+use crate::cage::{Cage, edge};
+use crate::mesh::Mesh;
 
 /// How a panel ends, in metres.
 #[derive(Clone, Copy)]
@@ -240,7 +240,7 @@ impl Rim {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::car::body;
+    use crate::car::body;
 
     const END: Edge = Edge { gap: 0.002, bend: 0.002, flange: 0.01, depth: 0.0 };
 

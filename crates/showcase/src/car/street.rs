@@ -10,8 +10,8 @@ use std::path::Path;
 use math::{Vec2, Vec3, equal_area_square_to_sphere};
 use sampling::Rng;
 
-use crate::scenes::mesh::Mesh;
-use crate::scenes::noise::fbm;
+use crate::mesh::Mesh;
+use crate::noise::fbm;
 
 /// The edge of the pavement, and the houses on both sides of the street, by x.
 const KERB: f32 = -2.9;

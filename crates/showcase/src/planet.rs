@@ -9,15 +9,17 @@ use std::path::Path;
 
 use planet::{Input, Planet, Viewpoint, Walker, scene};
 
-use super::Size;
+use crate::Size;
 
 /// Planets by the power of ten of their spheres, and the steps of a sixtieth of a second before
 /// they are seen.
 const PLANETS: [(&str, usize, u32); 2] = [("5", 100_000, 120), ("6", 1_000_000, 30)];
 
-pub fn make(folder: &Path, size: Size) -> io::Result<()> {
+pub fn make(folder: &Path, size: Size) -> io::Result<String> {
+    let mut spheres = 0;
     for (power, count, steps) in PLANETS {
         let (count, steps) = if size == Size::Whole { (count, steps) } else { (count / 100, 2) };
+        spheres += count;
         let mut planet = Planet::new(count);
         let mut walker = Walker::new(&planet);
         for _ in 0..steps {
@@ -30,5 +32,5 @@ pub fn make(folder: &Path, size: Size) -> io::Result<()> {
             fs::write(folder.join(format!("{name}.pbrt")), scene(&planet, &viewpoint, &name))?;
         }
     }
-    Ok(())
+    Ok(format!("{} planets of {spheres} spheres in all", PLANETS.len()))
 }

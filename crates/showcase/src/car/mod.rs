@@ -47,7 +47,7 @@ impl Car<'_> {
 
 /// Makes the scenes, with a car that is subdivided in `steps` steps; one less has a fourth of the
 /// triangles.
-pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
+pub fn make(folder: &Path, steps: u32) -> io::Result<String> {
     let surface = Surface::new(body::cage().subdivided(steps));
     let sides = 6 << steps;
     let fine = steps.saturating_sub(1);
@@ -87,8 +87,7 @@ pub fn make(folder: &Path, steps: u32) -> io::Result<()> {
     fs::write(folder.join("car.pbrt"), &car.text)?;
     studio::write(folder)?;
     street::write(folder)?;
-    println!("{} triangles in files", car.triangles);
-    Ok(())
+    Ok(format!("{} triangles in files", car.triangles))
 }
 
 /// The outside, and a dark lining under all that is not transparent.

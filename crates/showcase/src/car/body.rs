@@ -7,7 +7,7 @@
 
 use math::Vec3;
 
-use crate::scenes::cage::Cage;
+use crate::cage::Cage;
 
 /// The axles.
 pub const AXLES: [f32; 2] = [1.25, -1.25];
@@ -385,7 +385,7 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use crate::scenes::cage::edge;
+    use crate::cage::edge;
 
     #[test]
     fn the_cage_is_one_sheet_with_one_border() {

@@ -6,8 +6,8 @@ use math::{Vec2, Vec3};
 
 use super::body::Panel;
 use super::panels::Surface;
-use crate::scenes::cage::Cage;
-use crate::scenes::mesh::Mesh;
+use crate::cage::Cage;
+use crate::mesh::Mesh;
 
 /// A rounded block about a point, with half its sizes along three axes.
 fn pebble(cage: &mut Cage<()>, at: Vec3, axes: [Vec3; 3], sharpness: f32) {

@@ -6,8 +6,8 @@ use math::Vec3;
 
 use super::body::Panel;
 use super::panels::Surface;
-use crate::scenes::cage::edge;
-use crate::scenes::mesh::Mesh;
+use crate::cage::edge;
+use crate::mesh::Mesh;
 
 /// Tubes of a radius around some panels, raised over the surface by a height.
 pub fn strips(body: &Surface, is_chosen: impl Fn(Panel) -> bool, radius: f32, height: f32) -> Mesh {
