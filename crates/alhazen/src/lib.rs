@@ -3,9 +3,8 @@
 //! Re-exports the other crates, and joins them into a renderer: [`Overrides`] change a scene before
 //! it is rendered, a [`Job`] renders a description to a picture, [`write_picture`] writes that to a
 //! file. A [`RenderOrder`] saves a render, so that it can be continued as a [`SavedRender`].
-//! [`render_file`] does all but the last. [`compare`] renders one scene with several integrators
-//! and measures their errors. A [`trace::PixelTrace`] shows what happens along the paths of a
-//! pixel.
+//! [`render_file`] does all but the last. A [`trace::PixelTrace`] shows what happens along the
+//! paths of a pixel.
 
 pub use description;
 pub use export;
@@ -24,7 +23,6 @@ pub use spectrum;
 mod arrangement;
 mod clock;
 mod coarse;
-pub mod compare;
 #[cfg(feature = "gpu")]
 pub mod device;
 mod film_file;
@@ -49,7 +47,7 @@ pub use header::Header;
 pub use job::{CompiledJob, Job, RenderError, render_file};
 pub use overrides::{OverrideError, Overrides};
 pub use pack::{ConvertError, PackError, Packed, pack, pack_converted};
-pub use picture::{InSrgb, write_picture};
+pub use picture::{InSrgb, data_uri, write_picture};
 pub use schedule::PreviewSchedule;
 pub use settings::{Group, PARTS, Part, integrator_names};
 pub use sketch::draft;

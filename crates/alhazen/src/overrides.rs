@@ -6,7 +6,7 @@ use description::schema::Settings;
 use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span, Spanned};
 use film::Layer;
 
-use crate::settings::{self, Unset, called, drawn, integrator_called};
+use crate::settings::{self, Unset, applies, called, drawn, integrator_called};
 
 /// Changes to a scene. `None` keeps the value of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,12 +37,6 @@ pub struct Overrides {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverrideError(String);
 
-impl OverrideError {
-    pub(crate) fn new(message: String) -> Self {
-        Self(message)
-    }
-}
-
 impl fmt::Display for OverrideError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
@@ -52,6 +46,15 @@ impl fmt::Display for OverrideError {
 impl std::error::Error for OverrideError {}
 
 impl Overrides {
+    /// These changes for another integrator of the scene, without settings that it does not have.
+    pub fn with_integrator(&self, name: &str, desc: &SceneDesc) -> Self {
+        let mut overrides = Self { integrator: Some(name.to_owned()), ..self.clone() };
+        if let Some(integrator) = integrator_called(name, &desc.integrator) {
+            overrides.settings.retain(|(name, _)| applies(name, &integrator));
+        }
+        overrides
+    }
+
     /// Changes the scene; the first change that is not valid is the error.
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         let resolution = desc.film.resolution;

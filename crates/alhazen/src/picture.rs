@@ -28,10 +28,10 @@ pub fn write_picture(
     }
 }
 
-/// A picture as a PNG in a data URI.
-pub(crate) fn data_uri(picture: &Image) -> String {
-    let png =
-        encode(picture, Format::Png, &WriteOptions::default()).expect("invariant: PNG takes any picture");
+/// A picture as a PNG in sRGB, in a data URI.
+pub fn data_uri(picture: &Image) -> String {
+    let png = encode(&*in_srgb(picture), Format::Png, &WriteOptions::default());
+    let png = png.expect("invariant: PNG takes any picture");
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
@@ -121,7 +121,7 @@ fn color_space(chromaticities: Option<Chromaticities>) -> Option<&'static RgbCol
 }
 
 /// The picture converted to sRGB.
-pub(crate) fn in_srgb(picture: &Image) -> Cow<'_, Image> {
+fn in_srgb(picture: &Image) -> Cow<'_, Image> {
     let Some(space) = color_space(picture.metadata.chromaticities) else { return Cow::Borrowed(picture) };
     let matrix = space.convert(RgbColorSpace::srgb());
     let mut converted = Image::from_fn(picture.width(), picture.height(), ["R", "G", "B"], |x, y| {

@@ -1,6 +1,6 @@
 //! Settings of a scene by name, in any part of the scene.
 
-use description::schema::{Member, Setting, Settings, Value};
+use description::schema::{Member, Setting, Settings};
 use description::{
     AcceleratorDesc, CameraDesc, FilmDesc, FilterDesc, IntegratorDesc, OptionsDesc, Origin, SamplerDesc,
     SamplerKind, SceneDesc, Span, Stated,
@@ -177,16 +177,10 @@ pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Re
     Ok(())
 }
 
-/// Names and values of the settings of a part for reports; first, as `name`, the member of its set.
-pub(crate) fn listed<T: Settings + Clone + Default>(desc: &T) -> Vec<(&'static str, Value)> {
-    let member = desc.member().map(|member| ("name", Value::Text(member.names[0].to_owned())));
-    let settings = desc.settings().into_iter().map(|setting| (setting.field.name, setting.value));
-    member.into_iter().chain(settings).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use description::schema::Value;
     use description::{PathDesc, PhotonMappingDesc, RadiosityDesc, SppmDesc, VcmDesc};
 
     #[test]

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{self, replace_file};
 use alhazen::import::{Files, import};
 use alhazen::integrators::{Control, PassError};
 use alhazen::system_clock;
+use compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use serde_json::Value;
 
 use crate::args::Compare;

@@ -4,7 +4,6 @@
 
 mod agreement;
 mod common;
-mod compare;
 mod converted;
 mod documents;
 mod engines;

@@ -5,8 +5,8 @@ mod render;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use alhazen::compare::Contender;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use compare::Contender;
 
 pub use render::{Changes, DisplayOptions, LiveOptions, Render, Resume};
 

@@ -7,14 +7,14 @@
 
 use std::sync::Arc;
 
-use description::{Diagnostic, SceneDesc};
-use geometry::RayStats;
-use image::{Image, ImageError};
-use integrators::{Control, Limits, PassError, Progress, Session, SessionState};
-use scene::{Scene, View};
+use alhazen::description::{Diagnostic, SceneDesc};
+use alhazen::geometry::RayStats;
+use alhazen::image::{Image, ImageError};
+use alhazen::integrators::{self, Control, Limits, PassError, Progress, Session, SessionState};
+use alhazen::scene::{Scene, View};
+use alhazen::{Overrides, film};
 
 use super::Budget;
-use crate::Overrides;
 
 /// The passes that both renders have done, with the mean time and rays of one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ mod map;
 
 use std::fmt::Write;
 
-use image::ImageError;
+use alhazen::image::ImageError;
 
 use self::chart::{Chart, Series, Shape};
 use self::figure::{count, escape, figure, percent};

@@ -2,13 +2,18 @@
 
 use serde_json::{Map, Value as Json};
 
-use description::SamplerKind;
-use description::schema::Value;
-
-use crate::settings::listed;
+use alhazen::description::SamplerKind;
+use alhazen::description::schema::{self, Value};
 
 /// Names and values, in a fixed order.
 pub type Settings = Vec<(&'static str, Value)>;
+
+/// The settings of a part of a scene; first, as `name`, the member of its set.
+pub(super) fn listed<T: schema::Settings + Clone + Default>(desc: &T) -> Settings {
+    let member = desc.member().map(|member| ("name", Value::Text(member.names[0].to_owned())));
+    let settings = desc.settings().into_iter().map(|setting| (setting.field.name, setting.value));
+    member.into_iter().chain(settings).collect()
+}
 
 /// A sampler's name and its settings, without the number of samples.
 pub(super) fn of_sampler(kind: &SamplerKind) -> Settings {
@@ -55,7 +60,7 @@ fn json_value(value: &Value) -> Json {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use description::FilterDesc;
+    use alhazen::description::FilterDesc;
     use serde_json::json as object;
 
     #[test]

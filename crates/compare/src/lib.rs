@@ -25,15 +25,14 @@ mod settings;
 use std::fmt;
 use std::time::Duration;
 
-use description::Diagnostic;
-use image::Image;
+use alhazen::Overrides;
+use alhazen::description::Diagnostic;
+use alhazen::image::Image;
 
 pub use contender::Contender;
 pub use laboratory::Laboratory;
 pub use measure::{Bias, Measure, Parts, ReferenceNoise};
 pub use settings::Settings;
-
-use crate::Overrides;
 
 /// The budget of each picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,11 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use description::SceneDesc;
-use description::schema::Settings;
-
-use crate::settings::{applies, integrator_called};
-use crate::{OverrideError, Overrides};
+use alhazen::Overrides;
+use alhazen::description::SceneDesc;
+use alhazen::description::schema::Settings;
 
 /// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in
 /// `path:maxdepth=8`.
@@ -21,10 +19,7 @@ impl Contender {
     /// The overrides of this contender: the `shared` ones, without settings that its integrator
     /// does not have, then its own settings.
     pub(super) fn overrides(&self, scene: &SceneDesc, shared: &Overrides) -> Overrides {
-        let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..shared.clone() };
-        if let Some(integrator) = integrator_called(&self.integrator, &scene.integrator) {
-            overrides.settings.retain(|(name, _)| applies(name, &integrator));
-        }
+        let mut overrides = shared.with_integrator(&self.integrator, scene);
         overrides.settings.extend_from_slice(&self.settings);
         overrides
     }
@@ -32,8 +27,8 @@ impl Contender {
     /// The description that this contender renders, with its [`overrides`](Self::overrides)
     /// applied. Its own settings may concern integrator and sampler only, as all contenders share
     /// one scene and film.
-    pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, OverrideError> {
-        let error = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
+    pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, String> {
+        let error = |problem: &dyn fmt::Display| format!("{self}: {problem}");
         let with_settings = |settings: &[(String, String)]| {
             let mut desc = scene.clone();
             desc.integrator.remove_extra_outputs();
@@ -94,7 +89,7 @@ impl fmt::Display for Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use description::{IntegratorDesc, PathDesc, VcmDesc};
+    use alhazen::description::{IntegratorDesc, PathDesc, VcmDesc};
 
     fn scene(text: &str) -> Result<SceneDesc, String> {
         let contender: Contender = text.parse()?;
@@ -105,7 +100,7 @@ mod tests {
         let desc = SceneDesc::default();
         let settings = shared.iter().map(|&(name, value)| (name.into(), value.into())).collect();
         let overrides = contender.overrides(&desc, &Overrides { settings, ..Overrides::default() });
-        contender.scene(&desc, &overrides).map_err(|error| error.to_string())
+        contender.scene(&desc, &overrides)
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use description::{Diagnostic, SceneDesc};
-use image::flip::{PIXELS_PER_DEGREE, hdr_flip};
-use image::{Image, Window};
-use integrators::{Control, PassError, Progress};
-use scene::{Scene, View};
+use alhazen::description::{Diagnostic, SceneDesc};
+use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
+use alhazen::image::{Image, Window};
+use alhazen::integrators::{Control, PassError, Progress};
+use alhazen::scene::{self, Scene, View};
+use alhazen::{Overrides, film};
 
 use super::measure::{measure, reference_noise};
 use super::paired_renders::PairedRenders;
@@ -14,8 +15,6 @@ use super::{
     Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
     settings,
 };
-use crate::settings::listed;
-use crate::{OverrideError, Overrides};
 
 /// The default budget of a reference, in budgets of a contender: its variance is then a sixteenth
 /// of that of the same contender.
@@ -92,7 +91,7 @@ impl Laboratory {
             budget: plan.budget,
             seed: desc.sampler.seed.unwrap_or(desc.options.seed),
             threads: plan.threads,
-            filter: listed(&desc.filter.value),
+            filter: settings::listed(&desc.filter.value),
             changes: changes(&plan.overrides),
         };
         let reference = match plan.reference {
@@ -195,8 +194,7 @@ fn entry(
     };
     let shared = Overrides { samples_per_pixel, ..overrides.clone() };
     let overrides = contender.overrides(scene, &shared);
-    let wrong = |error: OverrideError| PlanError::Plan(error.to_string());
-    let mut desc = contender.scene(scene, &overrides).map_err(wrong)?;
+    let mut desc = contender.scene(scene, &overrides).map_err(PlanError::Plan)?;
     desc.film.save_fp16 = false;
     Ok(Entry { name: contender.title(&desc), desc, overrides })
 }
@@ -287,7 +285,7 @@ fn run(
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
     Ok(Some(Run {
         name: entry.name.clone(),
-        settings: listed(&entry.desc.integrator.value).split_off(1),
+        settings: settings::listed(&entry.desc.integrator.value).split_off(1),
         sampler: settings::of_sampler(&entry.desc.sampler.kind),
         notes: pair.notes(),
         checkpoints,

@@ -17,8 +17,8 @@
 //! other from the difference of the two pictures' means, which includes noise that all pixels
 //! share.
 
-use image::Image;
-use image::metrics::RELATIVE_EPSILON;
+use alhazen::image::Image;
+use alhazen::image::metrics::RELATIVE_EPSILON;
 
 /// A mean squared error, and its parts: noise and bias.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -174,7 +174,7 @@ pub(super) fn reference_noise(halves: &[Image; 2], reference: &Image) -> Referen
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::metrics::compare;
+    use alhazen::image::metrics::compare;
     use testkit::Random;
 
     const SIDE: u32 = 64;

@@ -1,11 +1,11 @@
 //! The pictures of a page and their error maps, as data URIs.
 
-use image::false_color::signed_false_color;
-use image::metrics::RELATIVE_EPSILON;
-use image::{Image, ImageError, require_memory};
+use alhazen::data_uri;
+use alhazen::image::false_color::signed_false_color;
+use alhazen::image::metrics::RELATIVE_EPSILON;
+use alhazen::image::{Image, ImageError, require_memory};
 
-use crate::compare::Comparison;
-use crate::picture::{data_uri, in_srgb};
+use crate::Comparison;
 
 /// Width of the blocks over which errors are averaged, in pixels.
 const BLOCK: u32 = 8;
@@ -51,11 +51,11 @@ impl Maps {
         let (scale, block_scale) = (scale(&errors), scale(&blocks));
         let runs =
             comparison.runs.iter().zip(errors.iter().zip(&blocks)).map(|(run, (error, blocks))| RunMaps {
-                picture: data_uri(&in_srgb(&run.pictures[0])),
+                picture: data_uri(&run.pictures[0]),
                 error: colored(error, scale),
                 blocks: colored(blocks, block_scale),
             });
-        Ok(Self { reference: data_uri(&in_srgb(reference)), runs: runs.collect(), scale, block_scale })
+        Ok(Self { reference: data_uri(reference), runs: runs.collect(), scale, block_scale })
     }
 }
 

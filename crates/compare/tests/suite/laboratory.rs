@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{Image, metrics};
 use alhazen::import::{MemoryAssets, import};
 use alhazen::integrators::{Control, PassError};
 use alhazen::{Overrides, render_file, system_clock};
+use compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use serde_json::Value;
 
 /// Two walls and a light, with diffuse interreflection.
