@@ -2,7 +2,8 @@
 
 #![no_main]
 
-use alhazen_import::{MemoryAssets, import};
+use alhazen_assets::MemoryAssets;
+use alhazen_import::import;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

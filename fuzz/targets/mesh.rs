@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use alhazen_import::{read_obj, read_ply, read_stl};
+use alhazen_assets::{read_obj, read_ply, read_stl};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

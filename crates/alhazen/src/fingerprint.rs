@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use import::AssetSource;
+use assets::AssetSource;
 
 /// An asset source that hashes all files that the importer reads: the scene, its includes, meshes
 /// and images.
@@ -57,7 +57,7 @@ impl AssetSource for Fingerprint<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use import::MemoryAssets;
+    use assets::MemoryAssets;
 
     fn hash(scene: &str, files: &[(&str, &str)]) -> [u8; 32] {
         let assets = files.iter().fold(MemoryAssets::default(), |all, (path, text)| all.with(*path, *text));

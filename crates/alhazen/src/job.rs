@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use assets::AssetSource;
+use description::Imported;
 use description::{Diagnostic, SceneDesc, Span};
 use film::Film;
 use image::{Image, ImageError};
-use import::{AssetSource, Imported};
 use integrators::{Control, Limits, PassError, Session, SessionState, Stop};
 use math::DMat4;
 use scene::{Scene, View};

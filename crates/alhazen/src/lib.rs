@@ -6,8 +6,8 @@
 //! [`render_file`] does all but the last. A [`trace::PixelTrace`] shows what happens along the
 //! paths of a pixel.
 
+pub use assets;
 pub use description;
-pub use export;
 pub use film;
 pub use geometry;
 pub use image;
@@ -15,6 +15,7 @@ pub use import;
 pub use integrators;
 pub use lanes;
 pub use math;
+pub use pbrt;
 pub use sampling;
 pub use scattering;
 pub use scene;

@@ -142,7 +142,7 @@ fn cannot_set(name: &str, value: &str, reason: &str) -> OverrideError {
 
 /// The error of an unknown name, with the nearest known one, or all.
 fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
-    let instead = match import::closest(name, known.iter().copied()) {
+    let instead = match description::closest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("there are {}", known.join(", ")),
     };

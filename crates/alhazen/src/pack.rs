@@ -8,9 +8,11 @@ use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use assets::{AssetSource, MemoryAssets};
+use description::Imported;
 use description::SceneDesc;
-use export::{ExportError, export};
-use import::{AssetSource, Imported, Manifest, MemoryAssets, import, is_archive};
+use import::{Manifest, import, is_archive};
+use pbrt::{ExportError, export};
 use zip::result::ZipError;
 use zip::write::{SimpleFileOptions, ZipWriter};
 use zip::{CompressionMethod, DateTime};

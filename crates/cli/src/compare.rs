@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use alhazen::assets::Files;
 use alhazen::image::{self, replace_file};
-use alhazen::import::{Files, import};
+use alhazen::import::import;
 use alhazen::integrators::{Control, PassError};
 use alhazen::system_clock;
 use compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};

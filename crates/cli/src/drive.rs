@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use alhazen::assets::AssetSource;
+use alhazen::description::Imported;
 use alhazen::description::schema::Settings;
 use alhazen::description::{Diagnostic, SceneDesc};
 use alhazen::image::DisplaySettings;
-use alhazen::import::{AssetSource, Imported, import};
+use alhazen::import::import;
 use alhazen::integrators::{Control, Limits, PassError, Session};
 use alhazen::{Header, Job, Overrides, PreviewSchedule, system_clock};
 

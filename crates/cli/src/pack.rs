@@ -4,8 +4,9 @@ use std::fmt::Write;
 use std::io::BufWriter;
 use std::path::Path;
 
+use alhazen::assets::Files;
 use alhazen::image::replace_file_with;
-use alhazen::import::{Files, is_archive};
+use alhazen::import::is_archive;
 use alhazen::{PackError, pack as write_archive};
 use serde_json::json;
 

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use alhazen::assets::Files;
 use alhazen::description::SceneDesc;
-use alhazen::import::Files;
 use alhazen::integrators::Limits;
 use alhazen::{Fingerprint, RenderOrder, Shard};
 

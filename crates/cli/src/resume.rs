@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use alhazen::import::Files;
+use alhazen::assets::Files;
 use alhazen::integrators::Limits;
 use alhazen::{Fingerprint, Shard};
 

@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use alhazen::Job;
+use alhazen::assets::Files;
 use alhazen::description::{Diagnostic, SceneDesc};
-use alhazen::export::{ExportError, export};
 use alhazen::image::replace_file;
-use alhazen::import::{Files, import};
+use alhazen::import::import;
+use alhazen::pbrt::{ExportError, export};
 use serde_json::json;
 
 use crate::args::{Check, ConvertScene};

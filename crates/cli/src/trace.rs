@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use alhazen::Overrides;
+use alhazen::assets::Files;
 use alhazen::image::replace_file;
-use alhazen::import::Files;
 use alhazen::integrators::Control;
 use alhazen::system_clock;
 use alhazen::trace::{Drawing, PixelTrace, SampleTrace, Side, TraceError, TraceStep, to_ply};

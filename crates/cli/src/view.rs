@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::Overrides;
+use alhazen::assets::Files;
 use alhazen::description::Diagnostic;
-use alhazen::import::Files;
 use alhazen::integrators::Control;
 use view::planet::{Outing, PlanetReport, Spent};
 use view::{Renderer, Report, Shot, Stages, World};

@@ -115,6 +115,16 @@ impl DiagnosticList {
         }
     }
 
+    /// Adds an error.
+    pub fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.push(Diagnostic::error(code, message, span));
+    }
+
+    /// Adds a warning.
+    pub fn warning(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.push(Diagnostic::warning(code, message, span));
+    }
+
     /// Whether errors were left out.
     pub fn has_too_many_errors(&self) -> bool {
         self.errors_left_out > 0

@@ -17,6 +17,7 @@ mod diagnostic;
 mod film;
 mod filter;
 mod image;
+mod imported;
 mod inside;
 mod integrator;
 mod light;
@@ -32,6 +33,7 @@ pub mod schema;
 mod shape;
 mod source;
 mod substance;
+mod suggest;
 mod texture;
 mod transform;
 mod voxels;
@@ -48,6 +50,7 @@ pub use color::{ColorSpaceDesc, SpectrumDesc};
 pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
+pub use imported::Imported;
 pub use inside::{HairColor, SubsurfaceScattering};
 pub use integrator::{
     AmbientOcclusionDesc, BdptDesc, Connected, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
@@ -73,6 +76,7 @@ pub use shape::{
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use substance::Substance;
+pub use suggest::{closest, did_you_mean};
 pub use texture::{
     EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, UvImageDesc, WrapMode,

@@ -21,9 +21,10 @@ use serde_json::{Value, json};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use crate::assets::{AssetSource, read_at_most};
-use crate::report::Report;
-use crate::{Imported, import_file};
+use crate::import_file;
+use assets::{AssetSource, read_at_most};
+use description::DiagnosticList;
+use description::Imported;
 
 /// What an archive holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,7 +69,7 @@ pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
     match Archive::open(assets, path) {
         Ok(archive) => import_file(Path::new(&archive.manifest.scene), &archive),
         Err(error) => {
-            let mut report = Report::default();
+            let mut report = DiagnosticList::default();
             let message = format!("cannot read the archive `{}`: {error}", path.display());
             report.error("unreadable-archive", message, Span::NONE);
             let (desc, sources) = (SceneDesc::default(), SourceMap::default());
@@ -197,7 +198,7 @@ mod tests {
     use zip::write::{SimpleFileOptions, ZipWriter};
 
     use super::*;
-    use crate::MemoryAssets;
+    use assets::MemoryAssets;
 
     const ROOM: &str = "Include \"../parts/light.pbrt\" WorldBegin Shape \"sphere\"";
 

@@ -1,38 +1,26 @@
 //! Scene and mesh files read into a [`SceneDesc`](description::SceneDesc).
 //!
 //! [`import`] always gives a description: the scene as far as the files were valid, the texts that
-//! were read, and all errors and warnings about them. Files are read through an [`AssetSource`]
-//! only.
+//! were read, and all errors and warnings about them. Files are read through an
+//! [`AssetSource`] only.
 
 mod archive;
-mod assets;
-mod foreign;
 mod gltf;
-mod ies;
-mod images;
-mod imported;
 mod log;
-mod look;
-mod measured;
 mod mesh;
-mod nanovdb;
-mod number;
-mod pbrt;
-mod report;
+mod primitives;
 mod selection;
-mod suggest;
+mod studio;
 #[cfg(feature = "usd")]
 mod usd;
-mod view;
 
 use std::path::Path;
 
 pub use archive::{Manifest, is_archive};
-pub use assets::{AssetSource, Files, MemoryAssets};
-pub use imported::Imported;
-pub use mesh::{Mesh, MeshError, read_obj, read_ply, read_stl, refit_camera};
-pub use pbrt::{Argument, ArgumentValues, Motion, Placement, SceneBuilder};
-pub use suggest::closest;
+pub use studio::refit_camera;
+
+use assets::AssetSource;
+use description::Imported;
 
 /// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), a
 /// glTF or (with the feature `usd`) a USD file, after whose name `#` and settings may follow
@@ -44,8 +32,8 @@ pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {
 }
 
 fn import_file(path: &Path, assets: &dyn AssetSource) -> Imported {
-    match mesh::Format::from_path(path) {
-        Some(format) => mesh::scene::read(path, format, assets),
+    match assets::mesh::Format::from_path(path) {
+        Some(format) => mesh::read(path, format, assets),
         #[cfg(feature = "usd")]
         None if usd::is_named_by(path, assets) => usd::read(path, assets),
         None if gltf::is_named_by(path, assets) => gltf::read(path, assets),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use description::{Diagnostic, Span};
 
-use crate::report::Report;
+use description::DiagnosticList;
 
 /// What is wrong with a file, and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub(crate) type Result<T> = std::result::Result<T, Fault>;
 /// Collects messages about a file.
 #[derive(Default)]
 pub(crate) struct Log {
-    report: Report,
+    report: DiagnosticList,
     /// Warnings by what they say: their first place, and their number.
     warnings: HashMap<(&'static str, String), usize>,
     order: Vec<(&'static str, String, String, usize)>,
@@ -62,7 +62,7 @@ impl Log {
 
     /// Whether so much is wrong that reading stops.
     pub fn is_full(&self) -> bool {
-        self.report.is_full()
+        self.report.has_too_many_errors()
     }
 
     /// All messages.

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use description::{SceneDesc, SourceMap};
 
-use crate::assets::AssetSource;
 use crate::log::{Fault, Log, Result};
-use crate::{Imported, number};
+use assets::AssetSource;
+use assets::number;
+use description::Imported;
 
 /// A choice by its name or its number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,7 +114,7 @@ pub(crate) fn read(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::MemoryAssets;
+    use assets::MemoryAssets;
 
     #[test]
     fn a_fragment_selects() {

@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use alhazen::import::{Argument, ArgumentValues, Motion, Placement};
 use alhazen::math::{DMat4, DVec3};
+use alhazen::pbrt::{Argument, ArgumentValues, Motion, Placement};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -42,7 +42,7 @@ pub struct SceneBuilder {
 
 #[derive(Default)]
 struct State {
-    builder: alhazen::import::SceneBuilder,
+    builder: alhazen::pbrt::SceneBuilder,
     calls: Calls,
     /// The number of things that have names.
     names: u32,

@@ -1,7 +1,7 @@
 //! Colours that cannot be meant.
 
 use alhazen::description::OpenPbrDesc;
-use alhazen::import::{Argument, ArgumentValues};
+use alhazen::pbrt::{Argument, ArgumentValues};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

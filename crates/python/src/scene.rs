@@ -3,9 +3,12 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use alhazen::assets::{AssetSource, Files, MemoryAssets};
+use alhazen::description::Imported;
 use alhazen::description::schema::Settings;
 use alhazen::description::{Diagnostic, FileId, SourceMap};
-use alhazen::import::{AssetSource, Files, Imported, MemoryAssets, SceneBuilder, import, is_archive};
+use alhazen::import::{import, is_archive};
+use alhazen::pbrt::SceneBuilder;
 use alhazen::{ConvertError, Fingerprint, PackError, integrator_names, pack, pack_converted};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyOSError, PyValueError};

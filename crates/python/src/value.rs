@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use alhazen::import::{Argument, ArgumentValues, Motion};
 use alhazen::math::DMat4;
+use alhazen::pbrt::{Argument, ArgumentValues, Motion};
 use numpy::{
     PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,

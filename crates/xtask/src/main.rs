@@ -76,7 +76,7 @@ fn main() -> ExitCode {
 /// Writes what is generated: the tests that compare the pages with the code write them instead.
 fn docs(root: &Path) -> Result<(), String> {
     let mut tests = command::cargo(root);
-    tests.args(["test", "--package", "alhazen-import", "--lib", "is_generated"]);
+    tests.args(["test", "--package", "alhazen-pbrt", "--lib", "is_generated"]);
     command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))?;
     let mut tests = command::cargo(root);
     tests.args(["test", "--package", "alhazen", "--test", "suite", "is_generated"]);

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use alhazen::assets::{Files, MemoryAssets};
 use alhazen::description::SceneDesc;
-use alhazen::export::export;
-use alhazen::import::{Files, MemoryAssets, import};
+use alhazen::import::import;
 use alhazen::integrators::Control;
+use alhazen::pbrt::export;
 use alhazen::{Job, Overrides};
 
 use crate::common::{data, files_below};

@@ -4,9 +4,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use alhazen::assets::{AssetSource, Files, MemoryAssets};
 use alhazen::description::{AmbientOcclusionDesc, IntegratorDesc, PathDesc, SceneDesc};
 use alhazen::geometry::InstructionSet;
-use alhazen::import::{AssetSource, Files, MemoryAssets, import};
+use alhazen::import::import;
 use alhazen::integrators::{
     self, AmbientOcclusion, Control, Integrator, Limits, PixelLoop, RayCasting, Session, SessionState,
     WaveIntegrator, Wavefront, Whitted,

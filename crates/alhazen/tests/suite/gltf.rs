@@ -3,7 +3,8 @@
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::common::{data, files_below};
-use alhazen::import::{Files, MemoryAssets, import};
+use alhazen::assets::{Files, MemoryAssets};
+use alhazen::import::import;
 use alhazen::integrators::Control;
 use alhazen::{Job, Overrides, render_file};
 

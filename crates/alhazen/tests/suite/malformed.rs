@@ -5,7 +5,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::{data, files_below, scene_text};
-use alhazen::import::{AssetSource, Files, import};
+use alhazen::assets::{AssetSource, Files};
+use alhazen::import::import;
 use alhazen::integrators::Control;
 use alhazen::{Job, Overrides};
 

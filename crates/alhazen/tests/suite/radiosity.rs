@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use alhazen::assets::{Files, read_ply};
 use alhazen::image::Image;
-use alhazen::import::{Files, import, read_ply};
+use alhazen::import::import;
 use alhazen::integrators::{Control, Limits, OutputFile, Session};
 use alhazen::scene::View;
 use alhazen::{Job, Overrides};

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use alhazen::assets::Files;
+use alhazen::description::Imported;
 use alhazen::description::{AcceleratorDesc, Diagnostic, SceneDesc};
-use alhazen::import::{Files, Imported, import};
+use alhazen::import::import;
 use alhazen::integrators::Control;
 use alhazen::{CompiledJob, Job, Overrides};
 

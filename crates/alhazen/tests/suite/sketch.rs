@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
+use alhazen::assets::Files;
 use alhazen::image::{Image, Window};
-use alhazen::import::{Files, import};
+use alhazen::import::import;
 use alhazen::integrators::Control;
 use alhazen::{Job, Overrides};
 

@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
+use alhazen::assets::MemoryAssets;
 use alhazen::device::Kernels;
-use alhazen::import::MemoryAssets;
 use alhazen::realtime::{Realtime, Weights};
 use serde_json::{Value, json};
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use alhazen::Job;
+use alhazen::assets::MemoryAssets;
 use alhazen::device::{Kernels, Schedule};
-use alhazen::import::MemoryAssets;
 use alhazen::integrators::{Control, Limits};
 use serde_json::{Map, Value, json};
 

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use alhazen::Job;
+use alhazen::assets::MemoryAssets;
 use alhazen::description::{Diagnostic, SceneDesc};
-use alhazen::import::{MemoryAssets, import};
+use alhazen::import::import;
 use alhazen::scene::Scene;
 use alhazen_bench::mesh::{BenchMesh, SplitMix64};
 

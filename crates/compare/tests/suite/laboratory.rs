@@ -7,8 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
+use alhazen::assets::MemoryAssets;
 use alhazen::image::{Image, metrics};
-use alhazen::import::{MemoryAssets, import};
+use alhazen::import::import;
 use alhazen::integrators::{Control, PassError};
 use alhazen::{Overrides, render_file, system_clock};
 use compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};

@@ -4,10 +4,10 @@
 use std::path::Path;
 
 use alhazen_gpu::Algorithm;
+use assets::MemoryAssets;
 use description::{LightTracingDesc, PathDesc, SimplePathDesc};
 use film::Development;
 use image::PixelSource;
-use import::MemoryAssets;
 
 use crate::pictures::{Case, SAMPLES};
 

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use alhazen_gpu::{Algorithm, Renderer};
+use assets::{Files, MemoryAssets};
 use description::{MltDesc, PathDesc};
 use image::Image;
-use import::{Files, MemoryAssets};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 

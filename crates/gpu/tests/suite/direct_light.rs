@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use alhazen_gpu::{Algorithm, Kernels, Realtime, Weights};
+use assets::{Files, MemoryAssets};
 use description::PathDesc;
-use import::{Files, MemoryAssets};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::View;

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use alhazen_gpu::Algorithm;
+use assets::MemoryAssets;
 use description::{MaterialKind, PathDesc};
-use import::MemoryAssets;
 use scattering::{MeasuredData, MeasuredGrid, MeasuredTable};
 
 use crate::pictures::{Case, imported};

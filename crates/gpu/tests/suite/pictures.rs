@@ -4,13 +4,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use alhazen_gpu::{Algorithm, FindFirstHit, Flat, Refusal, Renderer, Schedule, Subject, flatten};
+use assets::{AssetSource, Files, MemoryAssets};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
     SimplePathDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
-use import::{AssetSource, Files, MemoryAssets, import};
+use import::import;
 use integrators::{
     AmbientOcclusion, Bdpt, Control, FirstHits, Integrator, LightTracing, Limits, Mlt, PixelLoop, RandomWalk,
     RayCasting, RayIntegrator, Session, SessionState, SimplePath, Sppm, Whitted,

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use alhazen_gpu::Algorithm;
+use assets::MemoryAssets;
 use description::{LightSamplerDesc, LightTracingDesc, PathDesc};
-use import::MemoryAssets;
 
 use crate::pictures::Case;
 

@@ -5,9 +5,10 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use alhazen_gpu::{Device, DrawError, Drawing, Rasterizer};
+use assets::MemoryAssets;
 use film::Film;
 use image::Image;
-use import::{MemoryAssets, import};
+use import::import;
 use math::{Bounds2i, Vec2};
 use sampling::Rng;
 use scene::camera::CameraSample;

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use alhazen_gpu::Algorithm;
+use assets::MemoryAssets;
 use image::{ColorEncoding, Format, Image, WriteOptions};
-use import::MemoryAssets;
 
 use crate::pictures::Case;
 

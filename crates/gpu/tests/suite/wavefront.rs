@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use alhazen_gpu::{Algorithm, FindFirstHit, Renderer, Schedule};
+use assets::MemoryAssets;
 use image::Image;
-use import::MemoryAssets;
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::View;

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use super::document::Document;
 use super::json::{Fault, Place, Result};
 use super::{meshopt, uri};
-use crate::assets::AssetSource;
 use crate::log::Log;
+use assets::AssetSource;
 
 /// The bytes of a file, and what may be made of them.
 pub(super) struct Buffers {

@@ -6,7 +6,7 @@ use math::DMat4;
 use super::json::{Fault, Place, Result};
 use super::scene::Drawn;
 use crate::selection::Selection;
-use crate::view::{View, camera_from_world, resolution};
+use crate::studio::{View, camera_from_world, resolution};
 
 /// What a camera sees.
 #[derive(Clone, Copy, Debug, PartialEq)]

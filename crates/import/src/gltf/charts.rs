@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use math::{DAffine2, DMat2, DVec2, Point2};
 
-use crate::look::Primitive;
+use crate::primitives::Primitive;
 
 /// Primitives of more charts than this are drawn with one set of texture coordinates.
 const MOST: usize = 256;

@@ -32,15 +32,15 @@ use std::path::Path;
 
 use description::SceneDesc;
 
-use crate::Imported;
-use crate::assets::AssetSource;
 use crate::log::Log;
 use crate::selection::{self, Choice, Selection};
-use crate::view;
+use crate::studio;
 use accessor::Accessor;
 use animation::Animation;
+use assets::AssetSource;
 use buffer::Buffers;
 use camera::Camera;
+use description::Imported;
 use document::Document;
 use json::{Place, Result};
 use light::Light;
@@ -126,7 +126,7 @@ fn fill(
     assembly.add_all();
     let bounds = assembly.bounds;
     let camera = camera::chosen(&drawn, &cameras, selection)?;
-    view::complete(desc, camera, bounds, &[], log);
+    studio::complete(desc, camera, bounds, &[], log);
     Ok(())
 }
 

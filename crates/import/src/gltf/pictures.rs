@@ -15,8 +15,8 @@ use super::document::Document;
 use super::json::{Fault, Place, Result};
 use super::texture::TextureRef;
 use super::uri;
-use crate::assets::AssetSource;
 use crate::log::Log;
+use assets::AssetSource;
 
 /// How the codes of an image are decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

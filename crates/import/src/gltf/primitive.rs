@@ -7,7 +7,7 @@ use super::buffer::Buffers;
 use super::document::Document;
 use super::draco::Packed;
 use super::json::{Place, Result};
-use crate::look::{Primitive, Target};
+use crate::primitives::{Primitive, Target};
 
 /// Numbers of modes that draw points, lines and triangles.
 const POINTS: usize = 0;

@@ -18,7 +18,7 @@ use super::primitive::{self, Reader};
 use super::skin::Skin;
 use super::surface::{Builder, Painted, coordinates};
 use crate::log::Log;
-use crate::look::{self, Look, Primitive, Surface, Vertices};
+use crate::primitives::{self, Look, Primitive, Surface, Vertices};
 
 /// Nodes at a time, and where they are in the world.
 pub(super) struct Pose {
@@ -388,10 +388,10 @@ impl<'s, 'a> Assembly<'s, 'a> {
         let opacity = (!opacities.is_empty()).then(|| {
             let colors = opacities.iter().map(|&opacity| [opacity; 3]).collect();
             let grey = Primitive { colors, ..vertices.start.clone() };
-            look::unwrapped(&grey, [material.opacity; 3]).1
+            primitives::unwrapped(&grey, [material.opacity; 3]).1
         });
-        let (start, color) = look::unwrapped(&vertices.start, material.base.factor);
-        vertices.end = vertices.end.take().map(|end| look::unwrapped(&end, [1.0; 3]).0);
+        let (start, color) = primitives::unwrapped(&vertices.start, material.base.factor);
+        vertices.end = vertices.end.take().map(|end| primitives::unwrapped(&end, [1.0; 3]).0);
         vertices.start = start;
         let mut add = |image: image::Image| {
             let name = place.pointer_to("attributes/COLOR_0");

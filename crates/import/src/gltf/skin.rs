@@ -6,7 +6,7 @@ use super::accessor::Accessor;
 use super::buffer::Buffers;
 use super::document::Document;
 use super::json::{Place, Result};
-use crate::look::Primitive;
+use crate::primitives::Primitive;
 
 /// A skin.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,7 +16,7 @@ use super::material::{AlphaMode, Color, Material, Number};
 use super::pictures::{Edit, Encoding, Pictures, stretched};
 use super::texture::TextureRef;
 use crate::log::Log;
-use crate::look::{Coordinates, Principled, Surface};
+use crate::primitives::{Coordinates, Principled, Surface};
 
 /// The texture coordinates of a file that the meshes of a material have: those of normal maps,
 /// whose directions they are, or of emission. Other textures have mappings from there.

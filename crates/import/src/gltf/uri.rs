@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use base64::engine::general_purpose::{STANDARD, STANDARD_NO_PAD};
 
-use crate::assets::{AssetSource, resolve};
+use assets::{AssetSource, resolve};
 
 /// The bytes that a URI names, relative to the file `base`; on failure, the reason.
 pub(super) fn read(uri: &str, base: &Path, assets: &dyn AssetSource) -> Result<Vec<u8>, String> {
@@ -69,7 +69,7 @@ fn unescaped(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::MemoryAssets;
+    use assets::MemoryAssets;
 
     #[test]
     fn uris_name_data_or_files_beside_the_text() {

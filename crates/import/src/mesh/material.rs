@@ -13,11 +13,11 @@ use description::{
 };
 use image::Image;
 
-use super::mtl::{Channel, Map, ObjMaterial, PRINCIPLED};
-use crate::assets::{AssetSource, resolve};
-use crate::images;
+use assets::mesh::{Channel, Map, ObjMaterial, PRINCIPLED};
+use assets::{AssetSource, resolve};
+
 use crate::log::Log;
-use crate::look::{Coordinates, Principled, Surface};
+use crate::primitives::{Coordinates, Principled, Surface};
 
 /// The paint of vertices on a material: nothing, a factor, or an image that has the factor of the
 /// material in it.
@@ -284,7 +284,7 @@ impl<'a> Surfaces<'a> {
         let handle = match change {
             None => {
                 let encoding = lookup.is_data.then_some(EncodingDesc::Linear);
-                match images::decode(self.assets, &path, encoding) {
+                match assets::decode_image(self.assets, &path, encoding) {
                     Ok(image) => Some(Arc::new(image)),
                     Err(message) => {
                         let message = format!("cannot read the image `{}`: {message}", path.display());

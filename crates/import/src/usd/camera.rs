@@ -6,7 +6,7 @@ use math::DMat4;
 
 use super::stage::Prim;
 use crate::log::Result;
-use crate::view::{View, camera_from_world, resolution};
+use crate::studio::{View, camera_from_world, resolution};
 
 /// The view of a camera that may move.
 pub(super) fn view(prim: &Prim, world_from_camera: [DMat4; 2]) -> Result<View> {

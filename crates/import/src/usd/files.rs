@@ -14,8 +14,8 @@ use openusd::ar::{self, Asset, ResolvedPath};
 
 use super::layer;
 use crate::archive;
-use crate::assets::AssetSource;
 use crate::log::Fault;
+use assets::AssetSource;
 
 /// The files beside a scene.
 pub(super) struct Files<'a> {

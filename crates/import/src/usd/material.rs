@@ -15,7 +15,7 @@ use super::pictures::{Edit, Pictures};
 use super::stage::Prim;
 use super::texture::{Source, Texture, end, source};
 use crate::log::{Log, Result};
-use crate::look::{Coordinates, Principled, Surface};
+use crate::primitives::{Coordinates, Principled, Surface};
 
 /// A material of the file as surfaces of the scene.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use super::stage::Prim;
 use super::subdivision::{Creases, Surface, edge_key, positions};
 use super::topology::{Faces, Values, triangulate};
 use crate::log::{Log, Result};
-use crate::look::{self, Look, Vertices};
+use crate::primitives::{self, Look, Vertices};
 
 /// A mesh, and what its shapes are made with.
 pub(super) struct Mesh<'m, 's, 'a> {
@@ -179,8 +179,8 @@ impl<'s> Mesh<'_, 's, '_> {
         });
         let mut end = end;
         if !is_even {
-            let (unwrapped, picture) = look::unwrapped(&start, [1.0; 3]);
-            end = end.map(|end| look::unwrapped(&end, [1.0; 3]).0);
+            let (unwrapped, picture) = primitives::unwrapped(&start, [1.0; 3]);
+            end = end.map(|end| primitives::unwrapped(&end, [1.0; 3]).0);
             start = unwrapped;
             let name = format!("{}.primvars:displayColor", self.prim.path());
             image = Some(self.desc.images.push(ImageDesc { name, image: picture.into() }));
@@ -212,7 +212,7 @@ impl<'s> Mesh<'_, 's, '_> {
                 if let description::MaterialKind::OpenPbr(principled) = &mut desc.kind {
                     principled.colors[0] = base;
                 }
-                look::Surface { material: self.desc.materials.push(desc), ..surface }
+                primitives::Surface { material: self.desc.materials.push(desc), ..surface }
             });
         }
         let has_normals = material.is_some_and(|material| material.has_normals);

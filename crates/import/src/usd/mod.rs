@@ -29,11 +29,11 @@ use std::path::Path;
 
 use description::SceneDesc;
 
-use crate::Imported;
-use crate::assets::AssetSource;
 use crate::log::{Fault, Log, Result};
 use crate::selection::{self, Selection};
-use crate::view;
+use crate::studio;
+use assets::AssetSource;
+use description::Imported;
 use files::{Files, Resolver};
 use material::Materials;
 use scene::Assembly;
@@ -113,6 +113,6 @@ fn fill(
         faults.into_iter().chain(files.text_faults()).for_each(|fault| log.fault(fault));
     }
     let view = scene::chosen(views, selection.camera.as_ref())?;
-    view::complete(desc, view, bounds, &lamps, log);
+    studio::complete(desc, view, bounds, &lamps, log);
     Ok(())
 }

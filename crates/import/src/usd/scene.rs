@@ -14,7 +14,7 @@ use super::solid::{self, Solid};
 use super::stage::{Prim, Stage, TIMES};
 use super::{camera, curves, xform};
 use crate::log::{Fault, Log, Result};
-use crate::view::{Lamp, View};
+use crate::studio::{Lamp, View};
 
 /// Deepest prim that is drawn, and deepest instance in instances.
 const DEEPEST: usize = 1000;

@@ -7,8 +7,8 @@ use math::{Point2, Vec3};
 use super::primvar::{Counts, Interpolation, Primvar};
 use super::stage::Prim;
 use crate::log::Result;
-use crate::look::Primitive;
-use crate::mesh::polygon;
+use crate::primitives::Primitive;
+use assets::mesh::polygon;
 
 /// Faces of any number of corners.
 #[derive(Clone, Debug, Default, PartialEq)]

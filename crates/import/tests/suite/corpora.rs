@@ -4,7 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use alhazen_import::{Files, Imported, MemoryAssets, import, read_obj, read_ply};
+use alhazen_import::import;
+use assets::{Files, MemoryAssets, read_obj, read_ply};
+use description::Imported;
 use description::MaterialKind;
 use math::spherical_direction;
 use scattering::{Directions, Measured, Scatter, TransportMode};

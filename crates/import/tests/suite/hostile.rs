@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::sync::LazyLock;
 
-use alhazen_import::{MemoryAssets, import, read_obj, read_ply, read_stl};
+use alhazen_import::import;
+use assets::{MemoryAssets, read_obj, read_ply, read_stl};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -1,11 +1,9 @@
 //! Files of all formats: their descriptions, and the messages about their errors.
 
 mod corpora;
-mod directives;
 mod gltf;
 mod hostile;
 mod meshes;
-mod messages;
 mod studio;
 #[cfg(feature = "usd")]
 mod usd;

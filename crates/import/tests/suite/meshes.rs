@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use alhazen_import::{MemoryAssets, Mesh, MeshError, import, read_obj, read_ply};
+use alhazen_import::import;
+use assets::{MemoryAssets, Mesh, MeshError, read_obj, read_ply};
 use description::ShapeKind;
 use flate2::{Compression, write::GzEncoder};
 use math::{Vec2, Vec3};

@@ -1,6 +1,7 @@
 //! The camera of a scene that comes without one.
 
-use alhazen_import::{MemoryAssets, import, refit_camera};
+use alhazen_import::{import, refit_camera};
+use assets::MemoryAssets;
 use description::{CameraKind, SceneDesc, ShapeKind};
 use math::DVec3;
 

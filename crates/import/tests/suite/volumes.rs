@@ -3,7 +3,9 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use alhazen_import::{Imported, MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
+use description::Imported;
 use description::{MediumKind, VoxelsDesc};
 use flate2::{Compression, write::ZlibEncoder};
 

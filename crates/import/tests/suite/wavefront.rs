@@ -1,6 +1,8 @@
 //! OBJ and MTL files as other programs write them.
 
-use alhazen_import::{Imported, MemoryAssets, Mesh, MeshError, import, read_obj};
+use alhazen_import::import;
+use assets::{MemoryAssets, Mesh, MeshError, read_obj};
+use description::Imported;
 use description::{
     FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialDesc, MaterialKind, OpenPbrDesc,
     SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, SpectrumParameter, TextureKind, WrapMode,

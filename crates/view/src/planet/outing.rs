@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use alhazen::Overrides;
+use alhazen::assets::MemoryAssets;
 #[cfg(feature = "gpu")]
 use alhazen::description::Diagnostic;
 use alhazen::description::{CameraDesc, FilterDesc, IntegratorDesc, SamplerKind, TransformDesc};
 #[cfg(feature = "gpu")]
 use alhazen::device::Kernels;
 use alhazen::geometry::GeometryId;
-use alhazen::import::{MemoryAssets, import};
+use alhazen::import::import;
 use alhazen::integrators::{Control, Limits};
 use alhazen::math::{DMat4, Point3, Vec3};
 use planet::{Input, Planet, Substance, Walker, scene};

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use alhazen::description::SceneDesc;
-use alhazen::export::export_camera;
 use alhazen::image::{DisplaySettings, replace_file};
 use alhazen::math::Bounds2i;
+use alhazen::pbrt::export_camera;
 use eframe::egui::{Context, TextureHandle, TextureOptions};
 
 use super::developer::Developer;

@@ -12,8 +12,9 @@ mod renderer;
 use std::path::Path;
 
 use alhazen::Overrides;
+use alhazen::assets::Files;
 use alhazen::description::SceneDesc;
-use alhazen::import::{Files, import};
+use alhazen::import::import;
 use alhazen_view::World;
 
 /// A scene of this repository, small.

@@ -7,11 +7,11 @@ use super::{Finding, rust};
 /// Crates that are programs: they may print, exit and access files.
 const PROGRAMS: [&str; 3] = ["crates/bench/", "crates/cli/", "crates/xtask/"];
 
-/// Where a library may access files: codecs, the importer's `AssetSource`, the showcase, and the
+/// Where a library may access files: codecs, the sources of assets, the showcase, and the
 /// comparison of pages with the code that they are made of.
 const FILE_READERS: [&str; 5] = [
+    "crates/assets/src/source.rs",
     "crates/image/",
-    "crates/import/src/assets.rs",
     "crates/python/",
     "crates/showcase/",
     "crates/testkit/src/generated.rs",
@@ -51,7 +51,7 @@ const NOT_IN_LIBRARIES: [(&str, &str); 6] = [
 
 /// Where pictures are made, so that the same input gives the same bits on every platform: functions
 /// of the standard library are those of the platform's C library.
-const PICTURES: [&str; 11] = [
+const PICTURES: [&str; 12] = [
     "crates/math/",
     "crates/spectrum/",
     "crates/sampling/",
@@ -59,6 +59,7 @@ const PICTURES: [&str; 11] = [
     "crates/geometry/",
     "crates/scattering/",
     "crates/planet/",
+    "crates/assets/",
     "crates/import/",
     "crates/scene/",
     "crates/film/",
@@ -111,7 +112,7 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
                 findings.push(Finding::new(path, number + 1, message));
             }
             if outside(&FILE_READERS) && FILES.iter().any(|word| finds(line, word)) {
-                let message = "files are read by image codecs, the importer's AssetSource and shells alone";
+                let message = "files are read by image codecs, the sources of assets and shells alone";
                 findings.push(Finding::new(path, number + 1, message));
             }
             let global = words_start(line, "static ") || line.contains("thread_local!");
@@ -180,7 +181,7 @@ mod tests {
         for code in ["use std::fs;\n", "let a = File::open(path)?;\n"] {
             assert_eq!(found("crates/scene/src/a.rs", code), 1);
             assert_eq!(found("crates/image/src/a.rs", code), 0);
-            assert_eq!(found("crates/import/src/assets.rs", code), 0);
+            assert_eq!(found("crates/assets/src/source.rs", code), 0);
         }
     }
 

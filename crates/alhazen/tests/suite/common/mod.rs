@@ -5,8 +5,8 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use alhazen::assets::{AssetSource, Files, read_obj, read_ply};
 use alhazen::image::Image;
-use alhazen::import::{AssetSource, Files, read_obj, read_ply};
 use alhazen::integrators::Control;
 use alhazen::{Overrides, RenderError, render_file};
 pub use testkit::data;

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use super::File;
 use crate::corpora::{data, files, shown};
-use alhazen_import::{Files, MemoryAssets, import};
+use alhazen_import::import;
+use assets::{Files, MemoryAssets};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use serde_json::json;

@@ -9,7 +9,9 @@ mod materials;
 mod motion;
 mod packed;
 
-use alhazen_import::{Imported, MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
+use description::Imported;
 use description::{Diagnostic, SceneDesc, Severity};
 use serde_json::{Value, json};
 

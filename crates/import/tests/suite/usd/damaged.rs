@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use super::{QUAD, read, text};
-use alhazen_import::{MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
 use openusd::usd;
 
 /// The longest that a file of this size may take.

@@ -4,7 +4,9 @@ use std::io::{Cursor, Write};
 
 use super::{QUAD, corners, scene, shape, shapes, text, without_errors};
 use crate::corpora::{data, files, shown};
-use alhazen_import::{Files, Imported, MemoryAssets, import};
+use alhazen_import::import;
+use assets::{Files, MemoryAssets};
+use description::Imported;
 use description::{Severity, ShapeKind};
 use zip::write::{SimpleFileOptions, ZipWriter};
 

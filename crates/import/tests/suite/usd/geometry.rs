@@ -1,7 +1,8 @@
 //! Transforms, meshes, shapes with a formula, curves and points.
 
 use super::{QUAD, corners, error, mesh, read_as, scene, shape, shapes, text, warnings, without_errors};
-use alhazen_import::{MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
 use description::{CurveBasis, MaterialKind, ShapeKind, SpectrumDesc, SpectrumParameter};
 use math::{DVec3, Vec3};
 

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use super::{QUAD, error, read_as, scene, shapes, text, warnings, without_errors};
-use alhazen_import::{MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
 use description::{
     AreaLightDesc, CameraKind, InfiniteRadiance, LightDesc, LightKind, SceneDesc, ShapeKind, SpectrumDesc,
 };

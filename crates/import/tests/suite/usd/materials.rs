@@ -1,7 +1,9 @@
 //! Materials, textures, bindings, and colours of surfaces without a material.
 
 use super::{QUAD, error, mesh, messages, number, scene, shape, shapes, text, warnings, without_errors};
-use alhazen_import::{Imported, MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
+use description::Imported;
 use description::{
     FloatParameter, ImageChannel, ImageTextureDesc, MappingDesc, MaterialKind, OpenPbrDesc, SceneDesc,
     Severity, ShapeDesc, SpectrumDesc, SpectrumParameter, TextureKind, WrapMode,

@@ -9,7 +9,9 @@ mod instances;
 mod lights;
 mod materials;
 
-use alhazen_import::{Imported, MemoryAssets, import};
+use alhazen_import::import;
+use assets::MemoryAssets;
+use description::Imported;
 use description::{
     Diagnostic, MaterialKind, MeshDesc, OpenPbrDesc, SceneDesc, Severity, ShapeDesc, ShapeKind, SpectrumDesc,
     SpectrumParameter,

@@ -1,0 +1,111 @@
+//! Lights that are not surfaces, and the emission of surfaces.
+
+use std::collections::BTreeSet;
+
+use description::{
+    AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, TransformDesc,
+    WrapMode,
+};
+use image::ColorEncoding;
+use math::DMat4;
+
+use crate::write::files::Files;
+use crate::write::names::Names;
+use crate::write::settings::parameters;
+use crate::write::statement::{Statement, quoted};
+use crate::write::text::Text;
+use crate::write::textures::uv_lookup;
+
+/// The file of an image whose codes are those of sRGB.
+fn image(desc: &SceneDesc, image: Handle<ImageDesc>, files: &mut Files) -> String {
+    files.image(&desc.images[image].image, ColorEncoding::Srgb)
+}
+
+/// All lights.
+pub(crate) fn lights(
+    desc: &SceneDesc,
+    names: &Names,
+    files: &mut Files,
+    text: &mut Text,
+    extensions: &mut BTreeSet<String>,
+) {
+    for (_, light) in desc.lights.iter() {
+        let LightDesc { kind, world_from_light, scale, medium, group } = &light.value;
+        let mut statement = Statement::new("LightSource", kind.name()).target("light");
+        write(&mut statement, kind, desc, names, files, extensions);
+        statement.float("scale", *scale, 1.0);
+        write_group(&mut statement, group.as_deref(), extensions);
+        // The medium of the camera is in force.
+        let is_elsewhere = *medium != desc.camera.medium;
+        let TransformDesc { start, end, times: _ } = world_from_light;
+        let is_placed = [start, end] != [&DMat4::IDENTITY; 2];
+        text.block(is_placed || is_elsewhere, |text| {
+            text.transform(world_from_light);
+            if is_elsewhere {
+                text.line(&format!("MediumInterface \"\" {}", quoted(names.space(*medium))));
+            }
+            text.statement(statement);
+        });
+    }
+}
+
+fn write(
+    to: &mut Statement,
+    kind: &LightKind,
+    desc: &SceneDesc,
+    names: &Names,
+    files: &mut Files,
+    extensions: &mut BTreeSet<String>,
+) {
+    parameters(to, kind, names);
+    match kind {
+        LightKind::Goniometric { image: picture, .. } | LightKind::Projection { image: picture, .. } => {
+            if let Some(picture) = picture {
+                to.text("filename", &image(desc, *picture, files));
+            }
+        }
+        LightKind::Infinite { radiance: InfiniteRadiance::Image(sky), .. } => {
+            let picture = &desc.images[*sky].image;
+            if picture.width() != picture.height() {
+                extensions.insert("latitude-longitude images".into());
+            }
+            to.text("filename", &image(desc, *sky, files));
+        }
+        LightKind::Infinite { .. }
+        | LightKind::Point { .. }
+        | LightKind::Spot { .. }
+        | LightKind::Distant { .. } => (),
+    }
+}
+
+/// The emission of the surfaces that follow.
+pub(crate) fn area_light(
+    desc: &SceneDesc,
+    light: &AreaLightDesc,
+    names: &Names,
+    files: &mut Files,
+    extensions: &mut BTreeSet<String>,
+) -> Statement {
+    let mut statement = Statement::new("AreaLightSource", "diffuse").target("light");
+    let mut light = light.clone();
+    let group = light.group.take();
+    if let Some(picture) = light.image {
+        light.radiance = AreaLightDesc::default().radiance;
+        let name = image(desc, picture.image, files);
+        statement.text("filename", &name);
+        uv_lookup(&mut statement, &picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
+    }
+    parameters(&mut statement, &light, names);
+    if light.image.is_some() {
+        statement.space = None;
+    }
+    write_group(&mut statement, group.as_deref(), extensions);
+    statement
+}
+
+fn write_group(to: &mut Statement, group: Option<&str>, extensions: &mut BTreeSet<String>) {
+    if let Some(group) = group {
+        extensions.insert("groups of lights".into());
+        to.text("lightgroup", group);
+    }
+}
