@@ -22,10 +22,10 @@ pub use studio::refit_camera;
 use assets::AssetSource;
 use description::Imported;
 
-/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), a
-/// glTF or (with the feature `usd`) a USD file, after whose name `#` and settings may follow
-/// (`walk.glb#time=0.5`), a PLY, OBJ or STL file, which becomes a scene of one object with a camera
-/// and light that show it, or a ZIP archive of a scene and its files.
+/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of
+/// [`Files`](assets::Files)), a glTF or (with the feature `usd`) a USD file, after whose name `#`
+/// and settings may follow (`walk.glb#time=0.5`), a PLY, OBJ or STL file, which becomes a scene of
+/// one object with a camera and light that show it, or a ZIP archive of a scene and its files.
 pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {
     let path = path.as_ref();
     if is_archive(path) { archive::read(path, assets) } else { import_file(path, assets) }
