@@ -75,12 +75,17 @@ fn main() -> ExitCode {
 
 /// Writes what is generated: the tests that compare the pages with the code write them instead.
 fn docs(root: &Path) -> Result<(), String> {
-    let mut tests = command::cargo(root);
-    tests.args(["test", "--package", "alhazen-pbrt", "--lib", "is_generated"]);
-    command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))?;
-    let mut tests = command::cargo(root);
-    tests.args(["test", "--package", "alhazen", "--test", "suite", "is_generated"]);
-    command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))
+    let suites: [&[&str]; 3] = [
+        &["--package", "alhazen-pbrt", "--lib"],
+        &["--package", "alhazen", "--test", "suite"],
+        &["--package", "alhazen-cli", "--features", "gpu", "--lib"],
+    ];
+    for suite in suites {
+        let mut tests = command::cargo(root);
+        tests.arg("test").args(suite).arg("is_generated");
+        command::succeed(tests.env("ALHAZEN_WRITE_DOCS", "1"))?;
+    }
+    Ok(())
 }
 
 /// The root of the workspace: two folders above this crate.

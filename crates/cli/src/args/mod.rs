@@ -1,5 +1,7 @@
 //! The definition of the command line: every command, option, unit and default.
 
+#[cfg(all(test, feature = "gpu"))]
+mod reference;
 mod render;
 
 use std::path::PathBuf;
@@ -31,58 +33,60 @@ pub const EXIT_CODES: &str = concat!(
     "2 the command line is invalid, 130 interrupted."
 );
 
+/// The scene argument of all commands.
+const SCENE: &str = "Scene file: pbrt-v4 (also gzipped), glTF (.gltf, .glb), USD (.usd, .usda, .usdc, .usdz), \
+                     PLY, OBJ, STL, or an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input";
+
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render a scene file to pictures.
+    /// Render a scene and write its pictures.
     ///
-    /// Pictures are written when they are done, and intermediate pictures before that: first a
-    /// sketch in larger pixels, if there are more than 65536 pixels, then one after about a second,
-    /// then one whenever the time has doubled, but at least every minute. Ctrl-C ends the render
-    /// after the current samples, or with --checkpoint after the current pass if passes are not
-    /// saved yet, and writes the picture so far; a second Ctrl-C ends the program at once, with the
-    /// picture that was written last.
+    /// Intermediate pictures are written while rendering: a low-resolution preview, if there are
+    /// more than 65536 pixels, the picture after about one second, and then whenever the elapsed
+    /// time has doubled, at least once a minute. Ctrl-C finishes the current samples, or with
+    /// --checkpoint the current pass if none is saved yet, and writes the picture; a second Ctrl-C
+    /// quits at once and keeps the last picture written.
     Render(Box<Render>),
-    /// Resume a render that was saved by --checkpoint.
+    /// Continue a render from the film file of --checkpoint.
     ///
-    /// The film file stores the path of the scene and the options; the files of the scene must not
-    /// have changed. The picture has the same bits as that of a render that was not interrupted.
-    /// The film file is saved again as by --checkpoint.
+    /// The film file holds the path of the scene and the options; the scene's files must not have
+    /// changed. The picture has the same bits as that of an uninterrupted render. The film file is
+    /// saved again as by --checkpoint.
     Resume(Resume),
-    /// Merge the film files of all shards of a render, and write the picture: it has the same bits
-    /// as that of a render that was not split.
+    /// Merge the film files of all shards of a render and write the picture.
+    ///
+    /// It has the same bits as that of a render without shards.
     Merge(Merge),
-    /// Render a scene by several algorithms, and report how far each is from a reference.
+    /// Compare integrators on one scene by their error against a reference.
     ///
-    /// All get the same time, or the same number of samples. The report has the pictures beside the
-    /// reference, maps of their errors, error over time, bias and noise apart, efficiency and rays.
-    /// Ctrl-C ends with a report of what has been done.
+    /// All get the same rendering time, or the same number of samples. The report has the pictures
+    /// beside the reference, error maps, error over time, bias and noise apart, efficiency and ray
+    /// counts. Ctrl-C ends with a report of what is done.
     Compare(Box<Compare>),
-    /// Show what happens along the paths of a pixel: in words, and as a drawing.
+    /// Trace the paths of one pixel, as text and as a drawing.
     ///
-    /// Each sample's rays, what they hit, how it scatters light, shadow rays, and the light that
-    /// arrives, of the algorithms that estimate pixels one by one. The picture adds the same
-    /// samples.
+    /// Of each sample: rays, intersections, scattering, shadow rays and contributions to the pixel,
+    /// for integrators that estimate pixels one by one. The sum is that of the rendered picture.
     TracePixel(Box<TracePixel>),
-    /// Walk through a scene in a window, or measure how fast that is without one.
+    /// Explore a scene in a window, or measure frame times without one.
     ///
-    /// While the camera moves, pictures are coarse enough to be quick; when it rests, they become
-    /// the picture of `render`, sample by sample. Lights and materials can be changed, and the
-    /// paths of a pixel be seen. Programs built from source have the window with the cargo feature
-    /// `view`.
+    /// While the camera moves, the resolution adapts to the frame time; when it stops, the picture
+    /// converges to that of `render`. Lights and materials can be edited, and the paths of a pixel
+    /// shown. Programs built from source have the window with the cargo feature `view`.
     View(Box<View>),
-    /// Check and convert scene files.
+    /// Check, convert and pack scene files.
     #[command(subcommand)]
     Scene(Scene),
-    /// Inspect, compare and convert pictures.
+    /// Inspect, compare and convert image files.
     #[command(subcommand)]
     Image(Image),
-    /// Show what the program finds on this machine: processor, memory, limits, folder.
+    /// Report what affects a render on this machine: processor, memory, limits, folder.
     ///
-    /// Problems are shown with what they mean for a render, and what still works. The exit code is
-    /// 0 in any case.
+    /// Each problem is shown with its effect on a render and what still works. The exit code is 0
+    /// in any case.
     Doctor(Doctor),
-    /// Write a script that completes commands and options in a shell.
+    /// Write a completion script for a shell.
     Completions(Completions),
     /// Write the manual as man pages.
     Man(Man),
@@ -114,20 +118,20 @@ impl Command {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Merge {
-    /// The film files, in any order.
+    /// Film files of the shards, in any order.
     #[arg(value_name = "FILM", required = true)]
     pub films: Vec<PathBuf>,
-    /// Write the picture here, in the format of the extension. Can be given several times.
-    /// [default: the first film file's name with .exr, in the current folder]
+    /// Output picture, in the format of its extension. Can be given several times. [default: the
+    /// first film file's name with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// How pictures for displays show the light.
     #[command(flatten)]
     pub display: DisplayOptions,
-    /// Print nothing but errors; with --json, the JSON object too.
+    /// Print errors only; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
-    /// Write one JSON object to standard output instead of text, errors too.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -137,42 +141,41 @@ pub struct Merge {
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 #[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
 pub struct Compare {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
-    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene.
+    #[arg(help = SCENE)]
     pub scene: PathBuf,
-    /// The algorithms, see the list below, separated by commas. Each may have settings of its own:
-    /// path,path:maxdepth=8.
+    /// Integrators to compare (listed below), separated by commas, each with settings of its own if
+    /// needed: path,path:maxdepth=8.
     #[arg(long, value_name = "NAME,NAME,…", required = true, value_delimiter = ',')]
     pub integrators: Vec<Contender>,
-    /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
-    /// algorithm renders two pictures, from different seeds, so that noise and bias can be
-    /// separated.
+    /// Rendering time of each picture: 30s, 1.5min, 2h; a number alone is seconds. Each integrator
+    /// renders two pictures from different seeds, which separates noise from bias.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
-    /// The picture to measure errors against. [default: one is rendered]
+    /// Reference picture. [default: one is rendered]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["reference_with", "reference_spp"])]
     pub reference: Option<PathBuf>,
-    /// The algorithm that renders the reference. [default: the first one listed]
+    /// Integrator of the rendered reference. [default: the first one listed]
     #[arg(long, value_name = "NAME")]
     pub reference_with: Option<Contender>,
-    /// Samples per pixel of the reference. [default: 16 times the time or samples of one picture]
+    /// Samples per pixel of the rendered reference. [default: 16 times the time or samples of one
+    /// picture]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub reference_spp: Option<u32>,
-    /// Write the report here: a page that opens without a network; the same in numbers goes beside
-    /// it, as .json. [default: the scene's name with .html, in the current folder]
+    /// Report: a self-contained HTML page, and the same figures as .json beside it. [default: the
+    /// scene's name with .html, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Changes to the scene, for all.
+    /// Overrides of the scene, for all integrators.
     #[command(flatten)]
     pub changes: Changes,
-    /// Print nothing but errors; with --json, the JSON object too.
+    /// Print errors only; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
-    /// Write the report's numbers to standard output, as one JSON object instead of text, errors
-    /// too.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -181,36 +184,36 @@ pub struct Compare {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct TracePixel {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene.
+    #[arg(help = SCENE)]
     pub scene: PathBuf,
-    /// Column of the pixel, counted from 0 at the left.
+    /// Column of the pixel, from 0 at the left.
     #[arg(value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     pub x: i32,
-    /// Row of the pixel, counted from 0 at the top.
+    /// Row of the pixel, from 0 at the top.
     #[arg(value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     pub y: i32,
-    /// The number of samples to trace.
+    /// Number of samples to trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub samples: u32,
-    /// The index of the first of them.
+    /// Index of the first sample.
     #[arg(long, value_name = "I", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..1 << 30))]
     pub first: u32,
-    /// Draw the rays over a view of the scene that is cut open (.svg), or write them as coloured
-    /// edges for programs that show meshes (.ply). Can be given several times.
+    /// Drawing of the rays: over a cutaway view of the scene (.svg), or as coloured edges for mesh
+    /// viewers (.ply). Can be given several times.
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// From where to draw: side, from the right of the camera; top; or front, as the camera looks.
-    /// [default: where the rays take the most space]
+    /// View of the drawing: side, from the camera's right; top; or front, along the view direction.
+    /// [default: the one in which the rays take the most space]
     #[arg(long, value_name = "SIDE", value_parser = ["side", "top", "front"])]
     pub from: Option<String>,
-    /// The algorithm, see the list below. [default: the scene's]
+    /// Integrator (listed below). [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
-    /// Changes to the scene.
+    /// Overrides of the scene.
     #[command(flatten)]
     pub changes: Changes,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -219,62 +222,58 @@ pub struct TracePixel {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct View {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), PLY, OBJ, STL, or an
-    /// archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
-    #[arg(required_unless_present = "planet")]
+    /// The scene.
+    #[arg(help = SCENE, required_unless_present = "planet")]
     pub scene: Option<PathBuf>,
-    /// Instead of a scene, a small planet made of N spheres, which move: to be walked on, with
-    /// gravity, collisions, mirrors and glass. --spp are the samples per pixel of each frame then.
-    /// [N: 64 to 4000000]
+    /// Walk on a small planet of N moving spheres instead of in a scene, with gravity, collisions,
+    /// mirrors and glass; --spp is samples per pixel of each frame then. [N: 64 to 4000000]
     #[arg(long, value_name = "N", conflicts_with = "scene", value_parser = clap::value_parser!(u32).range(64..=4_000_000))]
     pub planet: Option<u32>,
-    /// The algorithm to begin with, see the list below. [default: the scene's]
+    /// Initial integrator (listed below). [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
-    /// Samples per pixel of the finished picture. [default: the scene's]
+    /// Samples per pixel of the converged picture. [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
-    /// What renders: cpu; gpu or ray-query, as in `alhazen render`; or auto, the GPU unless it is
-    /// one in software.
+    /// Device that renders: cpu; gpu or ray-query, as in `alhazen render`; or auto, the GPU unless
+    /// it is a software one.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
     pub device: DeviceChoice,
-    /// With --device, pixels and frames share samples of direct light while the camera moves
-    /// (ReSTIR): unbiased, or biased, which is faster, and too dark where surfaces and shadows
-    /// differ.
+    /// ReSTIR with --device gpu: pixels and frames share samples of direct light while the camera
+    /// moves; unbiased, or biased, which is faster, and too dark where surfaces and shadows differ.
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "WEIGHTS", value_enum, hide_possible_values = true)]
     pub restir: Option<Restir>,
-    /// Changes to the scene.
+    /// Overrides of the scene.
     #[command(flatten)]
     pub changes: Changes,
-    /// How the light is shown to begin with.
+    /// Initial display settings.
     #[command(flatten)]
     pub display: DisplayOptions,
-    /// The time that a picture in motion is to take, in milliseconds: its pixels are as large as
-    /// that needs.
+    /// Target frame time in motion, in milliseconds: the resolution adapts to it.
     #[arg(long, value_name = "MS", default_value_t = 33, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub frame_time: u32,
-    /// Samples per pixel of a picture in motion: 4 make its edges smoother than 1, and its pixels
-    /// larger, or frames longer.
+    /// Samples per pixel of frames in motion: more of them smooth edges at a lower resolution or
+    /// frame rate.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "planet", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub moving_spp: u32,
-    /// Open no window, but render a camera path, once around what the camera looks at, or a walk
-    /// over the planet, and report the times of its frames.
+    /// Render a camera path without a window, once around the point looked at, or a walk over the
+    /// planet, and report frame times.
     #[arg(long)]
     pub headless: bool,
-    /// The number of frames of that path.
+    /// Number of frames of the camera path.
     #[arg(long, value_name = "N", default_value_t = 60, requires = "headless", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: u32,
-    /// Draw the scene twice with one camera: ray traced on the left of a slider, and rasterised by
-    /// the GPU on its right. SHARE is where the slider is, from 0 to 1. [without SHARE: 0.5]
+    /// Split view with one camera: ray traced left of a slider, rasterised by the GPU right of it.
+    /// SHARE is the slider's position from 0 to 1. [without SHARE: 0.5]
     #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", conflicts_with = "planet", value_parser = share)]
     pub split: Option<f32>,
-    /// Write the last frame of that path, which is the scene's own view; with --split the whole
-    /// picture of it, with all samples per pixel on the left of the slider.
+    /// Last frame of the camera path, which is the scene's own view; with --split the whole
+    /// picture, with all samples per pixel left of the slider.
     #[arg(short, long, value_name = "FILE", requires = "headless", conflicts_with = "planet")]
     pub output: Option<PathBuf>,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long, requires = "headless")]
     pub json: bool,
 }
@@ -284,16 +283,16 @@ pub struct View {
 pub enum Scene {
     /// Report all errors and warnings of a scene without rendering it.
     Check(Check),
-    /// Write a scene as pbrt-v4, which renders to the same picture.
+    /// Convert a scene to pbrt-v4; it renders to the same picture.
     ///
-    /// Meshes, images and tables are written to a folder beside it, of the output's name with
-    /// .assets for .pbrt. The output and files in that folder are replaced if they exist, each when
-    /// it is complete, the output last; other files in the folder stay.
+    /// Meshes, images and tables go to the folder OUT.assets beside the output OUT.pbrt. The output
+    /// and files in that folder are replaced if they exist, each when it is complete, the output
+    /// last; other files in the folder stay.
     Convert(ConvertScene),
-    /// Pack a scene with its includes, meshes, images and all other files that it reads into one
-    /// ZIP archive, which all commands take as a scene.
+    /// Pack a scene and all files that it reads into one ZIP archive.
     ///
-    /// It can be unpacked and rendered, too. The same files give the same archive.
+    /// All commands take the archive as a scene; unpacked, it can be rendered, too. The same files
+    /// give the same archive.
     Pack(Pack),
 }
 
@@ -301,10 +300,10 @@ pub enum Scene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
-    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene.
+    #[arg(help = SCENE)]
     pub scene: PathBuf,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -313,12 +312,12 @@ pub struct Check {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct ConvertScene {
-    /// The scene: a pbrt-v4 file (also packed by gzip), glTF (.gltf, .glb), USD, PLY, OBJ, STL, or
-    /// an archive (.zip) of `scene pack`; `-` reads pbrt-v4 from standard input.
+    /// The scene.
+    #[arg(help = SCENE)]
     pub scene: PathBuf,
-    /// The scene to write, with the extension .pbrt.
+    /// Scene to write, with the extension .pbrt.
     pub output: PathBuf,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -327,12 +326,13 @@ pub struct ConvertScene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Pack {
-    /// The scene file.
+    /// The scene.
+    #[arg(help = SCENE)]
     pub scene: PathBuf,
-    /// The archive. [default: the scene's name with .zip, in the current folder]
+    /// Archive to write. [default: the scene's name with .zip, in the current folder]
     #[arg(short, long, value_name = "FILE.zip")]
     pub output: Option<PathBuf>,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -340,15 +340,15 @@ pub struct Pack {
 /// Commands about pictures.
 #[derive(Debug, Subcommand)]
 pub enum Image {
-    /// Show the size, layers, channels, storage and header of a picture file.
+    /// Print the size, layers, channels, storage and header of an image file.
     Info(Info),
-    /// Measure the difference of a picture to a reference: MSE, relative MSE, FLIP.
+    /// Measure the error of an image against a reference: MSE, relative MSE, FLIP.
     ///
     /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² +
-    /// 0.01); FLIP the mean of the visible difference, from 0 to 1, over the exposures that show
-    /// the reference's range. The exit code is 0 however large the difference is.
+    /// 0.01); FLIP the mean perceived difference, from 0 to 1, over exposures that cover the
+    /// reference's range. The exit code is 0 however large the error is.
     Diff(Diff),
-    /// Write a picture in another format: that of the new name's extension.
+    /// Convert an image to the format of the output's extension.
     Convert(Convert),
 }
 
@@ -356,13 +356,13 @@ pub enum Image {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Info {
-    /// The picture: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI or TIFF.
+    /// Image file: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI, WebP or TIFF.
     pub file: PathBuf,
-    /// Print the linear values of all channels at this pixel instead: its column and row in the
-    /// whole frame, counted from 0 at the upper left.
+    /// Print the linear values of all channels at one pixel instead: column and row of the whole
+    /// frame, from 0 at the upper left.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<[i32; 2]>,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -371,17 +371,17 @@ pub struct Info {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Diff {
-    /// The reference.
+    /// Reference image.
     pub a: PathBuf,
-    /// The picture to measure; of the same size.
+    /// Image to measure, of the same size.
     pub b: PathBuf,
-    /// Write a picture of the error here, from black (none) to pale yellow.
+    /// Error map to write, from black (no error) to pale yellow.
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Which error the picture shows.
+    /// Error metric of the map.
     #[arg(long, value_enum, default_value_t = Metric::Flip)]
     pub metric: Metric,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -389,11 +389,11 @@ pub struct Diff {
 /// The error that an error picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Metric {
-    /// Squared error; the brightest colour is the largest.
+    /// Squared error; the colour scale ends at this image's largest error.
     Mse,
-    /// Relative squared error; the brightest colour is the largest.
+    /// Relative squared error; the colour scale ends at this image's largest error.
     Relmse,
-    /// FLIP; the brightest colour is 1.
+    /// FLIP; the colour scale ends at 1.
     Flip,
 }
 
@@ -401,21 +401,21 @@ pub enum Metric {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Convert {
-    /// The picture to read: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI or TIFF.
+    /// Image to read: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI, WebP or TIFF.
     pub input: PathBuf,
-    /// The picture to write.
+    /// Image to write, in the format of its extension.
     pub output: PathBuf,
-    /// How values are stored: `natural` keeps the depth of the picture if the format can.
+    /// Storage of values; `natural` keeps the image's depth if the format can.
     #[arg(long, value_enum, default_value_t = Depth::Natural)]
     pub depth: Depth,
-    /// Convert an image of the sphere of directions, such as an environment map, to another
-    /// projection. Its own projection is determined by its aspect ratio.
+    /// Reproject an image of the sphere of directions, such as an environment map. Its own
+    /// projection follows from its aspect ratio.
     #[arg(long, value_enum)]
     pub projection: Option<Projection>,
     /// How pictures for displays show the light.
     #[command(flatten)]
     pub display: DisplayOptions,
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -448,7 +448,7 @@ pub enum Depth {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Doctor {
-    /// Write one JSON object to standard output instead of text.
+    /// Print one JSON object to standard output instead of text, errors included.
     #[arg(long)]
     pub json: bool,
 }
@@ -456,7 +456,7 @@ pub struct Doctor {
 /// Arguments of `alhazen completions`.
 #[derive(Args, Debug)]
 pub struct Completions {
-    /// The shell that the script is for.
+    /// Shell that reads the script.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
 }
@@ -464,8 +464,8 @@ pub struct Completions {
 /// Arguments of `alhazen man`.
 #[derive(Args, Debug)]
 pub struct Man {
-    /// Write alhazen.1 and a page for each command into this folder, which is created if it does
-    /// not exist. [default: alhazen.1 alone, to standard output]
+    /// Folder for alhazen.1 and a page for each command; created if it does not exist. [default:
+    /// alhazen.1 alone, to standard output]
     pub folder: Option<PathBuf>,
 }
 

@@ -1,12 +1,12 @@
-//! Rules of documents: links have targets, the licences exist, and README lists exactly the options
-//! of the program.
+//! Rules of documents: links have targets, the licences exist, and the page about the command line
+//! lists exactly the options of the program.
 
 use std::collections::BTreeSet;
 
 use super::Finding;
 use super::tree::Tree;
 
-const README: &str = "README.md";
+const COMMAND_LINE: &str = "docs/cli.md";
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 /// The files that define the command line.
 const ARGUMENTS: &str = "crates/cli/src/args/";
@@ -29,18 +29,22 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
             }
         }
     }
-    let readme = tree.text(README).unwrap_or_default();
+    let page = tree.text(COMMAND_LINE).unwrap_or_default();
     let arguments = tree.texts().filter(|(path, _)| path.starts_with(ARGUMENTS));
     let defined: BTreeSet<String> = arguments.flat_map(|(_, text)| defined_options(text)).collect();
-    let told = told_options(readme);
+    let told = told_options(page);
     for option in told.difference(&defined).filter(|option| !CLAPS_OWN.contains(&option.as_str())) {
-        findings.push(Finding::new(README, 0, format!("`--{option}` is not an option of alhazen")));
+        findings.push(Finding::new(COMMAND_LINE, 0, format!("`--{option}` is not an option of alhazen")));
     }
     for option in defined.difference(&told) {
-        findings.push(Finding::new(README, 0, format!("the option `--{option}` is missing")));
+        findings.push(Finding::new(COMMAND_LINE, 0, format!("the option `--{option}` is missing")));
     }
     if defined.is_empty() {
-        findings.push(Finding::new(ARGUMENTS, 0, "tells nothing to hold README to; see tidy's documents.rs"));
+        findings.push(Finding::new(
+            ARGUMENTS,
+            0,
+            "tells nothing to hold the page to; see tidy's documents.rs",
+        ));
     }
     findings
 }
