@@ -21,35 +21,24 @@
 #[macro_use]
 mod tables;
 
-#[cfg(target_arch = "x86_64")]
-mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
-mod baseline;
 mod each;
 mod function;
 mod instruction_set;
-#[cfg(target_arch = "aarch64")]
-mod neon;
+mod no_dispatch;
+mod one_lane;
 mod pair;
-mod portable;
 mod real;
-mod scalar;
 mod simd;
-mod single;
 mod slices;
-#[cfg(target_arch = "x86_64")]
-mod sse2;
 mod wide;
 
-pub use baseline::{first_equal, prefetch};
 pub use each::Each;
 pub use function::{
     acos, asin, atan, atan2, cbrt, coarse_inverse_sqrt, cos, exp, exp_m1, hypot, ln, ln_1p, log2, pow, powi,
     sin, sin_cos,
 };
-pub use instruction_set::InstructionSet;
+pub use instruction_set::{F32x1, InstructionSet};
+pub use no_dispatch::{first_equal, prefetch};
 pub use real::{Callee, Int, Kernel, MAX_LANES, Mask, Real};
-pub use scalar::F32x1;
 pub use simd::{Simd, Task, Vector};
 pub use wide::Wide;

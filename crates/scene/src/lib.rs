@@ -6,6 +6,7 @@
 mod cache;
 pub mod camera;
 mod compile;
+mod dynamic;
 mod footprint;
 mod id;
 mod interaction;
@@ -13,7 +14,6 @@ pub mod light;
 pub mod light_sampler;
 pub mod material;
 pub mod medium;
-mod moves;
 mod names;
 mod scene;
 mod shutter_sample;
@@ -23,10 +23,10 @@ mod view;
 
 pub use cache::SceneCache;
 pub use compile::{Compiled, compile};
+pub use dynamic::MoveError;
 pub use footprint::Footprint;
 pub use geometry::RayStats;
 pub use interaction::SurfaceInteraction;
-pub use moves::MoveError;
 pub use names::Names;
 pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
 pub use shutter_sample::ShutterSample;

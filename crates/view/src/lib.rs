@@ -9,7 +9,7 @@
 //! With the feature `gpu`, a [`Rasterized`] scene is drawn by a GPU beside it ([`split`]).
 //! With the feature `window` there is a window of it: [`window`].
 
-mod darkroom;
+mod display;
 mod engine;
 mod flight;
 mod frame;
@@ -30,7 +30,7 @@ mod step;
 pub mod window;
 mod world;
 
-pub use darkroom::{develop, layers};
+pub use display::{develop, layers};
 pub use engine::{Engine, Output};
 pub use flight::{Flight, Mode};
 pub use frame::{Frame, Stages};

@@ -1,12 +1,20 @@
 //! Instruction sets as values: which the processor has, and how to run with one of them.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 #[cfg(target_arch = "aarch64")]
-use crate::neon;
+mod neon;
+mod portable;
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+
+pub use scalar::F32x1;
+
 use crate::real::Kernel;
 use crate::simd::{Task, Widest};
-#[cfg(target_arch = "x86_64")]
-use crate::{avx2, avx512, sse2};
-use crate::{portable, scalar};
 
 /// An instruction set. All give the same results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,7 +1,7 @@
 //! Sixteen floats at once, and the vectors of AVX2 with twice the registers. Comparisons of the
 //! latter stay vectors: bits from mask registers take longer.
 
-use crate::avx2::{self, F32x4, F32x8, row};
+use super::avx2::{self, F32x4, F32x8, row};
 use std::arch::x86_64::*;
 use std::mem::transmute;
 
