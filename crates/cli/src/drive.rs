@@ -12,7 +12,7 @@ use alhazen::description::schema::Settings;
 use alhazen::description::{Diagnostic, SceneDesc};
 use alhazen::image::DisplaySettings;
 use alhazen::import::import;
-use alhazen::integrators::{Control, Limits, PassError, Session};
+use alhazen::integrators::{Control, Limits, PassError, Session, Stop};
 use alhazen::{Header, Job, Overrides, PreviewSchedule, system_clock};
 
 use crate::bar::Bar;
@@ -168,15 +168,65 @@ impl Task<'_> {
             diagnostics::print(&imported.diagnostics, &imported.sources)?;
         }
         let control = Control::new(interrupt.cancel(), system_clock());
+        self.sketch(&control, interrupt);
+        let bar = Bar::new(is_talkative);
+        let outcome = self.render(&control, &bar, interrupt);
+        bar.finish();
+        let rendered_at = Instant::now();
+
+        let beside = self.write(&outcome)?;
+        self.notes.extend(self.job.session.integrator().summary());
+        let ended_by = outcome.ok();
+        let missed = ended_by.and_then(|stop| self.job.missed_noise(&self.limits, stop));
+        let summary = Summary {
+            ended_by,
+            scene: self.scene,
+            outputs: &self.outputs,
+            beside: &beside,
+            checkpoint: self.checkpoint.as_ref().map(Checkpoint::path).filter(|path| path.exists()),
+            notes: &self.notes,
+            integrator,
+            session: &self.job.session,
+            threads: rayon::current_num_threads(),
+            seconds: Seconds {
+                import: (imported_at - begin).as_secs_f64(),
+                compile: (compiled_at - imported_at).as_secs_f64(),
+                render: (rendered_at - compiled_at).as_secs_f64(),
+                write: rendered_at.elapsed().as_secs_f64(),
+            },
+            peak_memory: peak_memory(),
+        };
+        if self.verbosity.json {
+            imported.diagnostics.extend(missed);
+            let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
+            say(summary.to_json(warnings))?;
+        } else if is_talkative {
+            say(&summary)?;
+            diagnostics::print(missed.as_slice(), &imported.sources)?;
+        } else if let Some(interruption) = summary.interruption() {
+            warn(interruption)?;
+        }
+        let picture = self.job.header().development(self.job.session.state());
+        self.live.finish(&picture, interrupt);
+        self.verbosity.warn_of(self.live.take_warnings(), &bar);
+        self.live.stay(interrupt);
+        Ok(if summary.ended_by.is_none() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+    }
+
+    /// Shows a sketch of a render that begins, if anybody sees it.
+    fn sketch(&self, control: &Control, interrupt: &Interrupt) {
         if (!self.outputs.is_empty() || self.live.is_watched())
             && self.job.session.state().done.is_empty()
-            && let Some(sketch) = self.job.sketch(&control)
+            && let Some(sketch) = self.job.sketch(control)
         {
             self.live.show(&sketch);
             write_preview(&sketch, &self.outputs, &self.display);
             interrupt.note_written(&self.outputs, 0);
         }
-        let bar = Bar::new(is_talkative);
+    }
+
+    /// Does the passes, and shows and saves what they give.
+    fn render(&mut self, control: &Control, bar: &Bar, interrupt: &Interrupt) -> Result<Stop, PassError> {
         let mut preview = Preview {
             header: self.job.header().clone(),
             outputs: &self.outputs,
@@ -184,19 +234,21 @@ impl Task<'_> {
             interrupt,
             schedule: PreviewSchedule::begin(),
         };
-        let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
+        self.job.session.run(self.passes.clone(), &self.limits, control, &mut |session| {
             bar.show(&session.progress());
             preview.after_pass(session, &self.live, self.checkpoint.as_mut());
             self.live.after_pass(session, &preview.header);
-            self.verbosity.warn_of(self.live.take_warnings(), &bar);
+            self.verbosity.warn_of(self.live.take_warnings(), bar);
             let checkpoint = self.checkpoint.as_mut();
             interrupt.after_pass(checkpoint.is_some_and(|checkpoint| !checkpoint.after_pass(session)));
-        });
-        bar.finish();
-        let rendered_at = Instant::now();
+        })
+    }
 
+    /// Writes the picture and saves the render, however it has ended; gives the files beside the
+    /// picture. Fails if memory or the device did.
+    fn write(&mut self, outcome: &Result<Stop, PassError>) -> Result<Vec<PathBuf>, Failure> {
         let session = &self.job.session;
-        let out_of_memory = match &outcome {
+        let out_of_memory = match outcome {
             Err(PassError::OutOfMemory(problem) | PassError::Device(problem)) => Some(problem),
             Ok(_) | Err(PassError::Cancelled) => None,
         };
@@ -224,41 +276,7 @@ impl Task<'_> {
         }
         let beside = beside?;
         saved?;
-        self.notes.extend(session.integrator().summary());
-        let ended_by = outcome.ok();
-        let missed = ended_by.and_then(|stop| self.job.missed_noise(&self.limits, stop));
-        let summary = Summary {
-            ended_by,
-            scene: self.scene,
-            outputs: &self.outputs,
-            beside: &beside,
-            checkpoint: self.checkpoint.as_ref().map(Checkpoint::path).filter(|path| path.exists()),
-            notes: &self.notes,
-            integrator,
-            session,
-            threads: rayon::current_num_threads(),
-            seconds: Seconds {
-                import: (imported_at - begin).as_secs_f64(),
-                compile: (compiled_at - imported_at).as_secs_f64(),
-                render: (rendered_at - compiled_at).as_secs_f64(),
-                write: rendered_at.elapsed().as_secs_f64(),
-            },
-            peak_memory: peak_memory(),
-        };
-        if self.verbosity.json {
-            imported.diagnostics.extend(missed);
-            let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
-            say(summary.to_json(warnings))?;
-        } else if is_talkative {
-            say(&summary)?;
-            diagnostics::print(missed.as_slice(), &imported.sources)?;
-        } else if let Some(interruption) = summary.interruption() {
-            warn(interruption)?;
-        }
-        self.live.finish(&picture, interrupt);
-        self.verbosity.warn_of(self.live.take_warnings(), &bar);
-        self.live.stay(interrupt);
-        Ok(if summary.ended_by.is_none() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+        Ok(beside)
     }
 }
 

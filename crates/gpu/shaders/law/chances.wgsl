@@ -9,6 +9,8 @@ const chances_FACETS: u32 = 2;
 
 const chances_GLASS: u32 = 3;
 
+const chances_REST: u32 = 4;
+
 const chances_THROUGH: u32 = 5;
 
 const chances_UNDER: u32 = 6;
@@ -44,7 +46,7 @@ fn Chances_new(surface: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, mode: 
         reflected += OpenPbr_metal(surface, cosine) * (taken.metal * weights_1.metal);
         let has_rest = rests.metal > 0.0f;
         let left = select(0.0f, Shares_metal_rest(shares) * weights_1.metal, has_rest);
-        rest += surface.metal_again * left;
+        rest += surface.metal.again * left;
     }
     var seen = shares.seen;
     var coat = weights_1.layers * shares.coat;
@@ -61,64 +63,64 @@ fn Chances_new(surface: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, mode: 
         reflected = SampledSpectrum_select(is_coated, reflected * opaque, reflected);
         rest = SampledSpectrum_select(is_coated, rest * opaque, rest);
     }
-    var reflected_1 = SampledSpectrum_average(reflected);
-    var rest_1 = SampledSpectrum_average(rest);
-    var facets = 0.0f;
-    var through = 0.0f;
-    let glass = OpenPbr_glass(surface);
-    if (glass > 0.0f) {
-        let is_inside = (wo.z < 0.0f) & !surface.stack.is_thin;
-        let outside = shares.reflected * SampledSpectrum_average(surface.specular_color);
-        let reflects = select(outside, shares.inside.reflected, is_inside);
-        let refracts = select(shares.refracted, shares.inside.refracted, is_inside);
-        let left_1 = select(shares.glass_rest, shares.inside.left, is_inside);
-        let mean_1 = select(rests.glass_above, rests.glass_below, is_inside);
-        let passes = select(rests.through_above, rests.through_below, is_inside);
-        let left_2 = select(0.0f, left_1, mean_1 > 0.0f);
-        let glass_1 = select(glass * seen, glass, is_inside);
-        rest_1 += (glass_1 * left_2) * (1.0f - passes);
-        let tint = glass_1 * SampledSpectrum_average(surface.transmission_color);
-        through = (tint * left_2) * passes;
+    var of_1 = array<f32, 7>(0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
+    of_1[u32(chances_FUZZ)] = weights_1.layers * fuzz;
+    of_1[u32(chances_COAT)] = coat;
+    of_1[u32(chances_FACETS)] = SampledSpectrum_average(reflected);
+    of_1[u32(chances_REST)] = SampledSpectrum_average(rest);
+    if (OpenPbr_glass(surface) > 0.0f) {
+        let glass = OpenPbr_scattered_by_glass(surface, shares, rests, wo, seen);
         if (surface.stack.is_thin) {
-            reflected_1 += glass_1 * reflects;
-            facets = tint * refracts;
+            of_1[u32(chances_FACETS)] += glass.reflected;
+            of_1[u32(chances_GLASS)] = glass.refracted;
         } else {
-            facets = (glass_1 * reflects) + (tint * refracts);
+            of_1[u32(chances_GLASS)] = glass.reflected + glass.refracted;
         }
+        of_1[u32(chances_REST)] += glass.rest;
+        of_1[u32(chances_THROUGH)] = glass.through;
     }
     if (surface.stack.is_thin) {
-        let transmitted = (shares.diffuse_rest * surface.scattered) * surface.darkening;
-        through += SampledSpectrum_average(transmitted) * ((surface.forward * weights_1.diffuse) * seen);
+        let transmitted = (shares.diffuse_rest * surface.diffuse_base.scattered) * surface.darkening;
+        of_1[u32(chances_THROUGH)] += SampledSpectrum_average(transmitted) * ((surface.diffuse_base.forward * weights_1.diffuse) * seen);
     }
-    var under = 0.0f;
     if ((mode == TransportMode_Radiance) && (weights_1.under > 0.0f)) {
         let color_1 = surface.subsurface_color;
         let goes_under = SampledSpectrum_average(OpenPbr_goes_under(surface, shares, wo) * color_1);
-        under = select(0.0f, goes_under, weights_1.under > 0.0f);
+        of_1[u32(chances_UNDER)] = select(0.0f, goes_under, weights_1.under > 0.0f);
     }
-    var of_1 = array<f32, 7>(weights_1.layers * fuzz, coat, reflected_1, facets, rest_1, through, under);
+    var chances = Chances(of_1);
+    Chances_restrict(&chances, directions, surface.stack.is_thin);
+    Chances_normalize(&chances);
+    return chances;
+}
+
+// Leaves out lobes that scatter in no direction that is asked for.
+fn Chances_restrict(this_: ptr<function, Chances>, directions: u32, is_thin: bool) {
     if (directions == Directions_Reflection) {
-        of_1[5] = 0.0f;
-        of_1[6] = 0.0f;
-        if (surface.stack.is_thin) {
-            of_1[3] = 0.0f;
+        (*this_).of_[u32(chances_THROUGH)] = 0.0f;
+        (*this_).of_[u32(chances_UNDER)] = 0.0f;
+        if (is_thin) {
+            (*this_).of_[u32(chances_GLASS)] = 0.0f;
         }
     }
     if (directions == Directions_Transmission) {
-        of_1[0] = 0.0f;
-        of_1[1] = 0.0f;
-        of_1[2] = 0.0f;
-        of_1[4] = 0.0f;
+        (*this_).of_[u32(chances_FUZZ)] = 0.0f;
+        (*this_).of_[u32(chances_COAT)] = 0.0f;
+        (*this_).of_[u32(chances_FACETS)] = 0.0f;
+        (*this_).of_[u32(chances_REST)] = 0.0f;
     }
+}
+
+// Makes probabilities of them.
+fn Chances_normalize(this_: ptr<function, Chances>) {
     var sum = 0.0f;
     for (var i = 0u; i < 7; i++) {
-        sum += of_1[i];
+        sum += (*this_).of_[i];
     }
     for (var i_1 = 0u; i_1 < 7; i_1++) {
-        let is_sampled = of_1[i_1] > (chances_NEGLIGIBLE * sum);
-        of_1[i_1] = select(0.0f, of_1[i_1] / sum, is_sampled);
+        let is_sampled = (*this_).of_[i_1] > (chances_NEGLIGIBLE * sum);
+        (*this_).of_[i_1] = select(0.0f, (*this_).of_[i_1] / sum, is_sampled);
     }
-    return Chances(of_1);
 }
 
 // A lobe.
@@ -205,6 +207,29 @@ fn Chances_pdf(this_: Chances, surface: OpenPbr, argument_2: array<vec3f, 2>, mo
     let wo = argument_2[0];
     let wi = argument_2[1];
     return DensityOf_run(DensityOf(this_, surface, wo, wi, mode, directions));
+}
+
+// What the glass of a surface scatters from a direction.
+struct GlassShares {
+    reflected: f32,
+    refracted: f32,
+    rest: f32,
+    through: f32,
+}
+
+// What glass scatters of the light to `wo`, of which from above this share is seen.
+fn OpenPbr_scattered_by_glass(this_: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, seen: f32) -> GlassShares {
+    let is_inside = (wo.z < 0.0f) & !this_.stack.is_thin;
+    let outside = shares.reflected * SampledSpectrum_average(this_.specular_color);
+    let reflects = select(outside, shares.inside.reflected, is_inside);
+    let refracts = select(shares.refracted, shares.inside.refracted, is_inside);
+    let left = select(shares.glass_rest, shares.inside.left, is_inside);
+    let mean_1 = select(rests.glass_above, rests.glass_below, is_inside);
+    let passes = select(rests.through_above, rests.through_below, is_inside);
+    let left_1 = select(0.0f, left, mean_1 > 0.0f);
+    let glass = select(OpenPbr_glass(this_) * seen, OpenPbr_glass(this_), is_inside);
+    let tint = glass * SampledSpectrum_average(this_.transmission_color);
+    return GlassShares(glass * reflects, tint * refracts, (glass * left_1) * (1.0f - passes), (tint * left_1) * passes);
 }
 
 // The density of a direction.

@@ -7,7 +7,7 @@ const facets_SCHLICK_AT_EDGE: f32 = 7776.0f / 16807.0f;
 
 // F₀ + (1 − F₀) x.
 fn OpenPbr_schlick(this_: OpenPbr, x: f32) -> vec4f {
-    var schlick = this_.metal_color;
+    var schlick = this_.metal.color;
     {
         schlick[0] = schlick[0] + ((1.0f - schlick[0]) * x);
     }
@@ -41,14 +41,14 @@ fn OpenPbr_metal(this_: OpenPbr, cosine: f32) -> vec4f {
         let filmed_1 = SampledSpectrum_lerp(bare, filmed * SampledSpectrum_safe_div(bare, plain), this_.stack.film_weight);
         bare = SampledSpectrum_select(is_filmed, filmed_1, bare);
     }
-    return bare * this_.metal_weight;
+    return bare * this_.metal.weight;
 }
 
 // The mean of [`Self::metal`] over directions by their cosine; under a film about that of the
 // mean cosine.
 fn OpenPbr_mean_metal(this_: OpenPbr) -> vec4f {
     let bare = OpenPbr_schlick(this_, 1.0f / 21.0f) - (OpenPbr_dip(this_) * (1.0f / 126.0f));
-    let mean_1 = SampledSpectrum_clamp_zero(bare) * this_.metal_weight;
+    let mean_1 = SampledSpectrum_clamp_zero(bare) * this_.metal.weight;
     let is_filmed = this_.stack.film_weight > 0.0f;
     if (!is_filmed) {
         return mean_1;
@@ -69,7 +69,7 @@ fn FilmedMetal_run(this_: FilmedMetal) -> vec4f {
     let inner = Stack_inner_cosine(stack, cosine);
     var filmed = surface.waves;
     for (var i = 0u; i < sampled_N; i++) {
-        let reflected = real_min(surface.metal_color[i], 0.9999f);
+        let reflected = real_min(surface.metal.color[i], 0.9999f);
         let root = sqrt(reflected / (1.0f - reflected));
         let below = Complex(1.0f, 2.0f * root);
         filmed[i] = film_reflectance(inner, stack.above, stack.film_ior, below, surface.waves[i]);

@@ -11,25 +11,35 @@ struct OpenPbr {
     waves: vec4f,
     metalness: f32,
     transmission: f32,
-    metal_weight: f32,
-    diffuse_roughness: f32,
-    metal_color: vec4f,
-    metal_again: vec4f,
+    metal: Metal,
+    diffuse_base: DiffuseBase,
     specular_color: vec4f,
     transmission_color: vec4f,
-    diffuse_color: vec4f,
-    diffuse_weight: f32,
-    base_color: vec4f,
     subsurface_color: vec4f,
     subsurface_weight: f32,
     interior: Interior,
     part: u32,
-    scattered: vec4f,
-    forward: f32,
     coat_color: vec4f,
     coat_normal: vec3f,
     darkening: vec4f,
     fuzz_color: vec4f,
+}
+
+// The base of metal.
+struct Metal {
+    weight: f32,
+    color: vec4f,
+    again: vec4f,
+}
+
+// The diffuse base.
+struct DiffuseBase {
+    roughness: f32,
+    color: vec4f,
+    weight: f32,
+    over: vec4f,
+    scattered: vec4f,
+    forward: f32,
 }
 
 // Weights of the lobes that directions on one side of the surface meet.
@@ -46,12 +56,12 @@ fn OpenPbr_new(table: OpenPbrTable, p: OpenPbrParameters, lambda: SampledWavelen
     let black = SampledSpectrum_zero();
     let white = SampledSpectrum_splat(1.0f);
     let base_color = p.base_color * p.base_weight;
-    var surface = OpenPbr(table, OpenPbrTable_locate(table, p), Stack_new(p), black, p.base_metalness, p.transmission_weight, real_min(p.specular_weight, 1.0f), p.base_diffuse_roughness, base_color, black, p.specular_color, p.transmission_color, SampledSpectrum_lerp(base_color, p.subsurface_color, p.subsurface_weight), 1.0f, base_color, p.subsurface_color, p.subsurface_weight, interior(p), Part_Whole, black, 0.0f, p.coat_color, p.geometry_coat_normal, white, p.fuzz_color);
+    var surface = OpenPbr(table, OpenPbrTable_locate(table, p), Stack_new(p), black, p.base_metalness, p.transmission_weight, Metal(real_min(p.specular_weight, 1.0f), base_color, black), DiffuseBase(p.base_diffuse_roughness, SampledSpectrum_lerp(base_color, p.subsurface_color, p.subsurface_weight), 1.0f, base_color, black, 0.0f), p.specular_color, p.transmission_color, p.subsurface_color, p.subsurface_weight, interior(p), Part_Whole, p.coat_color, p.geometry_coat_normal, white, p.fuzz_color);
     if (p.geometry_thin_walled) {
-        surface.diffuse_color = base_color;
-        surface.diffuse_weight = 1.0f - p.subsurface_weight;
-        surface.scattered = p.subsurface_color * p.subsurface_weight;
-        surface.forward = 0.5f * (1.0f + p.subsurface_scatter_anisotropy);
+        surface.diffuse_base.color = base_color;
+        surface.diffuse_base.weight = 1.0f - p.subsurface_weight;
+        surface.diffuse_base.scattered = p.subsurface_color * p.subsurface_weight;
+        surface.diffuse_base.forward = 0.5f * (1.0f + p.subsurface_scatter_anisotropy);
     }
     let is_filmed = p.thin_film_weight > 0.0f;
     if (is_filmed) {
@@ -81,7 +91,7 @@ fn OpenPbr_new(table: OpenPbrTable, p: OpenPbrParameters, lambda: SampledWavelen
         {
             again[3] = (sqr(again[3]) * kept) / (1.0f - (again[3] * (1.0f - kept)));
         }
-        surface.metal_again = SampledSpectrum_select(has_rest, again, black);
+        surface.metal.again = SampledSpectrum_select(has_rest, again, black);
     }
     return surface;
 }
@@ -90,13 +100,17 @@ fn OpenPbr_new(table: OpenPbrTable, p: OpenPbrParameters, lambda: SampledWavelen
 fn OpenPbr_darkened(this_: OpenPbr) -> vec4f {
     let stack = this_.stack;
     let mean_1 = real_max(mean_fresnel(stack.below / stack.above), 0.0f);
-    let diffuse = (this_.diffuse_color * this_.diffuse_weight) + this_.scattered;
+    let parts = this_.diffuse_base;
+    let color_1 = parts.color;
+    let weight_1 = parts.weight;
+    let scattered_1 = parts.scattered;
+    let diffuse = (color_1 * weight_1) + scattered_1;
     let dielectric = SampledSpectrum_splat(mean_1) + (diffuse * (1.0f - mean_1));
     let outer = mean_fresnel(stack.coat_ior);
     let inner = 1.0f - ((1.0f - outer) / sqr(stack.coat_ior));
     let roughness = lerp(this_.metalness, 1.0f, sqrt(TrowbridgeReitz_mean_alpha(stack.base)));
     let k = lerp(roughness, outer, inner);
-    var darkened = SampledSpectrum_lerp(dielectric, this_.metal_color, this_.metalness);
+    var darkened = SampledSpectrum_lerp(dielectric, this_.metal.color, this_.metalness);
     {
         darkened[0] = (1.0f - k) / (1.0f - (k * darkened[0]));
     }
@@ -114,17 +128,21 @@ fn OpenPbr_darkened(this_: OpenPbr) -> vec4f {
 
 // Whether the diffuse base is that of a thin wall which transmits light.
 fn OpenPbr_transmits_diffusely(this_: OpenPbr) -> bool {
-    return (this_.forward > 0.0f) & !SampledSpectrum_is_black(this_.scattered);
+    return (this_.diffuse_base.forward > 0.0f) & !SampledSpectrum_is_black(this_.diffuse_base.scattered);
 }
 
 // What the diffuse base reflects of the light that is left for it.
 fn OpenPbr_diffuse_albedo(this_: OpenPbr, weights_1: Weights) -> vec4f {
     if (this_.stack.is_thin) {
-        let reflected = this_.scattered * (1.0f - this_.forward);
-        return (this_.diffuse_color * this_.diffuse_weight) + reflected;
+        let parts = this_.diffuse_base;
+        let color_1 = parts.color;
+        let weight_1 = parts.weight;
+        let scattered_1 = parts.scattered;
+        let forward = parts.forward;
+        return (color_1 * weight_1) + (scattered_1 * (1.0f - forward));
     }
-    let over = this_.base_color * (1.0f - weights_1.under);
-    return SampledSpectrum_select(weights_1.under > 0.0f, over, this_.diffuse_color);
+    let over = this_.diffuse_base.over * (1.0f - weights_1.under);
+    return SampledSpectrum_select(weights_1.under > 0.0f, over, this_.diffuse_base.color);
 }
 
 // The share of the surface that is glass.

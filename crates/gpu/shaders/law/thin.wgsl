@@ -14,7 +14,7 @@ fn OpenPbr_sheet_shares(this_: OpenPbr, cosine: f32) -> array<vec4f, 2> {
 // The value of a share of what is scattered within the wall, for two directions above.
 fn OpenPbr_scattered(this_: OpenPbr, share_1: f32, wo: vec3f, wi: vec3f) -> vec4f {
     let white = SampledSpectrum_splat(1.0f);
-    return (this_.scattered * oren_nayar(white, this_.diffuse_roughness, wo, wi)) * share_1;
+    return (this_.diffuse_base.scattered * oren_nayar(white, this_.diffuse_base.roughness, wo, wi)) * share_1;
 }
 
 // The value of a thin wall for a direction above and one below.
@@ -40,7 +40,7 @@ fn OpenPbr_passed_through(this_: OpenPbr, argument_1: array<Shares, 2>, rests: R
     let is_diffuse = (weights_1.diffuse > 0.0f) & OpenPbr_transmits_diffusely(this_);
     if (is_diffuse) {
         let left_1 = SampledSpectrum_safe_div(o.diffuse_rest * i.diffuse_rest, rests.diffuse);
-        f += ((OpenPbr_scattered(this_, this_.forward, wo, wi_1) * left_1) * this_.darkening) * weights_1.diffuse;
+        f += ((OpenPbr_scattered(this_, this_.diffuse_base.forward, wo, wi_1) * left_1) * this_.darkening) * weights_1.diffuse;
     }
     let seen = of_viewer(vec2f(o.seen, i.seen), mode);
     return (f * OpenPbr_absorbed(this_, OpenPbr_coat_length(this_, wo.z) + OpenPbr_coat_length(this_, wi_1.z))) * seen;

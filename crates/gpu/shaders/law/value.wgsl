@@ -79,7 +79,7 @@ fn OpenPbr_reflected(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests,
     if (has_metal_rest) {
         let left = (Shares_metal_rest(o) * Shares_metal_rest(i)) / (3.1415927f * rests.metal);
         let left_1 = select(0.0f, left * weights_1.metal, has_metal_rest);
-        base += (this_.metal_again * this_.darkening) * left_1;
+        base += (this_.metal.again * this_.darkening) * left_1;
     }
     let has_glass_rest = (weights_1.glass > 0.0f) & (rests.glass_above > 0.0f);
     if (has_glass_rest) {
@@ -109,12 +109,12 @@ fn OpenPbr_diffuse(this_: OpenPbr, argument_1: array<Shares, 2>, rests: Rests, a
     let wi = argument_3[1];
     let left = SampledSpectrum_safe_div(o.diffuse_rest * i.diffuse_rest, rests.diffuse);
     let goes_under = weights_1.under > 0.0f;
-    let color_1 = SampledSpectrum_select(goes_under, this_.base_color, this_.diffuse_color);
+    let color_1 = SampledSpectrum_select(goes_under, this_.diffuse_base.over, this_.diffuse_base.color);
     let over = 1.0f - weights_1.under;
-    var diffuse = oren_nayar(color_1, this_.diffuse_roughness, wo, wi) * over;
+    var diffuse = oren_nayar(color_1, this_.diffuse_base.roughness, wo, wi) * over;
     if (this_.stack.is_thin) {
-        let reflected = OpenPbr_scattered(this_, 1.0f - this_.forward, wo, wi);
-        diffuse = (diffuse * this_.diffuse_weight) + reflected;
+        let reflected = OpenPbr_scattered(this_, 1.0f - this_.diffuse_base.forward, wo, wi);
+        diffuse = (diffuse * this_.diffuse_base.weight) + reflected;
     }
     return ((diffuse * left) * this_.darkening) * weights_1.diffuse;
 }
@@ -127,10 +127,45 @@ fn OpenPbr_value(this_: OpenPbr, shares: array<Shares, 2>, rests: Rests, directi
 // The value of the lobe that a specular sample has chosen.
 fn OpenPbr_specular(this_: OpenPbr, shares: Shares, wo: vec3f, lobe: u32, sample: BsdfSample, mode: u32) -> vec4f {
     let wi = sample.wi;
-    let cosine = abs(wo.z);
-    let is_above_1 = wo.z > 0.0f;
     let is_coat = lobe == u32(chances_COAT);
     let is_glass = lobe == u32(chances_GLASS);
+    var value_1 = OpenPbr_specular_base(this_, shares, wo, is_glass, sample);
+    var seen = shares.seen;
+    var below_fuzz = Shares_below_fuzz(shares);
+    let is_tilted = OpenPbr_is_tilted(this_);
+    if ((mode == TransportMode_Importance) && is_tilted) {
+        let there = OpenPbr_shares(this_, wi);
+        seen = there.seen;
+        below_fuzz = select(below_fuzz, Shares_below_fuzz(there), is_tilted);
+    }
+    if (!this_.stack.is_thin) {
+        let is_inside = is_glass & (of_viewer(vec2f(wo.z, wi.z), mode) < 0.0f);
+        seen = select(seen, 1.0f, is_inside);
+    }
+    value_1 *= seen;
+    if (is_coat) {
+        let is_above_1 = wo.z > 0.0f;
+        let up = upright(!is_above_1, wo);
+        let out = upright(!is_above_1, wi);
+        let coat = OpenPbr_specular_coat(this_, up, out, mode) * below_fuzz;
+        let layers = OpenPbr_weights(this_, wo.z).layers;
+        let coat_1 = SampledSpectrum_splat((coat * this_.stack.coat_weight) * layers);
+        value_1 = SampledSpectrum_select(is_coat, coat_1, value_1);
+    }
+    var chosen: f32;
+    if (mode == TransportMode_Radiance) {
+        chosen = 1.0f / sqr(sample.eta);
+    } else {
+        chosen = 1.0f;
+    }
+    let scale_1 = chosen;
+    return value_1 * (scale_1 / abs(wi.z));
+}
+
+// The share of light that the smooth base, below the layers, reflects or, where a sample is of
+// the lobe of glass, scatters into its direction.
+fn OpenPbr_specular_base(this_: OpenPbr, shares: Shares, wo: vec3f, is_glass: bool, sample: BsdfSample) -> vec4f {
+    let cosine = abs(wo.z);
     let parts = OpenPbr_weights(this_, wo.z);
     let layers = parts.layers;
     let metal = parts.metal;
@@ -151,46 +186,19 @@ fn OpenPbr_specular(this_: OpenPbr, shares: Shares, wo: vec3f, lobe: u32, sample
             let through = (passed * tint) * (shares.taken.below_coat * OpenPbr_glass(this_));
             value_1 = SampledSpectrum_select(is_glass, through, value_1);
         } else {
-            let is_inside = is_glass & !is_above_1;
+            let is_inside = is_glass & !(wo.z > 0.0f);
             if (is_inside) {
                 let inside = OpenPbr_inner_reflectance(this_, cosine) * OpenPbr_glass(this_);
                 value_1 = SampledSpectrum_select(is_inside, inside, value_1);
             }
             let is_refracted = is_glass & BxdfFlags_is_transmissive(sample.flags);
             if (is_refracted) {
-                let refracted = OpenPbr_refracted(this_, shares, wo, wi);
+                let refracted = OpenPbr_refracted(this_, shares, wo, sample.wi);
                 value_1 = SampledSpectrum_select(is_refracted, refracted, value_1);
             }
         }
     }
-    var seen = shares.seen;
-    var below_fuzz = Shares_below_fuzz(shares);
-    let is_tilted = OpenPbr_is_tilted(this_);
-    if ((mode == TransportMode_Importance) && is_tilted) {
-        let there = OpenPbr_shares(this_, wi);
-        seen = there.seen;
-        below_fuzz = select(below_fuzz, Shares_below_fuzz(there), is_tilted);
-    }
-    if (!this_.stack.is_thin) {
-        let is_inside_1 = is_glass & (of_viewer(vec2f(wo.z, wi.z), mode) < 0.0f);
-        seen = select(seen, 1.0f, is_inside_1);
-    }
-    value_1 *= seen;
-    if (is_coat) {
-        let up = upright(!is_above_1, wo);
-        let out = upright(!is_above_1, wi);
-        let coat = OpenPbr_specular_coat(this_, up, out, mode) * below_fuzz;
-        let coat_1 = SampledSpectrum_splat((coat * this_.stack.coat_weight) * layers);
-        value_1 = SampledSpectrum_select(is_coat, coat_1, value_1);
-    }
-    var chosen: f32;
-    if (mode == TransportMode_Radiance) {
-        chosen = 1.0f / sqr(sample.eta);
-    } else {
-        chosen = 1.0f;
-    }
-    let scale_1 = chosen;
-    return value_1 * (scale_1 / abs(wi.z));
+    return value_1;
 }
 
 // The share of light that smooth glass refracts from one direction into another.

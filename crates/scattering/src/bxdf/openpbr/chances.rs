@@ -9,7 +9,7 @@ use math::{Vector3, same_hemisphere};
 use sampling::warp::{cosine_hemisphere_pdf, uniform_hemisphere_pdf};
 use spectrum::SampledSpectrum;
 
-// What a sample is drawn from; 4 is the rest, by its cosine.
+// Lobes, by what their directions are drawn from.
 
 /// Fuzz, evenly over the hemisphere.
 pub(super) const FUZZ: u32 = 0;
@@ -19,6 +19,8 @@ pub(super) const COAT: u32 = 1;
 pub(super) const FACETS: u32 = 2;
 /// Glass, reflected or refracted by its facets; of a sheet, what passes it.
 pub(super) const GLASS: u32 = 3;
+/// The diffuse base, and what facets keep between them, by the cosine.
+const REST: u32 = 4;
 /// The rest of glass and of thin walls on their other side, by its cosine.
 pub(super) const THROUGH: u32 = 5;
 /// The beginning of a path under the surface.
@@ -29,7 +31,7 @@ const NEGLIGIBLE: f32 = 1e-6;
 
 /// The probabilities of all lobes.
 pub(super) struct Chances<R = f32> {
-    pub of: [R; 7],
+    of: [R; 7],
 }
 
 /// A lobe that is chosen.
@@ -43,7 +45,6 @@ pub(super) struct ChosenLobe<R: Real> {
 
 impl<R: Real> Chances<R> {
     /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
-    #[expect(clippy::needless_range_loop, reason = "kernels have no iterators")]
     #[inline(always)]
     pub fn new(
         surface: &OpenPbr<R>,
@@ -68,7 +69,7 @@ impl<R: Real> Chances<R> {
             reflected += surface.metal(cosine) * (taken.metal * weights.metal);
             let has_rest = rests.metal.gt(zero);
             let left = R::select(has_rest, shares.metal_rest() * weights.metal, zero);
-            rest += surface.metal_again * left;
+            rest += surface.metal.again * left;
         }
         // What is seen of the base; light from one direction may be seen from others.
         let mut seen = shares.seen;
@@ -86,63 +87,68 @@ impl<R: Real> Chances<R> {
             reflected = SampledSpectrum::select(is_coated, reflected * opaque, reflected);
             rest = SampledSpectrum::select(is_coated, rest * opaque, rest);
         }
-        let mut reflected = reflected.average();
-        let mut rest = rest.average();
-        let (mut facets, mut through) = (zero, zero);
-        let glass = surface.glass();
-        if glass.gt(zero).any() {
-            let is_inside = wo.z.lt(zero) & R::Mask::splat(!surface.stack.is_thin);
-            let outside = shares.reflected * surface.specular_color.average();
-            let reflects = R::select(is_inside, shares.inside.reflected, outside);
-            let refracts = R::select(is_inside, shares.inside.refracted, shares.refracted);
-            let left = R::select(is_inside, shares.inside.left, shares.glass_rest);
-            let mean = R::select(is_inside, rests.glass_below, rests.glass_above);
-            let passes = R::select(is_inside, rests.through_below, rests.through_above);
-            let left = R::select(mean.gt(zero), left, zero);
-            let glass = R::select(is_inside, glass, glass * seen);
-            rest += glass * left * (one - passes);
-            let tint = glass * surface.transmission_color.average();
-            through = tint * left * passes;
+        let mut of = [zero; 7];
+        of[FUZZ as usize] = weights.layers * fuzz;
+        of[COAT as usize] = coat;
+        of[FACETS as usize] = reflected.average();
+        of[REST as usize] = rest.average();
+        if surface.glass().gt(zero).any() {
+            let glass = surface.scattered_by_glass(shares, rests, wo, seen);
             if surface.stack.is_thin {
-                reflected += glass * reflects;
-                facets = tint * refracts;
+                of[FACETS as usize] += glass.reflected;
+                of[GLASS as usize] = glass.refracted;
             } else {
-                facets = glass * reflects + tint * refracts;
+                of[GLASS as usize] = glass.reflected + glass.refracted;
             }
+            of[REST as usize] += glass.rest;
+            of[THROUGH as usize] = glass.through;
         }
         if surface.stack.is_thin {
-            let transmitted = shares.diffuse_rest * surface.scattered * surface.darkening;
-            through += transmitted.average() * (surface.forward * weights.diffuse * seen);
+            let transmitted = shares.diffuse_rest * surface.diffuse_base.scattered * surface.darkening;
+            of[THROUGH as usize] +=
+                transmitted.average() * (surface.diffuse_base.forward * weights.diffuse * seen);
         }
-        let mut under = zero;
         if mode == TransportMode::Radiance && weights.under.gt(zero).any() {
             let color = surface.subsurface_color;
             let goes_under = (surface.goes_under(shares, wo) * color).average();
-            under = R::select(weights.under.gt(zero), goes_under, zero);
+            of[UNDER as usize] = R::select(weights.under.gt(zero), goes_under, zero);
         }
-        let mut of = [weights.layers * fuzz, coat, reflected, facets, rest, through, under];
+        let mut chances = Self { of };
+        chances.restrict(directions, surface.stack.is_thin);
+        chances.normalize();
+        chances
+    }
+
+    /// Leaves out lobes that scatter in no direction that is asked for.
+    #[inline(always)]
+    fn restrict(&mut self, directions: Directions, is_thin: bool) {
+        let zero = R::zero();
         if directions == Directions::Reflection {
-            of[5] = zero;
-            of[6] = zero;
-            if surface.stack.is_thin {
-                of[3] = zero;
+            self.of[THROUGH as usize] = zero;
+            self.of[UNDER as usize] = zero;
+            if is_thin {
+                self.of[GLASS as usize] = zero;
             }
         }
         if directions == Directions::Transmission {
-            of[0] = zero;
-            of[1] = zero;
-            of[2] = zero;
-            of[4] = zero;
+            self.of[FUZZ as usize] = zero;
+            self.of[COAT as usize] = zero;
+            self.of[FACETS as usize] = zero;
+            self.of[REST as usize] = zero;
         }
-        let mut sum = zero;
+    }
+
+    /// Makes probabilities of them.
+    #[inline(always)]
+    fn normalize(&mut self) {
+        let mut sum = R::zero();
         for i in 0..7 {
-            sum += of[i];
+            sum += self.of[i];
         }
         for i in 0..7 {
-            let is_sampled = of[i].gt(R::splat(NEGLIGIBLE) * sum);
-            of[i] = R::select(is_sampled, of[i] / sum, zero);
+            let is_sampled = self.of[i].gt(R::splat(NEGLIGIBLE) * sum);
+            self.of[i] = R::select(is_sampled, self.of[i] / sum, R::zero());
         }
-        Self { of }
     }
 
     /// A lobe.
@@ -173,6 +179,48 @@ impl<R: Real> Chances<R> {
         directions: Directions,
     ) -> R {
         R::call(DensityOf { chances: self, surface, wo, wi, mode, directions })
+    }
+}
+
+/// What the glass of a surface scatters from a direction.
+struct GlassShares<R> {
+    /// By its facets, reflected.
+    reflected: R,
+    /// By them, refracted; of a sheet, what passes it.
+    refracted: R,
+    /// What they keep between them, on the side where light comes from.
+    rest: R,
+    /// The same on the other side.
+    through: R,
+}
+
+impl<R: Real> OpenPbr<'_, R> {
+    /// What glass scatters of the light to `wo`, of which from above this share is seen.
+    #[inline(always)]
+    fn scattered_by_glass(
+        &self,
+        shares: &Shares<R>,
+        rests: &Rests<R>,
+        wo: Vector3<R>,
+        seen: R,
+    ) -> GlassShares<R> {
+        let zero = R::zero();
+        let is_inside = wo.z.lt(zero) & R::Mask::splat(!self.stack.is_thin);
+        let outside = shares.reflected * self.specular_color.average();
+        let reflects = R::select(is_inside, shares.inside.reflected, outside);
+        let refracts = R::select(is_inside, shares.inside.refracted, shares.refracted);
+        let left = R::select(is_inside, shares.inside.left, shares.glass_rest);
+        let mean = R::select(is_inside, rests.glass_below, rests.glass_above);
+        let passes = R::select(is_inside, rests.through_below, rests.through_above);
+        let left = R::select(mean.gt(zero), left, zero);
+        let glass = R::select(is_inside, self.glass(), self.glass() * seen);
+        let tint = glass * self.transmission_color.average();
+        GlassShares {
+            reflected: glass * reflects,
+            refracted: tint * refracts,
+            rest: glass * left * (R::one() - passes),
+            through: tint * left * passes,
+        }
     }
 }
 

@@ -25,7 +25,7 @@ impl<R: Real> OpenPbr<'_, R> {
     /// F₀ + (1 − F₀) x.
     #[inline(always)]
     fn schlick(&self, x: R) -> SampledSpectrum<R> {
-        let mut schlick = self.metal_color;
+        let mut schlick = self.metal.color;
         for f in &mut schlick.0 {
             *f = *f + (R::one() - *f) * x;
         }
@@ -52,7 +52,7 @@ impl<R: Real> OpenPbr<'_, R> {
             let filmed = bare.lerp(filmed * bare.safe_div(plain), self.stack.film_weight);
             bare = SampledSpectrum::select(is_filmed, filmed, bare);
         }
-        bare * self.metal_weight
+        bare * self.metal.weight
     }
 
     /// The mean of [`Self::metal`] over directions by their cosine; under a film about that of the
@@ -60,7 +60,7 @@ impl<R: Real> OpenPbr<'_, R> {
     #[inline(always)]
     pub(super) fn mean_metal(&self) -> SampledSpectrum<R> {
         let bare = self.schlick(R::splat(1.0 / 21.0)) - self.dip() * R::splat(1.0 / 126.0);
-        let mean = bare.clamp_zero() * self.metal_weight;
+        let mean = bare.clamp_zero() * self.metal.weight;
         let is_filmed = self.stack.film_weight.gt(R::zero());
         if !is_filmed.any() {
             return mean;
@@ -85,7 +85,7 @@ impl<R: Real> Callee<R> for FilmedMetal<'_, '_, R> {
         let inner = stack.inner_cosine(cosine);
         let mut filmed = surface.waves;
         for i in 0..N {
-            let reflected = surface.metal_color[i].min(R::splat(0.9999));
+            let reflected = surface.metal.color[i].min(R::splat(0.9999));
             let root = (reflected / (R::one() - reflected)).sqrt();
             let below = Complex { re: R::one(), im: R::splat(2.0) * root };
             filmed[i] = film_reflectance(inner, stack.above, stack.film_ior, below, surface.waves[i]);

@@ -78,34 +78,46 @@ pub struct OpenPbr<'a, R: Real = f32> {
     waves: SampledSpectrum<R>,
     metalness: R,
     transmission: R,
-    /// Factor on the reflectance of metal.
-    metal_weight: R,
-    diffuse_roughness: R,
-    /// F₀ of metal.
-    metal_color: SampledSpectrum<R>,
-    /// The share of light that metal keeps between its facets.
-    metal_again: SampledSpectrum<R>,
+    metal: Metal<R>,
+    diffuse_base: DiffuseBase<R>,
     specular_color: SampledSpectrum<R>,
     transmission_color: SampledSpectrum<R>,
-    diffuse_color: SampledSpectrum<R>,
-    /// The share of the diffuse base that has this colour.
-    diffuse_weight: R,
-    /// The diffuse colour without what is scattered under the surface.
-    base_color: SampledSpectrum<R>,
     subsurface_color: SampledSpectrum<R>,
     subsurface_weight: R,
     /// The medium under the surface; black where there is none.
     interior: Interior<R>,
     part: Part,
-    /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
-    scattered: SampledSpectrum<R>,
-    forward: R,
     coat_color: SampledSpectrum<R>,
     /// Its normal.
     coat_normal: Vector3<R>,
     /// Factor on opaque bases.
     darkening: SampledSpectrum<R>,
     fuzz_color: SampledSpectrum<R>,
+}
+
+/// The base of metal.
+#[derive(Clone, Copy, Debug)]
+struct Metal<R: Real> {
+    /// Factor on its reflectance.
+    weight: R,
+    /// F₀.
+    color: SampledSpectrum<R>,
+    /// The share of light that is kept between its facets.
+    again: SampledSpectrum<R>,
+}
+
+/// The diffuse base.
+#[derive(Clone, Copy, Debug)]
+struct DiffuseBase<R: Real> {
+    roughness: R,
+    color: SampledSpectrum<R>,
+    /// The share that has this colour.
+    weight: R,
+    /// The colour without what is scattered under the surface.
+    over: SampledSpectrum<R>,
+    /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
+    scattered: SampledSpectrum<R>,
+    forward: R,
 }
 
 /// Weights of the lobes that directions on one side of the surface meet.
@@ -133,31 +145,31 @@ impl<'a, R: Real> OpenPbr<'a, R> {
             waves: black,
             metalness: p.base_metalness,
             transmission: p.transmission_weight,
-            metal_weight: p.specular_weight.min(one),
-            diffuse_roughness: p.base_diffuse_roughness,
-            metal_color: base_color,
-            metal_again: black,
+            metal: Metal { weight: p.specular_weight.min(one), color: base_color, again: black },
+            diffuse_base: DiffuseBase {
+                roughness: p.base_diffuse_roughness,
+                color: base_color.lerp(p.subsurface_color, p.subsurface_weight),
+                weight: one,
+                over: base_color,
+                scattered: black,
+                forward: zero,
+            },
             specular_color: p.specular_color,
             transmission_color: p.transmission_color,
-            diffuse_color: base_color.lerp(p.subsurface_color, p.subsurface_weight),
-            diffuse_weight: one,
-            base_color,
             subsurface_color: p.subsurface_color,
             subsurface_weight: p.subsurface_weight,
             interior: under::interior(p),
             part: Part::Whole,
-            scattered: black,
-            forward: zero,
             coat_color: p.coat_color,
             coat_normal: p.geometry_coat_normal,
             darkening: white,
             fuzz_color: p.fuzz_color,
         };
         if p.geometry_thin_walled {
-            surface.diffuse_color = base_color;
-            surface.diffuse_weight = one - p.subsurface_weight;
-            surface.scattered = p.subsurface_color * p.subsurface_weight;
-            surface.forward = R::splat(0.5) * (one + p.subsurface_scatter_anisotropy);
+            surface.diffuse_base.color = base_color;
+            surface.diffuse_base.weight = one - p.subsurface_weight;
+            surface.diffuse_base.scattered = p.subsurface_color * p.subsurface_weight;
+            surface.diffuse_base.forward = R::splat(0.5) * (one + p.subsurface_scatter_anisotropy);
         }
         let is_filmed = p.thin_film_weight.gt(zero);
         if is_filmed.any() {
@@ -178,7 +190,7 @@ impl<'a, R: Real> OpenPbr<'a, R> {
             for f in &mut again.0 {
                 *f = sqr(*f) * kept / (one - *f * (one - kept));
             }
-            surface.metal_again = SampledSpectrum::select(has_rest, again, black);
+            surface.metal.again = SampledSpectrum::select(has_rest, again, black);
         }
         surface
     }
@@ -189,7 +201,8 @@ impl<'a, R: Real> OpenPbr<'a, R> {
         let (zero, one) = (R::zero(), R::one());
         let stack = &self.stack;
         let mean = mean_fresnel(stack.below / stack.above).max(zero);
-        let diffuse = self.diffuse_color * self.diffuse_weight + self.scattered;
+        let DiffuseBase { color, weight, scattered, .. } = self.diffuse_base;
+        let diffuse = color * weight + scattered;
         let dielectric = SampledSpectrum::splat(mean) + diffuse * (one - mean);
         // Inside, light is reflected as outside where the base keeps its directions, and beyond the
         // critical angle, too, where it spreads them.
@@ -197,7 +210,7 @@ impl<'a, R: Real> OpenPbr<'a, R> {
         let inner = one - (one - outer) / sqr(stack.coat_ior);
         let roughness = lerp(self.metalness, one, stack.base.mean_alpha().sqrt());
         let k = lerp(roughness, outer, inner);
-        let mut darkened = dielectric.lerp(self.metal_color, self.metalness);
+        let mut darkened = dielectric.lerp(self.metal.color, self.metalness);
         for albedo in &mut darkened.0 {
             *albedo = (one - k) / (one - k * *albedo);
         }
@@ -207,18 +220,18 @@ impl<'a, R: Real> OpenPbr<'a, R> {
     /// Whether the diffuse base is that of a thin wall which transmits light.
     #[inline(always)]
     fn transmits_diffusely(&self) -> R::Mask {
-        self.forward.gt(R::zero()) & !self.scattered.is_black()
+        self.diffuse_base.forward.gt(R::zero()) & !self.diffuse_base.scattered.is_black()
     }
 
     /// What the diffuse base reflects of the light that is left for it.
     #[inline(always)]
     fn diffuse_albedo(&self, weights: &Weights<R>) -> SampledSpectrum<R> {
         if self.stack.is_thin {
-            let reflected = self.scattered * (R::one() - self.forward);
-            return self.diffuse_color * self.diffuse_weight + reflected;
+            let DiffuseBase { color, weight, scattered, forward, .. } = self.diffuse_base;
+            return color * weight + scattered * (R::one() - forward);
         }
-        let over = self.base_color * (R::one() - weights.under);
-        SampledSpectrum::select(weights.under.gt(R::zero()), over, self.diffuse_color)
+        let over = self.diffuse_base.over * (R::one() - weights.under);
+        SampledSpectrum::select(weights.under.gt(R::zero()), over, self.diffuse_base.color)
     }
 
     /// The share of the surface that is glass.

@@ -40,7 +40,7 @@ impl<R: Real> OpenPbr<'_, R> {
     #[inline(always)]
     pub(super) fn scattered(&self, share: R, wo: Vector3<R>, wi: Vector3<R>) -> SampledSpectrum<R> {
         let white = SampledSpectrum::splat(R::one());
-        self.scattered * oren_nayar(white, self.diffuse_roughness, wo, wi) * share
+        self.diffuse_base.scattered * oren_nayar(white, self.diffuse_base.roughness, wo, wi) * share
     }
 
     /// The value of a thin wall for a direction above and one below.
@@ -68,7 +68,7 @@ impl<R: Real> OpenPbr<'_, R> {
         let is_diffuse = weights.diffuse.gt(R::zero()) & self.transmits_diffusely();
         if is_diffuse.any() {
             let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
-            f += self.scattered(self.forward, wo, wi) * left * self.darkening * weights.diffuse;
+            f += self.scattered(self.diffuse_base.forward, wo, wi) * left * self.darkening * weights.diffuse;
         }
         let seen = of_viewer([o.seen, i.seen], mode);
         f * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z)) * seen

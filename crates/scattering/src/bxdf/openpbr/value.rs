@@ -98,7 +98,7 @@ impl<R: Real> OpenPbr<'_, R> {
         if has_metal_rest.any() {
             let left = o.metal_rest() * i.metal_rest() / (R::splat(PI) * rests.metal);
             let left = R::select(has_metal_rest, left * weights.metal, zero);
-            base += self.metal_again * self.darkening * left;
+            base += self.metal.again * self.darkening * left;
         }
         let has_glass_rest = weights.glass.gt(zero) & rests.glass_above.gt(zero);
         if has_glass_rest.any() {
@@ -135,12 +135,12 @@ impl<R: Real> OpenPbr<'_, R> {
     ) -> SampledSpectrum<R> {
         let left = (o.diffuse_rest * i.diffuse_rest).safe_div(rests.diffuse);
         let goes_under = weights.under.gt(R::zero());
-        let color = SampledSpectrum::select(goes_under, self.base_color, self.diffuse_color);
+        let color = SampledSpectrum::select(goes_under, self.diffuse_base.over, self.diffuse_base.color);
         let over = R::one() - weights.under;
-        let mut diffuse = oren_nayar(color, self.diffuse_roughness, wo, wi) * over;
+        let mut diffuse = oren_nayar(color, self.diffuse_base.roughness, wo, wi) * over;
         if self.stack.is_thin {
-            let reflected = self.scattered(R::one() - self.forward, wo, wi);
-            diffuse = diffuse * self.diffuse_weight + reflected;
+            let reflected = self.scattered(R::one() - self.diffuse_base.forward, wo, wi);
+            diffuse = diffuse * self.diffuse_base.weight + reflected;
         }
         diffuse * left * self.darkening * weights.diffuse
     }
@@ -168,10 +168,48 @@ impl<R: Real> OpenPbr<'_, R> {
         mode: TransportMode,
     ) -> SampledSpectrum<R> {
         let (zero, wi) = (R::zero(), sample.wi);
-        let cosine = wo.z.abs();
-        let is_above = wo.z.gt(zero);
         let is_coat = lobe.eq(R::Int::splat(COAT));
         let is_glass = lobe.eq(R::Int::splat(GLASS));
+        let mut value = self.specular_base(shares, wo, is_glass, sample);
+        let (mut seen, mut below_fuzz) = (shares.seen, shares.below_fuzz());
+        let is_tilted = self.is_tilted();
+        if mode == TransportMode::Importance && is_tilted.any() {
+            let there = self.shares(wi);
+            seen = there.seen;
+            below_fuzz = R::select(is_tilted, there.below_fuzz(), below_fuzz);
+        }
+        if !self.stack.is_thin {
+            // Tilts of the coat are not seen from inside.
+            let is_inside = is_glass & of_viewer([wo.z, wi.z], mode).lt(zero);
+            seen = R::select(is_inside, R::one(), seen);
+        }
+        value *= seen;
+        if is_coat.any() {
+            let is_above = wo.z.gt(zero);
+            let (up, out) = (upright(!is_above, wo), upright(!is_above, wi));
+            let coat = self.specular_coat(up, out, mode) * below_fuzz;
+            let layers = self.weights(wo.z).layers;
+            let coat = SampledSpectrum::splat(coat * self.stack.coat_weight * layers);
+            value = SampledSpectrum::select(is_coat, coat, value);
+        }
+        let scale = match mode {
+            TransportMode::Radiance => R::one() / sqr(sample.eta),
+            TransportMode::Importance => R::one(),
+        };
+        value * (scale / wi.z.abs())
+    }
+
+    /// The share of light that the smooth base, below the layers, reflects or, where a sample is of
+    /// the lobe of glass, scatters into its direction.
+    #[inline(always)]
+    fn specular_base(
+        &self,
+        shares: &Shares<R>,
+        wo: Vector3<R>,
+        is_glass: R::Mask,
+        sample: &BsdfSample<R>,
+    ) -> SampledSpectrum<R> {
+        let (zero, cosine) = (R::zero(), wo.z.abs());
         let Weights { layers, metal, diffuse, under, glass } = self.weights(wo.z);
         let mut glass_here = glass;
         if !self.stack.is_thin {
@@ -192,42 +230,19 @@ impl<R: Real> OpenPbr<'_, R> {
                 let through = passed * tint * (shares.taken.below_coat * self.glass());
                 value = SampledSpectrum::select(is_glass, through, value);
             } else {
-                let is_inside = is_glass & !is_above;
+                let is_inside = is_glass & !wo.z.gt(zero);
                 if is_inside.any() {
                     let inside = self.inner_reflectance(cosine) * self.glass();
                     value = SampledSpectrum::select(is_inside, inside, value);
                 }
                 let is_refracted = is_glass & sample.flags.is_transmissive();
                 if is_refracted.any() {
-                    let refracted = self.refracted(shares, wo, wi);
+                    let refracted = self.refracted(shares, wo, sample.wi);
                     value = SampledSpectrum::select(is_refracted, refracted, value);
                 }
             }
         }
-        let (mut seen, mut below_fuzz) = (shares.seen, shares.below_fuzz());
-        let is_tilted = self.is_tilted();
-        if mode == TransportMode::Importance && is_tilted.any() {
-            let there = self.shares(wi);
-            seen = there.seen;
-            below_fuzz = R::select(is_tilted, there.below_fuzz(), below_fuzz);
-        }
-        if !self.stack.is_thin {
-            // Tilts of the coat are not seen from inside.
-            let is_inside = is_glass & of_viewer([wo.z, wi.z], mode).lt(zero);
-            seen = R::select(is_inside, R::one(), seen);
-        }
-        value *= seen;
-        if is_coat.any() {
-            let (up, out) = (upright(!is_above, wo), upright(!is_above, wi));
-            let coat = self.specular_coat(up, out, mode) * below_fuzz;
-            let coat = SampledSpectrum::splat(coat * self.stack.coat_weight * layers);
-            value = SampledSpectrum::select(is_coat, coat, value);
-        }
-        let scale = match mode {
-            TransportMode::Radiance => R::one() / sqr(sample.eta),
-            TransportMode::Importance => R::one(),
-        };
-        value * (scale / wi.z.abs())
+        value
     }
 
     /// The share of light that smooth glass refracts from one direction into another.
