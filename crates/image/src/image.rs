@@ -202,11 +202,6 @@ impl Image {
         self.value(self.offset(x, y) + c, c)
     }
 
-    /// The linear value of channel `c` at any (x, y).
-    pub fn channel_wrapped(&self, x: i32, y: i32, c: usize, wrap: WrapMode) -> f32 {
-        wrap.apply(x, y, self.width, self.height).map_or(0.0, |(x, y)| self.channel(x, y, c))
-    }
-
     /// Sets channel `c` of pixel (x, y) to a linear value, as near as the storage can.
     ///
     /// # Panics

@@ -5,7 +5,7 @@
 //! translation and stretch are interpolated linearly, the rotation on the sphere of quaternions
 //! ([Shoemake & Duff 1992]; [Pharr 2023 §3.9.3]).
 
-use crate::{Bounds3, DMat4, DVec3, Point3, Transform, Vec3};
+use crate::{Bounds3, DMat4, DVec3, Point3, Transform};
 use glam::{DMat3, DQuat};
 
 /// A transform that may change over time.
@@ -153,19 +153,10 @@ fn decompose(m: DMat4) -> (DVec3, DQuat, DMat3) {
     (m.w_axis.truncate(), DQuat::from_mat3(&rotation).normalize(), rotation.transpose() * linear)
 }
 
-impl AnimatedTransform {
-    /// The largest factor by which lengths may grow at any time, for estimates of size.
-    pub fn largest_scale(&self) -> f32 {
-        let scale = |t: &Transform| {
-            [Vec3::X, Vec3::Y, Vec3::Z].iter().fold(0f32, |a, &axis| a.max(t.vector(axis).length()))
-        };
-        self.motion.as_ref().map_or(0.0, |m| scale(&m.end)).max(scale(&self.start))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
 
     fn turning() -> AnimatedTransform {
         let start = DMat4::from_translation(DVec3::new(1.0, 0.0, 0.0));

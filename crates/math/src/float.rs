@@ -82,12 +82,6 @@ pub fn cross<R: Real>(a: crate::Vec3<R>, b: crate::Vec3<R>) -> crate::Vec3<R> {
     )
 }
 
-/// The value of c₀ + c₁·x + c₂·x² + …, by Horner's rule.
-#[inline]
-pub fn evaluate_polynomial(x: f32, coefficients: &[f32]) -> f32 {
-    coefficients.iter().rev().fold(0.0, |sum, &c| sum.mul_add(x, c))
-}
-
 /// The index i of the last of `size` ascending values for which `predicate(i)` holds, kept in
 /// [0, size − 2], so that i and i + 1 are both valid.
 #[inline]
@@ -123,10 +117,5 @@ mod tests {
         for (x, i) in [(-1.0, 0), (0.5, 0), (1.0, 1), (4.9, 2), (7.0, 3), (20.0, 3)] {
             assert_eq!(find_interval(nodes.len(), |k| nodes[k] <= x), i, "x = {x}");
         }
-    }
-
-    #[test]
-    fn polynomial_by_horner() {
-        assert_eq!(evaluate_polynomial(2.0, &[1.0, 3.0, 0.5]), 1.0 + 6.0 + 2.0);
     }
 }

@@ -21,15 +21,6 @@ impl Interval {
         Self { low, high }
     }
 
-    /// The range `value ± error`.
-    #[inline]
-    pub fn from_value_and_error(value: f32, error: f32) -> Self {
-        if error == 0.0 {
-            return Self::from(value);
-        }
-        Self::new((value - error).next_down(), (value + error).next_up())
-    }
-
     /// The point in the middle.
     #[inline]
     pub fn midpoint(self) -> f32 {
@@ -150,7 +141,7 @@ mod tests {
 
     fn range() -> impl Strategy<Value = (Interval, f64)> {
         (-1e4f32..1e4, 0f32..1e2, 0f64..1.0).prop_map(|(v, e, t)| {
-            let i = Interval::from_value_and_error(v, e);
+            let i = Interval::new((v - e).next_down(), (v + e).next_up());
             (i, i.low as f64 + t * (i.high as f64 - i.low as f64))
         })
     }

@@ -31,22 +31,10 @@ pub fn cos2_theta<R: Real>(w: Vector3<R>) -> R {
     w.z * w.z
 }
 
-/// sin²θ of a local direction.
-#[inline(always)]
-pub fn sin2_theta<R: Real>(w: Vector3<R>) -> R {
-    (R::one() - cos2_theta(w)).max(R::zero())
-}
-
 /// sin θ ≥ 0 of a local direction.
 #[inline(always)]
 pub fn sin_theta<R: Real>(w: Vector3<R>) -> R {
     safe_sqrt(R::one() - cos2_theta(w))
-}
-
-/// tan²θ of a local direction; infinite at the horizon.
-#[inline(always)]
-pub fn tan2_theta<R: Real>(w: Vector3<R>) -> R {
-    sin2_theta(w) / cos2_theta(w)
 }
 
 /// cos φ of a local direction; 1 at the pole.

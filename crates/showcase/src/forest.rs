@@ -14,12 +14,13 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use math::{Vec2, Vec3, equal_area_square_to_sphere};
+use math::{Vec2, Vec3};
 use sampling::Rng;
 
 use super::land::{POND, height, shore, slope};
 use super::mesh::Mesh;
 use super::noise::fbm;
+use super::picture;
 use super::pond;
 use super::tree::{Broadleaf, grass, spruce};
 
@@ -176,19 +177,11 @@ fn water(cells: f32) -> Mesh {
 /// A sky covered by clouds as a picture over the sphere in the format PFM; below the horizon it is
 /// dark.
 fn sky(size: u32) -> Vec<u8> {
-    let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
-    for y in (0..size).rev() {
-        for x in 0..size {
-            let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size as f32;
-            let d = equal_area_square_to_sphere(uv);
-            let clouds = 1.0 + 0.25 * fbm(2.0 * d.x / (d.z.abs() + 0.25), 2.0 * d.y / (d.z.abs() + 0.25), 4);
-            let luminance = if d.z > 0.0 { (1.0 + 2.0 * d.z) / 3.0 * clouds } else { 0.08 };
-            for tint in [0.95, 1.0, 1.08] {
-                file.extend((luminance * tint).to_le_bytes());
-            }
-        }
-    }
-    file
+    picture::sphere(size, |d| {
+        let clouds = 1.0 + 0.25 * fbm(2.0 * d.x / (d.z.abs() + 0.25), 2.0 * d.y / (d.z.abs() + 0.25), 4);
+        let luminance = if d.z > 0.0 { (1.0 + 2.0 * d.z) / 3.0 * clouds } else { 0.08 };
+        Vec3::new(0.95, 1.0, 1.08) * luminance
+    })
 }
 
 /// The trees in their order: which, and the statement that places it.

@@ -8,6 +8,7 @@ mod head;
 mod land;
 mod mesh;
 mod noise;
+mod picture;
 mod planet;
 mod pond;
 mod tree;

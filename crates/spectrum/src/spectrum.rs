@@ -115,11 +115,6 @@ impl Spectrum {
         }
     }
 
-    /// ∫ f g dλ in nanometres, as the sum over whole nanometres.
-    pub fn inner_product(&self, other: &Self) -> f32 {
-        integrate(|lambda| self.at(lambda) * other.at(lambda))
-    }
-
     /// The colour of light with this spectrum.
     pub fn to_xyz(&self) -> Xyz {
         cie::integrate_xyz(|lambda| self.at(lambda))
@@ -185,7 +180,6 @@ mod tests {
         let xyz = Spectrum::Constant(1.0).to_xyz();
         assert!((xyz.y - 1.0).abs() < 1e-5);
         assert!((Spectrum::Constant(2.0).to_photometric() - 2.0 * CIE_Y_INTEGRAL).abs() < 1e-3);
-        assert!((Spectrum::Constant(2.0).inner_product(&Spectrum::Constant(3.0)) - 6.0 * 471.0).abs() < 1e-2);
     }
 
     #[test]

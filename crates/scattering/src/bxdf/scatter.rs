@@ -3,9 +3,7 @@
 use crate::{BxdfFlags, Directions, TransportMode};
 use lanes::{Mask, Real};
 use math::{Vec2, Vector3};
-use sampling::warp::sample_uniform_hemisphere;
 use spectrum::SampledSpectrum;
-use std::f32::consts::{PI, TAU};
 
 /// A sampled direction of scattering, for each lane.
 #[derive(Clone, Copy, Debug)]
@@ -111,16 +109,6 @@ pub trait Scatter<R: Real = f32> {
     fn rho_hd(&self, wo: Vector3<R>, samples: impl IntoIterator<Item = (R, Vec2<R>)>) -> SampledSpectrum<R> {
         let rho = mean(samples.into_iter().map(|(uc, u)| scattered(self, wo, uc, u)));
         SampledSpectrum::select(wo.z.eq(R::zero()), SampledSpectrum::zero(), rho)
-    }
-
-    /// The hemispherical-hemispherical reflectance: the share of uniform incident light that is
-    /// scattered at all, estimated by one term for each (u for wo, uc, u for wi).
-    #[inline(always)]
-    fn rho_hh(&self, samples: impl IntoIterator<Item = (Vec2<R>, R, Vec2<R>)>) -> SampledSpectrum<R> {
-        mean(samples.into_iter().map(|(uo, uc, ui)| {
-            let wo = sample_uniform_hemisphere(uo);
-            scattered(self, wo, uc, ui) * (wo.z.abs() * R::splat(TAU) / R::splat(PI))
-        }))
     }
 }
 

@@ -2,6 +2,8 @@
 
 use math::Vec3;
 
+use crate::picture;
+
 /// Texture coordinates of panels for a metre.
 pub const SCALE: f32 = 8.0;
 
@@ -13,29 +15,23 @@ pub fn flakes(size: u32) -> Vec<u8> {
         let [i, j] = [i, j].map(|v| v.rem_euclid(CELLS) as u32);
         (sampling::hash(&[i, j, k]) >> 40) as f32 / (1 << 24) as f32
     };
-    let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
-    for y in 0..size {
-        for x in 0..size {
-            let [u, v] = [x, y].map(|v| (v as f32 + 0.5) * CELLS as f32 / size as f32);
-            let (mut nearest, mut cell) = (f32::INFINITY, (0, 0));
-            for i in u as i32 - 1..=u as i32 + 1 {
-                for j in v as i32 - 1..=v as i32 + 1 {
-                    let distance = (i as f32 + random(i, j, 0) - u).hypot(j as f32 + random(i, j, 1) - v);
-                    if distance < nearest {
-                        (nearest, cell) = (distance, (i, j));
-                    }
+    picture::square(size, |uv| {
+        let [u, v] = uv.to_array().map(|v| v * CELLS as f32);
+        let (mut nearest, mut cell) = (f32::INFINITY, (0, 0));
+        for i in u as i32 - 1..=u as i32 + 1 {
+            for j in v as i32 - 1..=v as i32 + 1 {
+                let distance = (i as f32 + random(i, j, 0) - u).hypot(j as f32 + random(i, j, 1) - v);
+                if distance < nearest {
+                    (nearest, cell) = (distance, (i, j));
                 }
             }
-            // A tilt with the distribution of Gaussian slopes.
-            let spread = 0.13 * (-2.0 * lanes::ln(1.0 - random(cell.0, cell.1, 2))).sqrt();
-            let (sin, cos) = lanes::sin_cos(std::f32::consts::TAU * random(cell.0, cell.1, 3));
-            let n = Vec3::new(spread * cos, spread * sin, 1.0).normalize();
-            for v in n.to_array() {
-                file.extend((0.5 * v + 0.5).to_le_bytes());
-            }
         }
-    }
-    file
+        // A tilt with the distribution of Gaussian slopes.
+        let spread = 0.13 * (-2.0 * lanes::ln(1.0 - random(cell.0, cell.1, 2))).sqrt();
+        let (sin, cos) = lanes::sin_cos(std::f32::consts::TAU * random(cell.0, cell.1, 3));
+        let n = Vec3::new(spread * cos, spread * sin, 1.0).normalize();
+        n.map(|v| 0.5 * v + 0.5)
+    })
 }
 
 pub const MATERIALS: &str = r#"# A coupé. Made by `cargo xtask scenes car`. x is to the left, y ahead, z up; metres.

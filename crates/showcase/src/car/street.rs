@@ -7,11 +7,12 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use math::{Vec2, Vec3, equal_area_square_to_sphere};
+use math::Vec3;
 use sampling::Rng;
 
 use crate::mesh::Mesh;
 use crate::noise::fbm;
+use crate::picture;
 
 /// The edge of the pavement, and the houses on both sides of the street, by x.
 const KERB: f32 = -2.9;
@@ -54,29 +55,20 @@ pub fn write(folder: &Path) -> io::Result<()> {
 
 /// A dusky sky as a picture over the sphere in the format PFM.
 fn sky(size: u32) -> Vec<u8> {
-    let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
-    for y in (0..size).rev() {
-        for x in 0..size {
-            let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size as f32;
-            let d = equal_area_square_to_sphere(uv);
-            let up = d.z.abs();
-            // Towards the sunset, which is at −y.
-            let west = d.dot(Vec3::new(-0.1, -0.99, 0.05)).clamp(0.0, 1.0);
-            let glow = lanes::pow(west, 6.0) * lanes::exp(-5.0 * up);
-            let band = lanes::exp(-3.2 * up);
-            let clouds = fbm(1.2 * d.x / (up + 0.22), 2.4 * d.y / (up + 0.22), 5);
-            let streaks = (0.5 + clouds).clamp(0.0, 1.0);
-            let mut colour = Vec3::new(0.26, 0.37, 0.62) * (1.0 - 0.35 * up);
-            colour += Vec3::new(0.26, 0.24, 0.28) * band;
-            colour += Vec3::new(1.25, 0.5, 0.13) * glow;
-            colour *= 0.75 + 0.5 * streaks;
-            colour += Vec3::new(0.42, 0.17, 0.12) * (streaks * band * (0.2 + west));
-            for v in colour.to_array() {
-                file.extend(v.to_le_bytes());
-            }
-        }
-    }
-    file
+    picture::sphere(size, |d| {
+        let up = d.z.abs();
+        // Towards the sunset, which is at −y.
+        let west = d.dot(Vec3::new(-0.1, -0.99, 0.05)).clamp(0.0, 1.0);
+        let glow = lanes::pow(west, 6.0) * lanes::exp(-5.0 * up);
+        let band = lanes::exp(-3.2 * up);
+        let clouds = fbm(1.2 * d.x / (up + 0.22), 2.4 * d.y / (up + 0.22), 5);
+        let streaks = (0.5 + clouds).clamp(0.0, 1.0);
+        let mut colour = Vec3::new(0.26, 0.37, 0.62) * (1.0 - 0.35 * up);
+        colour += Vec3::new(0.26, 0.24, 0.28) * band;
+        colour += Vec3::new(1.25, 0.5, 0.13) * glow;
+        colour *= 0.75 + 0.5 * streaks;
+        colour + Vec3::new(0.42, 0.17, 0.12) * (streaks * band * (0.2 + west))
+    })
 }
 
 fn houses() -> Houses {

@@ -7,6 +7,7 @@ use math::{Vec2, Vec3, smooth_step};
 use super::face::{CORNEA, EYE, EYEBALL};
 use crate::mesh::Mesh;
 use crate::noise::fbm;
+use crate::picture;
 
 /// Radii of the iris and the pupil.
 const IRIS: f32 = 6.0;
@@ -66,15 +67,7 @@ pub fn corneas() -> Mesh {
 
 /// Colours of an eye as seen from the front, in the format PFM.
 pub fn colours(size: u32) -> Vec<u8> {
-    let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
-    for y in 0..size {
-        for x in 0..size {
-            let [u, v] = [x, y].map(|v| EYEBALL * (2.0 * (v as f32 + 0.5) / size as f32 - 1.0));
-            let colour = colour(u, v);
-            colour.to_array().into_iter().for_each(|v| file.extend(v.to_le_bytes()));
-        }
-    }
-    file
+    picture::square(size, |uv| colour(EYEBALL * (2.0 * uv.x - 1.0), EYEBALL * (2.0 * uv.y - 1.0)))
 }
 
 fn colour(x: f32, z: f32) -> Vec3 {

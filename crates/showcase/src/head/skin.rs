@@ -5,27 +5,19 @@ use math::{Vec2, Vec3, smooth_step};
 use super::hair::hairline;
 use super::pores::lip;
 use crate::noise::fbm;
+use crate::picture;
 
-/// What of the front the picture of colours shows: middle and extent of x and z.
-const MIDDLE: [f32; 2] = [0.0, 0.0];
+/// What of the front the picture of colours shows: the extent of x and z.
 const EXTENT: f32 = 260.0;
 
 /// Coordinates of a point in the picture.
 pub fn coordinates(p: Vec3) -> Vec2 {
-    Vec2::new(p.x - MIDDLE[0], p.z - MIDDLE[1]) / EXTENT + Vec2::new(0.5, 0.5)
+    Vec2::new(p.x, p.z) / EXTENT + Vec2::new(0.5, 0.5)
 }
 
 /// The picture, in the format PFM.
 pub fn colours(size: u32) -> Vec<u8> {
-    let mut file = format!("PF\n{size} {size}\n-1.0\n").into_bytes();
-    for y in 0..size {
-        for x in 0..size {
-            let [u, v] = [x, y].map(|v| EXTENT * ((v as f32 + 0.5) / size as f32 - 0.5));
-            let colour = colour(u + MIDDLE[0], v + MIDDLE[1]);
-            colour.to_array().into_iter().for_each(|v| file.extend(v.to_le_bytes()));
-        }
-    }
-    file
+    picture::square(size, |uv| colour(EXTENT * (uv.x - 0.5), EXTENT * (uv.y - 0.5)))
 }
 
 fn colour(x: f32, z: f32) -> Vec3 {

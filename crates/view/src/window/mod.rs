@@ -1,8 +1,8 @@
 //! The window: the picture between two panels. It asks the engine for what it shows, and never
 //! waits for it.
 
-mod developer;
 mod panels;
+mod picture;
 mod planet;
 mod split;
 mod stage;
@@ -41,7 +41,7 @@ pub fn open(
         context.egui_ctx.set_visuals(Visuals::dark());
         let repaint = context.egui_ctx.clone();
         let wake = move || repaint.request_repaint();
-        Ok(Box::new(Window { state: State::new(renderer, desc, (display, split), wake) }))
+        Ok(Box::new(Window { state: State::new(renderer, desc, display, split, wake) }))
     });
     eframe::run_native("alhazen", options, create).map_err(|error| reason(&error))
 }

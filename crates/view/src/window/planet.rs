@@ -9,11 +9,10 @@ use alhazen::image::DisplaySettings;
 use alhazen::integrators::Control;
 use alhazen::system_clock;
 use eframe::egui::{
-    Align2, CentralPanel, Color32, Context, FontId, Frame as Margins, Key, PointerButton, Rect, Sense,
-    TextureHandle, TextureOptions, Ui, pos2, vec2,
+    Align2, CentralPanel, Color32, FontId, Frame as Margins, Key, PointerButton, Rect, Sense, Ui, pos2, vec2,
 };
 
-use super::developer::Developer;
+use super::picture::Picture;
 use crate::Frame;
 use crate::planet::{Input, Outing, STEP};
 
@@ -102,11 +101,9 @@ impl Drop for Walk {
 /// The window.
 pub(super) struct PlanetWindow {
     walk: Walk,
-    developer: Developer,
+    picture: Picture,
     display: DisplaySettings,
     spheres: usize,
-    asked: Option<Arc<Frame>>,
-    texture: Option<(TextureHandle, Arc<Frame>)>,
 }
 
 impl PlanetWindow {
@@ -114,31 +111,7 @@ impl PlanetWindow {
     pub fn new(outing: Outing, display: DisplaySettings, wake: impl Fn() + Clone + Send + 'static) -> Self {
         let spheres = outing.planet().bodies().len();
         let walk = Walk::start(outing, wake.clone());
-        Self { walk, developer: Developer::start(wake), display, spheres, asked: None, texture: None }
-    }
-
-    /// Takes what is new: a picture to be developed, and one that was developed.
-    fn refresh(&mut self, context: &Context) {
-        let frame = locked(&self.walk.exchange).frame.clone();
-        if let Some(frame) = frame
-            && !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, &frame))
-        {
-            self.asked = Some(Arc::clone(&frame));
-            self.developer.develop(frame, self.display);
-        }
-        if let Some(developed) = self.developer.take() {
-            let options = TextureOptions::LINEAR;
-            match &mut self.texture {
-                Some((texture, frame)) => {
-                    texture.set(developed.codes, options);
-                    *frame = developed.frame;
-                }
-                None => {
-                    let texture = context.load_texture("picture", developed.codes, options);
-                    self.texture = Some((texture, developed.frame));
-                }
-            }
-        }
+        Self { walk, picture: Picture::start(wake), display, spheres }
     }
 
     /// Tells the walker what keys and mouse say.
@@ -181,7 +154,8 @@ impl PlanetWindow {
 
 impl eframe::App for PlanetWindow {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
-        self.refresh(ui.ctx());
+        let frame = locked(&self.walk.exchange).frame.clone();
+        self.picture.refresh(ui.ctx(), frame.as_ref(), self.display);
         CentralPanel::default().frame(Margins::NONE.fill(Color32::BLACK)).show(ui, |ui| {
             let space = ui.available_rect_before_wrap();
             let response = ui.allocate_rect(space, Sense::click_and_drag());
@@ -197,7 +171,7 @@ impl eframe::App for PlanetWindow {
                 ui.painter().text(at, align, text, font.clone(), Color32::WHITE);
             };
             let problem = locked(&self.walk.exchange).problem.clone();
-            match &self.texture {
+            match self.picture.texture() {
                 Some((texture, frame)) => {
                     let size = vec2(frame.size[0] as f32, frame.size[1] as f32);
                     let scale = (space.width() / size.x).min(space.height() / size.y);

@@ -5,12 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use alhazen::image::DisplaySettings;
 use alhazen::math::Bounds2i;
-use eframe::egui::{
-    Align2, Color32, Context, CursorIcon, FontId, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui,
-    pos2, vec2,
-};
+use eframe::egui::{Align2, Color32, Context, CursorIcon, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use super::developer::Developer;
+use super::picture::Picture;
 use crate::{Frame, Rasterized, Shot, World};
 
 /// Half the width in points of where the slider can be taken.
@@ -31,10 +28,7 @@ struct Found {
 pub struct Split {
     sender: Sender<(Arc<World>, Shot)>,
     found: Arc<Mutex<Found>>,
-    developer: Developer,
-    /// The picture on the screen.
-    texture: Option<(TextureHandle, Arc<Frame>)>,
-    asked: Option<(Arc<Frame>, DisplaySettings)>,
+    picture: Picture,
     /// The scene that was shown last.
     shown: Option<Arc<World>>,
     /// Where the slider is, as a share of the width.
@@ -46,7 +40,7 @@ impl Split {
     pub fn start(share: f32, wake: impl Fn() + Clone + Send + 'static) -> Self {
         let (sender, receiver) = channel::<(Arc<World>, Shot)>();
         let found = Arc::new(Mutex::new(Found::default()));
-        let (told, developer) = (Arc::clone(&found), Developer::start(wake.clone()));
+        let (told, picture) = (Arc::clone(&found), Picture::start(wake.clone()));
         std::thread::spawn(move || {
             let mut rasterized: Option<Rasterized> = None;
             while let Ok(mut next) = receiver.recv() {
@@ -54,7 +48,8 @@ impl Split {
                 while let Ok(later) = receiver.try_recv() {
                     next = later;
                 }
-                let next = draw(&mut rasterized, next);
+                let (world, shot) = next;
+                let next = draw(&mut rasterized, world, &shot);
                 let mut found = told.lock().unwrap_or_else(PoisonError::into_inner);
                 match next {
                     Ok(next) => *found = next,
@@ -64,7 +59,7 @@ impl Split {
                 wake();
             }
         });
-        Self { sender, found, developer, texture: None, asked: None, shown: None, share }
+        Self { sender, found, picture, shown: None, share }
     }
 
     /// Draws a shot.
@@ -79,17 +74,8 @@ impl Split {
         if self.shown.as_ref().is_none_or(|shown| !Arc::ptr_eq(shown, world)) {
             self.show(world, shot);
         }
-        if let Some(frame) = self.found().frame {
-            let is_asked = |(asked, of): &(Arc<Frame>, _)| Arc::ptr_eq(asked, &frame) && *of == display;
-            if !self.asked.as_ref().is_some_and(is_asked) {
-                self.asked = Some((Arc::clone(&frame), display));
-                self.developer.develop(frame, display);
-            }
-        }
-        if let Some(developed) = self.developer.take() {
-            let texture = context.load_texture("rasterised", developed.codes, TextureOptions::LINEAR);
-            self.texture = Some((texture, developed.frame));
-        }
+        let frame = self.found().frame;
+        self.picture.refresh(context, frame.as_ref(), display);
     }
 
     /// Paints the right side over the picture in `place`, and moves the slider.
@@ -105,7 +91,7 @@ impl Split {
         let x = at(self.share);
         let right = Rect::from_min_max(pos2(x, place.top()), place.max);
         let painter = ui.painter().with_clip_rect(right);
-        match &self.texture {
+        match self.picture.texture() {
             Some((texture, frame)) => {
                 let [min, max] = frame.part(bounds).map(|[u, v]| pos2(u, v));
                 painter.image(texture.id(), place, Rect::from_min_max(min, max), Color32::WHITE);
@@ -149,13 +135,13 @@ impl Split {
 }
 
 /// Draws a shot of a scene, which is taken to the GPU if it is another one.
-fn draw(rasterized: &mut Option<Rasterized>, (world, shot): (Arc<World>, Shot)) -> Result<Found, String> {
+fn draw(rasterized: &mut Option<Rasterized>, world: Arc<World>, shot: &Shot) -> Result<Found, String> {
     let mut scene = match rasterized.take() {
         Some(scene) if Arc::ptr_eq(scene.world(), &world) => scene,
         Some(other) => Rasterized::new(world, Arc::clone(other.device()))?,
         None => Rasterized::new(world, Rasterized::open()?)?,
     };
-    let drawn = scene.draw(&shot);
+    let drawn = scene.draw(shot);
     let device = scene.device().name().to_owned();
     *rasterized = Some(scene);
     let drawn = drawn?;

@@ -43,7 +43,7 @@ impl Place {
 pub fn stage(ui: &mut Ui, state: &mut State) {
     let place = Place::new(ui.available_rect_before_wrap(), state);
     let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
-    if let Some((texture, frame)) = &state.texture {
+    if let Some((texture, frame)) = state.picture.texture() {
         let [min, max] = frame.part(&state.bounds()).map(|[u, v]| pos2(u, v));
         ui.painter().image(texture.id(), place.rect, Rect::from_min_max(min, max), Color32::WHITE);
     } else {
@@ -60,7 +60,7 @@ pub fn stage(ui: &mut Ui, state: &mut State) {
 
 /// Draws the paths of the pixel over the picture.
 fn paths(ui: &Ui, state: &State, place: &Place) {
-    let (Some(trace), Some((_, frame))) = (&state.output.trace, &state.texture) else { return };
+    let (Some(trace), Some((_, frame))) = (&state.output.trace, state.picture.texture()) else { return };
     let painter = ui.painter().with_clip_rect(place.rect);
     let projector = Projector::new(state.output.world.scene(), frame);
     for (ends, kind) in projector.lines(trace) {

@@ -1,22 +1,20 @@
 //! What the window shows and has been asked for.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use alhazen::description::SceneDesc;
 use alhazen::image::{DisplaySettings, replace_file};
 use alhazen::math::Bounds2i;
 use alhazen::pbrt::export_camera;
-use eframe::egui::{Context, TextureHandle, TextureOptions};
+use eframe::egui::Context;
 
-use super::developer::Developer;
+use super::picture::Picture;
 use super::split::Split;
-use crate::{Engine, Flight, Frame, Mode, Output, Renderer, Shot};
+use crate::{Engine, Flight, Mode, Output, Renderer, Shot};
 
 /// The state of the window.
 pub struct State {
     engine: Engine,
-    developer: Developer,
     /// What the engine has found.
     pub output: Output,
     /// The scene with all changes.
@@ -33,10 +31,8 @@ pub struct State {
     pub speed: f64,
     /// How colours are shown.
     pub display: DisplaySettings,
-    /// The picture on the screen, and how its light was shown.
-    pub texture: Option<(TextureHandle, Arc<Frame>)>,
-    /// What was developed last.
-    asked: Option<(Arc<Frame>, DisplaySettings)>,
+    /// The picture on the screen.
+    pub picture: Picture,
     /// How many paths of a pixel are traced, and of which pixel.
     pub paths: u32,
     /// The pixel whose paths are shown.
@@ -52,7 +48,8 @@ impl State {
     pub fn new(
         renderer: Renderer,
         desc: SceneDesc,
-        (display, split): (DisplaySettings, Option<f32>),
+        display: DisplaySettings,
+        split: Option<f32>,
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Self {
         let (shot, flight) = (renderer.shot().clone(), renderer.world().flight());
@@ -62,15 +59,13 @@ impl State {
             output: engine.output(),
             engine,
             split: split.map(|share| Split::start(share, wake.clone())),
-            developer: Developer::start(wake),
             desc,
             shot,
             speed: 0.4 * flight.distance().max(f64::MIN_POSITIVE),
             flight,
             mode: Mode::default(),
             display,
-            texture: None,
-            asked: None,
+            picture: Picture::start(wake),
             paths: 4,
             pixel: None,
             file,
@@ -78,35 +73,13 @@ impl State {
         }
     }
 
-    /// Takes what is new: a picture of the engine to be developed, and one that was developed.
+    /// Takes what the engine has found, and shows it.
     pub fn refresh(&mut self, context: &Context) {
         self.output = self.engine.output();
         if let Some(split) = &mut self.split {
             split.refresh(context, &self.output.world, &self.shot, self.display);
         }
-        if let Some(frame) = &self.output.frame {
-            let is_asked = self
-                .asked
-                .as_ref()
-                .is_some_and(|(asked, display)| Arc::ptr_eq(asked, frame) && *display == self.display);
-            if !is_asked {
-                self.asked = Some((Arc::clone(frame), self.display));
-                self.developer.develop(Arc::clone(frame), self.display);
-            }
-        }
-        if let Some(developed) = self.developer.take() {
-            let options = TextureOptions::LINEAR;
-            match &mut self.texture {
-                Some((texture, frame)) => {
-                    texture.set(developed.codes, options);
-                    *frame = developed.frame;
-                }
-                None => {
-                    let texture = context.load_texture("picture", developed.codes, options);
-                    self.texture = Some((texture, developed.frame));
-                }
-            }
-        }
+        self.picture.refresh(context, self.output.frame.as_ref(), self.display);
     }
 
     /// The pixels of the picture.
@@ -139,7 +112,7 @@ impl State {
 
     /// Looks at what is seen at a position of the film.
     pub fn look_at(&mut self, film: [f32; 2]) {
-        let Some((_, frame)) = &self.texture else { return };
+        let Some((_, frame)) = self.picture.texture() else { return };
         let film = film.map(|x| x / frame.n as f32);
         if let Some(focus) = self.output.world.seen_at(&frame.view, film) {
             self.flight.look_at(focus);

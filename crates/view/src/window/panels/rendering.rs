@@ -14,7 +14,7 @@ use crate::{Frame, layers};
 /// The numbers of the picture, and the choice of the algorithm.
 pub fn rendering(ui: &mut Ui, state: &mut State) {
     group(ui, "Rendering", |ui| {
-        if let Some((_, frame)) = &state.texture {
+        if let Some((_, frame)) = state.picture.texture() {
             numbers(ui, frame);
         }
         if let Some((numbers, device)) = state.split.as_ref().and_then(Split::summary) {
