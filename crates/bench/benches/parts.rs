@@ -44,11 +44,12 @@ fn queries(c: &mut Criterion) {
 fn spheres_hit(c: &mut Criterion) {
     let world = building::world(spheres(1_000_000).expect("spheres"), BuildQuality::Balanced);
     let middle = Vec3::splat(0.5);
-    let rays: Vec<Ray> = pairs(16_384).map(|(o, p)| Ray::new(middle + o, p - o, 0.0)).collect();
+    let ray = |(o, p)| BenchRay { ray: Ray::new(middle + o, p - o, 0.0), t_max: f32::INFINITY };
+    let rays: Vec<BenchRay> = pairs(16_384).map(ray).collect();
     let mut group = c.benchmark_group("closest hit");
     group.throughput(Throughput::Elements(rays.len() as u64));
-    let closest = |ray: &Ray| closest(&world, &(*ray, f32::INFINITY));
-    group.bench_function("spheres", |b| b.iter(|| rays.iter().filter_map(closest).count()));
+    group
+        .bench_function("spheres", |b| b.iter(|| rays.iter().filter_map(|ray| closest(&world, ray)).count()));
 }
 
 /// Rays from a sphere's surface towards points in each shape's box, half of which or so meet it.

@@ -51,13 +51,13 @@ struct RtcRayHit {
 
 impl RtcRayHit {
     #[inline]
-    fn new((ray, t_max): &BenchRay) -> Self {
+    fn new(&BenchRay { ray, t_max }: &BenchRay) -> Self {
         let ray = RtcRay {
             o: ray.o.to_array(),
             near: 0.0,
             d: ray.d.to_array(),
             time: 0.0,
-            far: *t_max,
+            far: t_max,
             mask: u32::MAX,
             id: 0,
             flags: 0,

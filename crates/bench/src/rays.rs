@@ -13,8 +13,14 @@ use math::{Ray, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// A ray and its `t_max`.
-pub type BenchRay = (Ray, f32);
+/// A ray with an end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BenchRay {
+    /// The ray.
+    pub ray: Ray,
+    /// Its end.
+    pub t_max: f32,
+}
 
 /// The query of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +47,8 @@ pub struct RaySet {
 impl RaySet {
     fn new(name: &'static str, query: Query, rays: impl Into<Arc<[BenchRay]>>) -> Self {
         let rays = rays.into();
-        Self { name, query, columns: rays.iter().copied().collect(), rays }
+        let columns = rays.iter().map(|of| (of.ray, of.t_max)).collect();
+        Self { name, query, columns, rays }
     }
 }
 
@@ -79,17 +86,18 @@ pub fn ray_sets(
 ) -> [RaySet; 5] {
     let primary = primary(mesh, width);
     let (mut diffuse, mut shadow) = (Vec::new(), Vec::new());
-    for (pixel, &ray) in primary.iter().enumerate() {
-        let Some((t, triangle)) = closest(&ray) else { continue };
-        let Ray { o: eye, d, .. } = ray.0;
+    for (pixel, primary) in primary.iter().enumerate() {
+        let Some((t, triangle)) = closest(primary) else { continue };
+        let Ray { o: eye, d, .. } = primary.ray;
         let n = facing_normal(mesh.indices[triangle].map(|i| mesh.positions[i as usize]), d);
         let random = &mut SplitMix64(2 * pixel as u64);
         let [u1, u2, l1, l2] = [0; 4].map(|_| random.uniform() as f32);
         let o = eye + d * t + n * 1e-4;
         let bounce = Ray::new(o, cosine_direction(n, u1, u2), 0.0);
-        diffuse.push((bounce, f32::INFINITY));
+        diffuse.push(BenchRay { ray: bounce, t_max: f32::INFINITY });
         let [corner, a, b] = mesh.light;
-        shadow.push((Ray::new(o, corner + a * l1 + b * l2 - o, 0.0), 0.999));
+        let ray = Ray::new(o, corner + a * l1 + b * l2 - o, 0.0);
+        shadow.push(BenchRay { ray, t_max: 0.999 });
     }
     let shuffled = shuffled(diffuse.clone());
     let diffuse: Arc<[BenchRay]> = diffuse.into();
@@ -111,7 +119,8 @@ fn primary(mesh: &BenchMesh, width: usize) -> Vec<BenchRay> {
     let place = |pixel: usize| (2.0 * (pixel as f32 + 0.5) / width as f32 - 1.0) * half;
     let through =
         |pixel: usize| (forward + right * place(pixel % width) - up * place(pixel / width)).normalize();
-    (0..width * width).map(|pixel| (Ray::new(view.eye, through(pixel), 0.0), f32::INFINITY)).collect()
+    let ray = |pixel| BenchRay { ray: Ray::new(view.eye, through(pixel), 0.0), t_max: f32::INFINITY };
+    (0..width * width).map(ray).collect()
 }
 
 /// The unit normal of a triangle on the side that a ray along `d` comes from.

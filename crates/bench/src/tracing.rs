@@ -153,13 +153,13 @@ pub fn trace_batches(world: &World, set: &RaySet, size: usize) -> Answer {
 
 /// The nearest hit.
 #[inline]
-pub fn closest(world: &World, (ray, t_max): &BenchRay) -> Option<Hit> {
-    world.intersect(ray, *t_max, &keep_all, &mut RayStats::default())
+pub fn closest(world: &World, ray: &BenchRay) -> Option<Hit> {
+    world.intersect(&ray.ray, ray.t_max, &keep_all, &mut RayStats::default())
 }
 
 #[inline]
-fn any(world: &World, (ray, t_max): &BenchRay) -> bool {
-    world.occluded(ray, *t_max, &keep_all, &mut RayStats::default())
+fn any(world: &World, ray: &BenchRay) -> bool {
+    world.occluded(&ray.ray, ray.t_max, &keep_all, &mut RayStats::default())
 }
 
 #[inline]

@@ -45,11 +45,11 @@ fn hits_are_those_of_embree() {
     let sets = ray_sets(&mesh, 1024, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
     let answers = [0, 1, 2, 3, 4].map(|i| trace(&world, &sets[i]));
     let close = |a: f64, b: f64, tolerance: f64| assert!((a / b - 1.0).abs() < tolerance, "{a}, {b}");
-    assert!(near(sets[0].rays[5000].0.d, [-0.144_722_2, 0.081_522_7, -0.986_108_3]));
+    assert!(near(sets[0].rays[5000].ray.d, [-0.144_722_2, 0.081_522_7, -0.986_108_3]));
     close(answers[0].hits as f64, 633_389.0, 1e-5);
     close(answers[0].sum_t, 1_430_103.4, 1e-4);
     let bounce = Vec3::new(-0.312_869, 0.221_974, 0.923_494);
-    assert!(sets[1].rays[5000].0.d.distance(bounce) < 1e-4);
+    assert!(sets[1].rays[5000].ray.d.distance(bounce) < 1e-4);
     assert_eq!(sets[1].rays.len() as u64, answers[0].hits);
     close(answers[1].hits as f64, 48_003.0, 1e-3);
     close(answers[1].sum_t, 4178.8, 1e-2);
@@ -61,8 +61,8 @@ fn hits_are_those_of_embree() {
 #[test]
 fn the_room_is_seen_from_its_corner() {
     let [primary, diffuse, ..] = ray_sets(&mesh("room"), 1024, |_| None);
-    assert!(near(primary.rays[5000].0.o, [0.97, 0.93, 0.99]));
-    assert!(near(primary.rays[5000].0.d, [-0.286_432_2, 0.009_153_2, -0.958_056_8]));
+    assert!(near(primary.rays[5000].ray.o, [0.97, 0.93, 0.99]));
+    assert!(near(primary.rays[5000].ray.d, [-0.286_432_2, 0.009_153_2, -0.958_056_8]));
     assert!(diffuse.rays.is_empty());
 }
 

@@ -32,15 +32,9 @@ pub fn headless(
     }
     let mut flight = world.flight();
     let control = Control::default();
-    let report = SplitReport::of_orbit(
-        renderer,
-        &mut rasterized,
-        &mut flight,
-        arguments.frames,
-        (begin, prepared_in),
-        &control,
-    );
-    let report = report?;
+    let frames = arguments.frames;
+    let mut report = SplitReport::of_orbit(renderer, &mut rasterized, &mut flight, frames, begin, &control)?;
+    report.prepared_in += prepared_in;
     if let Some(path) = &arguments.output {
         let picture = picture(renderer, &mut rasterized, share, &control)?;
         let display = arguments.display.settings();

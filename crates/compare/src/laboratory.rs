@@ -122,7 +122,7 @@ impl Laboratory {
         }
         for entry in laboratory.entries() {
             let pair =
-                PairedRenders::new(&entry.desc, (&laboratory.scene, &laboratory.view), laboratory.setup.seed);
+                PairedRenders::new(&entry.desc, &laboratory.scene, &laboratory.view, laboratory.setup.seed);
             let (_, more) = pair.map_err(|errors| entry.error(errors))?;
             warnings.extend(more.into_iter().filter(|more| !warnings.contains(more)).collect::<Vec<_>>());
         }
@@ -155,7 +155,7 @@ impl Laboratory {
             ReferencePlan::Render(entry, half) => {
                 // Different seeds: errors against a reference with the same samples would be too
                 // small.
-                let pair = paired_renders(&entry, (&scene, &view), setup.seed.wrapping_add(2))?;
+                let pair = paired_renders(&entry, &scene, &view, setup.seed.wrapping_add(2))?;
                 render_reference(&entry, half, pair, control, progress)?
             }
         };
@@ -163,7 +163,7 @@ impl Laboratory {
         let mut interrupted = false;
         for entry in &contenders {
             let mut run = || {
-                let pair = paired_renders(entry, (&scene, &view), setup.seed)?;
+                let pair = paired_renders(entry, &scene, &view, setup.seed)?;
                 run(entry, &setup, pair, &reference, control, progress)
             };
             let run = if interrupted { None } else { run()? };
@@ -298,10 +298,11 @@ fn run(
 /// Pairs that were built before with another seed: only memory can be lacking now.
 fn paired_renders(
     entry: &Entry,
-    viewed: (&Arc<Scene>, &View),
+    scene: &Arc<Scene>,
+    view: &View,
     seed: i32,
 ) -> Result<PairedRenders, PassError> {
-    let pair = PairedRenders::new(&entry.desc, viewed, seed);
+    let pair = PairedRenders::new(&entry.desc, scene, view, seed);
     pair.map(|(pair, _)| pair).map_err(|errors| {
         let problems: Vec<String> = errors.into_iter().map(|error| error.message).collect();
         PassError::OutOfMemory(problems.join("; "))

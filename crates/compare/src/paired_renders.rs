@@ -36,7 +36,8 @@ impl PairedRenders {
     /// Two sessions of a view of the scene, with seeds `first_seed` and the next one.
     pub fn new(
         desc: &SceneDesc,
-        (scene, view): (&Arc<Scene>, &View),
+        scene: &Arc<Scene>,
+        view: &View,
         first_seed: i32,
     ) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
         let mut desc = desc.clone();

@@ -313,7 +313,7 @@ impl Film {
             let spectrum = buckets.zip(spectrum.next());
             FilmTile { bounds, exposure, color, counts, data, spectrum, is_touched: false }
         }));
-        Ok((tiles, Splatter::new(grid, &self.filter, exposure, (buckets, layout), &self.splats)))
+        Ok((tiles, Splatter::new(grid, &self.filter, exposure, buckets, layout, &self.splats)))
     }
 
     /// Allocates the memory of splats; refused where there is none.

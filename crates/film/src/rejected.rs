@@ -20,17 +20,17 @@ impl Rejected {
     /// `count` refused samples, some of them at these pixels.
     pub(crate) fn new(count: u64, pixels: impl IntoIterator<Item = [i32; 2]>) -> Self {
         let mut rejected = Self { count, ..Self::default() };
-        pixels.into_iter().for_each(|[x, y]| rejected.remember((y, x)));
+        pixels.into_iter().for_each(|[x, y]| rejected.remember(y, x));
         rejected
     }
 
     pub(crate) fn add(&mut self, [x, y]: [i32; 2]) {
         self.count += 1;
-        self.remember((y, x));
+        self.remember(y, x);
     }
 
-    fn remember(&mut self, pixel: (i32, i32)) {
-        self.pixels.insert(pixel);
+    fn remember(&mut self, row: i32, column: i32) {
+        self.pixels.insert((row, column));
         if self.pixels.len() > MAX_REJECTED_PIXELS {
             self.pixels.pop_last();
         }
@@ -39,7 +39,7 @@ impl Rejected {
     /// Adds those of another film.
     pub fn merge(&mut self, other: &Self) {
         self.count = self.count.saturating_add(other.count);
-        other.pixels.iter().for_each(|&pixel| self.remember(pixel));
+        other.pixels.iter().for_each(|&(row, column)| self.remember(row, column));
     }
 
     /// Their pixels in reading order, at most [`MAX_REJECTED_PIXELS`].

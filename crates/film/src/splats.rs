@@ -101,7 +101,8 @@ impl<'film> Splatter<'film> {
         grid: Grid,
         filter: &'film Filter,
         exposure: &'film Exposure,
-        (buckets, layout): (Option<Buckets>, &'film Layout),
+        buckets: Option<Buckets>,
+        layout: &'film Layout,
         sums: &'film SplatSums,
     ) -> Self {
         Self { grid, filter, filter_integral: filter.integral(), exposure, buckets, layout, sums }
@@ -149,7 +150,7 @@ impl<'film> Splatter<'film> {
                 self.add_terms([x, y], rgb.map(|value| weight * value));
                 self.add_to_buckets([x, y], l, lambda, weight);
                 if let Some(parts) = parts {
-                    self.add_to_parts([x, y], (l, lambda), parts, weight);
+                    self.add_to_parts([x, y], l, lambda, parts, weight);
                 }
             }
         }
@@ -191,7 +192,8 @@ impl<'film> Splatter<'film> {
     fn add_to_parts(
         &self,
         pixel: [i32; 2],
-        (l, lambda): (&SampledSpectrum, &SampledWavelengths),
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
         parts: &Parts,
         weight: f64,
     ) {

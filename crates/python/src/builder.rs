@@ -62,7 +62,8 @@ impl SceneBuilder {
 
     fn set(
         &self,
-        (directive, part): (&str, &'static str),
+        directive: &str,
+        part: &'static str,
         kind: &Bound<'_, PyAny>,
         default: &str,
         parameters: Option<&Bound<'_, PyDict>>,
@@ -145,7 +146,7 @@ impl SceneBuilder {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let kind = kind.map_or_else(|| py.None().into_bound(py), Bound::clone);
-        self.set(("Film", "film"), &kind, "rgb", parameters)
+        self.set("Film", "film", &kind, "rgb", parameters)
     }
 
     /// Sets the sampler.
@@ -154,7 +155,7 @@ impl SceneBuilder {
     /// parameters: such as pixelsamples.
     #[pyo3(signature = (kind, /, **parameters))]
     fn sampler(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set(("Sampler", "sampler"), kind, "", parameters)
+        self.set("Sampler", "sampler", kind, "", parameters)
     }
 
     /// Sets the pixel filter.
@@ -163,7 +164,7 @@ impl SceneBuilder {
     /// parameters: such as xradius.
     #[pyo3(signature = (kind, /, **parameters))]
     fn filter(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set(("PixelFilter", "filter"), kind, "", parameters)
+        self.set("PixelFilter", "filter", kind, "", parameters)
     }
 
     /// Sets the algorithm.
@@ -172,7 +173,7 @@ impl SceneBuilder {
     /// parameters: such as maxdepth.
     #[pyo3(signature = (kind, /, **parameters))]
     fn integrator(&self, kind: &Bound<'_, PyAny>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        self.set(("Integrator", "integrator"), kind, "", parameters)
+        self.set("Integrator", "integrator", kind, "", parameters)
     }
 
     /// Sets options of the whole scene.

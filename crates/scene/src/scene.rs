@@ -419,7 +419,8 @@ impl Scene {
     pub fn scattered_differentials(
         &self,
         view: &View,
-        (ray, hit): (&RayDifferential, &Hit),
+        ray: &RayDifferential,
+        hit: &Hit,
         sample: &BsdfSample,
     ) -> Option<Differentials> {
         let mut interaction = self.interaction(hit, self.world.surface(&ray.ray, hit));

@@ -17,8 +17,8 @@ pub struct SplitReport {
     pub traced: Report,
     /// The time of each frame of the rasterised side.
     pub rasterized: Vec<Duration>,
-    /// How long it took to bring the scene to the GPU, and to draw its first picture with the
-    /// sprites for it.
+    /// How long it took to draw the first picture, with the sprites for it; a caller adds what it
+    /// took to bring the scene to the GPU.
     pub prepared_in: Duration,
     /// The GPU.
     pub device: String,
@@ -29,20 +29,19 @@ pub struct SplitReport {
 }
 
 impl SplitReport {
-    /// Renders a camera path as [`Report::of_orbit`] does, and draws the same one. `prepared_in` is
-    /// what it took to make `rasterized`.
+    /// Renders a camera path as [`Report::of_orbit`] does, and draws the same one.
     pub fn of_orbit(
         renderer: &mut Renderer,
         rasterized: &mut Rasterized,
         flight: &mut Flight,
         frames: u32,
-        (begin, prepared_in): (Instant, Duration),
+        begin: Instant,
         control: &Control,
     ) -> Result<Self, StepError> {
         let shot = renderer.shot().clone();
         let start = Instant::now();
         rasterized.draw(&Shot { camera: flight.camera().clone(), ..shot.clone() })?;
-        let prepared_in = prepared_in + start.elapsed();
+        let prepared_in = start.elapsed();
         let mut around = flight.clone();
         let (traced, _) = Report::of_orbit(renderer, flight, frames, begin, control)?;
         let device = rasterized.device().name().to_owned();

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use alhazen::device::{Device, Kernels};
 use alhazen_bench::mesh::BenchMesh;
-use alhazen_bench::rays::{Query, ray_sets};
+use alhazen_bench::rays::{BenchRay, Query, ray_sets};
 use geometry::{GroupId, Hit, RayStats, World};
 use gpu::{Binding, Bvh, GpuError, Trees, shaders};
 use math::Ray;
@@ -65,8 +65,8 @@ fn by(device: &Device, source: &str, size: &Size) -> Result<Map<String, Value>, 
         let mut builder = World::builder();
         builder.add_geometry(GroupId::TOP, mesh.triangles().map_err(|error| error.to_string())?);
         let world = builder.build();
-        let closest = |(ray, end): &(Ray, f32)| {
-            let hit = world.intersect(ray, *end, &|_: &Hit, _: &Ray| true, &mut RayStats::default())?;
+        let closest = |BenchRay { ray, t_max }: &BenchRay| {
+            let hit = world.intersect(ray, *t_max, &|_: &Hit, _: &Ray| true, &mut RayStats::default())?;
             Some((hit.t, hit.primitive as usize))
         };
         let bvh = if device.has_ray_queries() {
@@ -77,9 +77,9 @@ fn by(device: &Device, source: &str, size: &Size) -> Result<Map<String, Value>, 
         let mut rates = Map::new();
         for set in ray_sets(&mesh, size.rays, closest) {
             let sign = if set.query == Query::Any { -1.0 } else { 1.0 };
-            let numbers = |(ray, end): &(Ray, f32)| {
+            let numbers = |BenchRay { ray, t_max }: &BenchRay| {
                 let (o, d) = (ray.o, ray.d);
-                [o.x, o.y, o.z, sign * end.min(f32::MAX), d.x, d.y, d.z, 0.0]
+                [o.x, o.y, o.z, sign * t_max.min(f32::MAX), d.x, d.y, d.z, 0.0]
             };
             let made = (|| {
                 let world = device.buffer("heads", &[bvh.top])?;

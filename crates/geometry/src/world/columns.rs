@@ -67,13 +67,13 @@ impl<'a> RayColumns<'a> {
     /// The rays from a place on, one in each lane, and their ends; the last one is repeated.
     #[inline(always)]
     pub(super) fn lanes<R: Real>(&self, first: usize) -> (Vector3<R>, Vector3<R>, R) {
-        let places = (first, self.len);
+        let len = self.len;
         let [ox, oy, oz] = self.o;
         let [dx, dy, dz] = self.d;
-        let o = Vec3::new(load(ox, places), load(oy, places), load(oz, places));
-        let d = Vec3::new(load(dx, places), load(dy, places), load(dz, places));
+        let o = Vec3::new(load(ox, first, len), load(oy, first, len), load(oz, first, len));
+        let d = Vec3::new(load(dx, first, len), load(dy, first, len), load(dz, first, len));
         let t_max = match self.t_max {
-            Some(t_max) => load(t_max, places),
+            Some(t_max) => load(t_max, first, len),
             None => R::splat(f32::INFINITY),
         };
         (o, d, t_max)
@@ -112,7 +112,7 @@ impl<'a> RayColumns<'a> {
 
 /// The numbers of a column from a place on, where the column has `len`; the last one is repeated.
 #[inline(always)]
-fn load<R: Real>(column: &[f32], (first, len): (usize, usize)) -> R {
+fn load<R: Real>(column: &[f32], first: usize, len: usize) -> R {
     if first + R::LANES <= len {
         return R::load(&column[first..]);
     }

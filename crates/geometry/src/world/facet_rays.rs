@@ -158,7 +158,7 @@ impl<F: Filter> FacetRays<'_, F> {
             let met = rays.meet(facet, found.t);
             let hits = met.certain & met.t.lt(found.t);
             doubts.add(*index, met.uncertain & found.t.gt(R::zero()));
-            self.take::<R, ANY>((first, *index), &met, hits, concerned, &mut found);
+            self.take::<R, ANY>(first, *index, &met, hits, concerned, &mut found);
             if ANY && turn % 8 == 7 && !found.t.gt(R::zero()).any() {
                 return found;
             }
@@ -168,7 +168,7 @@ impl<F: Filter> FacetRays<'_, F> {
             let is_first = met.t.eq(found.t) & R::Int::splat(*index as u32).lt(found.facet);
             let hits = met.certain & (met.t.lt(found.t) | is_first);
             doubts.add(*index, met.uncertain & found.t.gt(R::zero()));
-            self.take::<R, ANY>((first, *index), &met, hits, concerned, &mut found);
+            self.take::<R, ANY>(first, *index, &met, hits, concerned, &mut found);
         }
         if !ANY && facets.is_skewed {
             let [a, b] = &facets.skews;
@@ -191,7 +191,8 @@ impl<F: Filter> FacetRays<'_, F> {
     #[inline(always)]
     fn take<R: Real, const ANY: bool>(
         &self,
-        (first, index): (usize, usize),
+        first: usize,
+        index: usize,
         met: &Meeting<R>,
         hits: R::Mask,
         concerned: u64,

@@ -89,13 +89,14 @@ impl<S: Simd, Q: Query> PacketLeaves for PacketTriangles<'_, S, Q> {
             // SAFETY: as the caller promises.
             return unsafe { self.test_each(blocks, entering, t_max) };
         }
-        for block in &self.group.triangles.blocks[blocks] {
+        let group = self.group;
+        for block in &group.triangles.blocks[blocks] {
             for lane in 0..block.len() {
                 self.primitives += WIDTH as u64;
                 // SAFETY: the caller promises the instruction set.
                 let ends = unsafe { S::F32x16::load(t_max) };
                 if let Some(found) = block.intersect_rays(lane, &self.lanes, ends) {
-                    offer(self.sheared, self.group, block, lane, &found, self.queries, t_max);
+                    self.offer(block, lane, &found, t_max);
                 }
             }
         }
@@ -134,29 +135,29 @@ impl<S: Simd, Q: Query> PacketTriangles<'_, S, Q> {
             }
         }
     }
-}
 
-#[inline(always)]
-fn offer<V: Vector<WIDTH>, Q: Query>(
-    sheared: &[Sheared; WIDTH],
-    group: &Group,
-    block: &TriangleBlock,
-    lane: usize,
-    found: &LaneHits<V>,
-    queries: &mut [Q; WIDTH],
-    t_max: &mut [f32; WIDTH],
-) {
-    let mut hits = found.hits;
-    while hits != 0 {
-        let i = hits.trailing_zeros() as usize % WIDTH;
-        hits &= hits - 1;
-        if t_max[i] < 0.0 {
-            continue;
+    /// Offers the hits of a triangle to the queries.
+    #[inline(always)]
+    fn offer(
+        &mut self,
+        block: &TriangleBlock,
+        lane: usize,
+        found: &LaneHits<S::F32x16>,
+        t_max: &mut [f32; WIDTH],
+    ) {
+        let mut hits = found.hits;
+        while hits != 0 {
+            let i = hits.trailing_zeros() as usize % WIDTH;
+            hits &= hits - 1;
+            if t_max[i] < 0.0 {
+                continue;
+            }
+            let (sheared, numbering) = (&self.sheared[i], &self.group.triangles.numbering);
+            let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
+            let Some(hit) = hit else { continue };
+            let query = &mut self.queries[i];
+            t_max[i] = if query.offer(hit) { -1.0 } else { query.t_max() };
         }
-        let (sheared, numbering) = (&sheared[i], &group.triangles.numbering);
-        let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
-        let Some(hit) = hit else { continue };
-        t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
     }
 }
 

@@ -70,9 +70,7 @@ fn Layered_Diffuse_pdf_closed(this_: Layered_Diffuse, wo: vec3f, wi: vec3f) -> f
 }
 
 // A sample for `wo` above.
-fn Layered_Conductor_sample_closed(this_: Layered_Conductor, albedo_1: vec4f, wo: vec3f, argument_3: Tuple_f32_Vec2, mode: u32) -> BsdfSample {
-    let uc = argument_3.v0;
-    let u = argument_3.v1;
+fn Layered_Conductor_sample_closed(this_: Layered_Conductor, albedo_1: vec4f, wo: vec3f, uc: f32, u: vec2f, mode: u32) -> BsdfSample {
     let entrance = Dielectric_sample_f(this_.interface_, wo, uc, u, mode, Directions_All);
     let wi = sample_cosine_hemisphere(u);
     let f = Layered_Conductor_f_closed(this_, albedo_1, wo, wi);
@@ -83,9 +81,7 @@ fn Layered_Conductor_sample_closed(this_: Layered_Conductor, albedo_1: vec4f, wo
 }
 
 // A sample for `wo` above.
-fn Layered_Diffuse_sample_closed(this_: Layered_Diffuse, albedo_1: vec4f, wo: vec3f, argument_3: Tuple_f32_Vec2, mode: u32) -> BsdfSample {
-    let uc = argument_3.v0;
-    let u = argument_3.v1;
+fn Layered_Diffuse_sample_closed(this_: Layered_Diffuse, albedo_1: vec4f, wo: vec3f, uc: f32, u: vec2f, mode: u32) -> BsdfSample {
     let entrance = Dielectric_sample_f(this_.interface_, wo, uc, u, mode, Directions_All);
     let wi = sample_cosine_hemisphere(u);
     let f = Layered_Diffuse_f_closed(this_, albedo_1, wo, wi);

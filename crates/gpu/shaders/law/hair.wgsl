@@ -25,11 +25,15 @@ fn Hair_new(h: f32, eta: f32, sigma_a: vec4f, argument_3: vec2f, alpha: f32) -> 
     let v = sqr(root);
     let wide = 4.0f * v;
     let s = ((0.265f * beta_n) + (1.194f * sqr(beta_n))) + (5.372f * powi(beta_n, 22));
-    let once = sin_cos(alpha * (3.1415927f / 180.0f));
-    let twice = double_angle(once);
-    let tilts_2 = double_angle(twice);
+    let parts = sin_cos(alpha * (3.1415927f / 180.0f));
+    let s1 = parts.v0;
+    let c1 = parts.v1;
+    let parts_1 = double_angle(s1, c1);
+    let s2 = parts_1.v0;
+    let c2 = parts_1.v1;
+    let tilts_2 = double_angle(s2, c2);
     let h_1 = real_min(real_max(h, -1.0f), 1.0f);
-    return Hair(h_1, eta, sigma_a, vec4f(v, 0.25f * v, wide, wide), hair_SQRT_PI_OVER_8 * s, array<Tuple_f32_f32, 3>(once, twice, tilts_2));
+    return Hair(h_1, eta, sigma_a, vec4f(v, 0.25f * v, wide, wide), hair_SQRT_PI_OVER_8 * s, array<Tuple_f32_f32, 3>(Tuple_f32_f32(s1, c1), Tuple_f32_f32(s2, c2), tilts_2));
 }
 
 // The absorption that gives a volume of hair of azimuthal roughness `beta_n` about the
@@ -162,9 +166,7 @@ fn Outgoing_center(this_: Outgoing, p: u32) -> f32 {
     return (2.0f * ((p_1 * this_.gamma_t) - this_.gamma_o)) + (p_1 * 3.1415927f);
 }
 
-fn double_angle(argument_0: Tuple_f32_f32) -> Tuple_f32_f32 {
-    let sin_1 = argument_0.v0;
-    let cos_1 = argument_0.v1;
+fn double_angle(sin_1: f32, cos_1: f32) -> Tuple_f32_f32 {
     return Tuple_f32_f32((2.0f * sin_1) * cos_1, sqr(cos_1) - sqr(sin_1));
 }
 

@@ -265,7 +265,7 @@ fn Sample_Conductor_run(this_: Sample_Conductor) -> BsdfSample {
     if (!closed) {
         return SampleWalk_Conductor_run(SampleWalk_Conductor(layers, wo, uc, u, mode));
     }
-    let exact = Layered_Conductor_sample_closed(layers, albedo_1, wo, Tuple_f32_Vec2(uc, u), mode);
+    let exact = Layered_Conductor_sample_closed(layers, albedo_1, wo, uc, u, mode);
     if (closed) {
         return exact;
     }
@@ -286,7 +286,7 @@ fn Sample_Diffuse_run(this_: Sample_Diffuse) -> BsdfSample {
     if (!closed) {
         return SampleWalk_Diffuse_run(SampleWalk_Diffuse(layers, wo, uc, u, mode));
     }
-    let exact = Layered_Diffuse_sample_closed(layers, albedo_1, wo, Tuple_f32_Vec2(uc, u), mode);
+    let exact = Layered_Diffuse_sample_closed(layers, albedo_1, wo, uc, u, mode);
     if (closed) {
         return exact;
     }

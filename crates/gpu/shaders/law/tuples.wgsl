@@ -47,11 +47,6 @@ struct Tuple_bool_f32 {
     v1: f32,
 }
 
-struct Tuple_f32_Vec2 {
-    v0: f32,
-    v1: vec2f,
-}
-
 struct Tuple_f32_bool {
     v0: f32,
     v1: bool,

@@ -171,7 +171,7 @@ impl Stage<'_, '_> {
         }
         let PixelSamples { scene, view, .. } = *self.pass.pixels;
         let hit = self.hits.get(turn).expect("invariant: vertices have hits");
-        scene.scattered_differentials(view, (&self.segments.state(turn).ray, &hit), sample)
+        scene.scattered_differentials(view, &self.segments.state(turn).ray, &hit, sample)
     }
 }
 

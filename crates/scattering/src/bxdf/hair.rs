@@ -62,9 +62,9 @@ impl<R: Real> Hair<R> {
         let v = sqr(root);
         let wide = c(4.0) * v;
         let s = c(0.265) * beta_n + c(1.194) * sqr(beta_n) + c(5.372) * powi(beta_n, 22);
-        let once = sin_cos(alpha * c(PI / 180.0));
-        let twice = double_angle(once);
-        let tilts = [once, twice, double_angle(twice)];
+        let (s1, c1) = sin_cos(alpha * c(PI / 180.0));
+        let (s2, c2) = double_angle(s1, c1);
+        let tilts = [(s1, c1), (s2, c2), double_angle(s2, c2)];
         let h = h.clamp(c(-1.0), R::one());
         Self { h, eta, sigma_a, v: [v, c(0.25) * v, wide, wide], s: c(SQRT_PI_OVER_8) * s, tilts }
     }
@@ -163,7 +163,7 @@ impl<R: Real> Outgoing<R> {
 }
 
 #[inline(always)]
-fn double_angle<R: Real>((sin, cos): (R, R)) -> (R, R) {
+fn double_angle<R: Real>(sin: R, cos: R) -> (R, R) {
     (R::splat(2.0) * sin * cos, sqr(cos) - sqr(sin))
 }
 

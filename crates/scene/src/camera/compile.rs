@@ -28,7 +28,7 @@ pub fn compile(
         // A lens with settings out of range would be reported twice.
         CameraKind::Realistic(_) if diagnostics[before..].iter().any(Diagnostic::is_error) => None,
         CameraKind::Realistic(desc) => {
-            realistic(desc, origin, (film.diagonal, resolution), images, diagnostics)
+            realistic(desc, origin, film.diagonal, resolution, images, diagnostics)
         }
         CameraKind::Perspective { fov, screen, lens } => {
             let window = window(screen, origin, resolution, diagnostics);
@@ -79,7 +79,8 @@ fn resolution(film: &Stated<FilmDesc>, diagnostics: &mut Vec<Diagnostic>) -> [u3
 fn realistic(
     desc: &RealisticCameraDesc,
     origin: &Origin,
-    (diagonal, resolution): (f32, [u32; 2]),
+    diagonal: f32,
+    resolution: [u32; 2],
     images: &Arena<ImageDesc>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Projection> {

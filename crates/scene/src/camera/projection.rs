@@ -138,8 +138,8 @@ impl Projection {
         let (o, d, weight) = self.ray(film, lens);
         let apart = R::splat(step);
         let [rx, ry] = [Vec2::new(film.x + apart, film.y), Vec2::new(film.x, film.y + apart)];
-        let (rx_origin, rx_direction) = self.neighbour((o, d), rx, lens, step);
-        let (ry_origin, ry_direction) = self.neighbour((o, d), ry, lens, step);
+        let (rx_origin, rx_direction) = self.neighbour(o, d, rx, lens, step);
+        let (ry_origin, ry_direction) = self.neighbour(o, d, ry, lens, step);
         (o, d, weight, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
     }
 
@@ -147,7 +147,8 @@ impl Projection {
     #[inline(always)]
     fn neighbour<R: Real>(
         &self,
-        (o, d): (Point3<R>, Vector3<R>),
+        o: Point3<R>,
+        d: Vector3<R>,
         near: Point2<R>,
         lens: Vec2<R>,
         step: f32,

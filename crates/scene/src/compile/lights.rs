@@ -12,7 +12,7 @@ use crate::medium::MediumId;
 use description::{
     Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, Span, SpectrumDesc, Stated,
 };
-use image::{Projection, require_memory};
+use image::{Image, Projection, require_memory};
 use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
 use spectrum::Rgb;
 use std::f32::consts::PI;
@@ -114,25 +114,7 @@ impl Compiler<'_> {
                     }
                     InfiniteRadiance::Image(handle) => {
                         let sky = self.sky(*handle, desc.scale, *illuminance, origin)?;
-                        let bytes = sky.image.image.width() as usize * sky.image.image.height() as usize;
-                        let Sky { image, projection, scale } = sky;
-                        match portal {
-                            None => {
-                                self.allow(bytes * ImageInfiniteLight::BYTES_PER_PIXEL, origin)?;
-                                let (pixels, space) = ((image.image, projection), image.color_space);
-                                let light =
-                                    ImageInfiniteLight::new(render_from_light, pixels, space, scale, scene);
-                                Light::ImageInfinite(Box::new(light))
-                            }
-                            Some(portal) => {
-                                self.allow(bytes * RectifiedImage::BYTES_PER_PIXEL, origin)?;
-                                let light_from_render = render_from_light.start().inverse();
-                                let environment = (&image, projection);
-                                let image =
-                                    RectifiedImage::new(&portal, environment, &light_from_render, scale);
-                                seen_through(portal, PortalRadiance::Image(image))
-                            }
-                        }
+                        self.environment(sky, portal, render_from_light, scene, origin)?
                     }
                 }
             }
@@ -146,10 +128,9 @@ impl Compiler<'_> {
             }
             LightKind::Projection { image: None, .. } => return None,
             LightKind::Projection { image: Some(image), power, fov } => {
-                let span = origin.parameter("filename");
-                let (image, mut scale) = self.emission_image(*image, desc.scale, span)?;
-                let bytes = image.image.width() as usize * image.image.height() as usize;
-                self.allow(bytes * ProjectionLight::BYTES_PER_PIXEL, origin)?;
+                let (image, mut scale) =
+                    self.emission_image(*image, desc.scale, origin.parameter("filename"))?;
+                self.allow(&image.image, ProjectionLight::BYTES_PER_PIXEL, origin)?;
                 let slide = Slide::new(image, *fov);
                 if let Some(power) = power {
                     let luminance = slide.image.luminance(slide.total());
@@ -158,6 +139,28 @@ impl Compiler<'_> {
                 Light::Projection(Box::new(ProjectionLight::new(render_from_light, slide, scale)))
             }
         })
+    }
+
+    /// The light of an image of the sphere, as far as a portal shows it.
+    fn environment(
+        &mut self,
+        Sky { image, projection, scale }: Sky,
+        portal: Option<Portal>,
+        render_from_light: AnimatedTransform,
+        scene: SceneSphere,
+        origin: &Origin,
+    ) -> Option<Light> {
+        let Some(portal) = portal else {
+            self.allow(&image.image, ImageInfiniteLight::BYTES_PER_PIXEL, origin)?;
+            let EmissionImage { image, color_space, .. } = image;
+            let light =
+                ImageInfiniteLight::new(render_from_light, image, projection, color_space, scale, scene);
+            return Some(Light::ImageInfinite(Box::new(light)));
+        };
+        self.allow(&image.image, RectifiedImage::BYTES_PER_PIXEL, origin)?;
+        let light_from_render = render_from_light.start().inverse();
+        let image = RectifiedImage::new(&portal, &image, projection, &light_from_render, scale);
+        Some(seen_through(portal, PortalRadiance::Image(image)))
     }
 
     /// The portal of these corners in world space.
@@ -201,7 +204,7 @@ impl Compiler<'_> {
             self.error("image-shape", message, span);
             return None;
         }
-        self.allow(width as usize * width as usize * GoniometricLight::BYTES_PER_PIXEL, origin)?;
+        self.allow(&image, GoniometricLight::BYTES_PER_PIXEL, origin)?;
         let value = |i: u32| Rgb::from(image.rgb(i % width, i / width)).average().max(0.0);
         let pixels: Vec<f32> = (0..width * width).map(value).collect();
         let mean = pixels.iter().map(|&v| f64::from(v)).sum::<f64>() / pixels.len() as f64;
@@ -223,9 +226,9 @@ impl Compiler<'_> {
         (brightness > 0.0).then_some(brightness)
     }
 
-    /// Reports a lack of memory for the tables of an image.
-    fn allow(&mut self, bytes: usize, origin: &Origin) -> Option<()> {
-        let result = require_memory(bytes);
+    /// Reports a lack of memory for the tables of an image, so many bytes for each of its pixels.
+    fn allow(&mut self, image: &Image, bytes: usize, origin: &Origin) -> Option<()> {
+        let result = require_memory(image.width() as usize * image.height() as usize * bytes);
         if let Err(error) = &result {
             self.error("image-file", error.to_string(), origin.parameter("filename"));
         }

@@ -132,13 +132,12 @@ impl Compiler<'_> {
             MaterialKind::CoatedDiffuse(coated) => {
                 let base =
                     DiffuseMaterial { reflectance: self.albedo(&coated.reflectance, "reflectance", origin) };
-                let coat = self.coat((&coated.eta, &coated.roughness, &coated.layers), "", origin);
+                let coat = self.coat(&coated.eta, &coated.roughness, &coated.layers, "", origin);
                 Material::CoatedDiffuse(CoatedDiffuseMaterial { base, coat })
             }
             MaterialKind::CoatedConductor(coated) => {
                 let base = self.conductor(&coated.conductor, "conductor.", origin);
-                let layers = (&coated.eta, &coated.roughness, &coated.layers);
-                let coat = self.coat(layers, "interface.", origin);
+                let coat = self.coat(&coated.eta, &coated.roughness, &coated.layers, "interface.", origin);
                 Material::CoatedConductor(CoatedConductorMaterial { base, coat })
             }
             MaterialKind::Hair { color, eta, beta_m, beta_n, alpha } => {
@@ -253,7 +252,9 @@ impl Compiler<'_> {
     /// A coat, of whose surface the parameters have `prefix` before their names.
     fn coat(
         &mut self,
-        (eta, roughness, layers): (&SpectrumDesc, &RoughnessDesc, &LayersDesc),
+        eta: &SpectrumDesc,
+        roughness: &RoughnessDesc,
+        layers: &LayersDesc,
         prefix: &str,
         origin: &Origin,
     ) -> Coat {

@@ -167,8 +167,8 @@ impl Compiler<'_> {
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
             ShapeKind::PlyMesh { triangles, patches, displacement: Some(height), edge_length } => {
-                let height = (height, *edge_length);
-                self.displaced(triangles, patches, height, shape, transform).into_iter().collect()
+                let mesh = self.displaced(triangles, patches, height, *edge_length, shape, transform);
+                mesh.into_iter().collect()
             }
             ShapeKind::PlyMesh { triangles, patches, displacement: None, .. } => {
                 let triangles = self.mesh(triangles, shape, transform);

@@ -26,7 +26,8 @@ impl Compiler<'_> {
         &mut self,
         triangles: &MeshDesc,
         patches: &PatchMeshDesc,
-        (height, edge_length): (&FloatParameter, f32),
+        height: &FloatParameter,
+        edge_length: f32,
         shape: &Stated<ShapeDesc>,
         transform: &Transform,
     ) -> Option<Geometry> {

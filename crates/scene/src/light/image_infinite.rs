@@ -93,7 +93,8 @@ impl ImageInfiniteLight {
     /// From an image of the sphere in `projection`, with red, green and blue in `color_space`.
     pub fn new(
         render_from_light: AnimatedTransform,
-        (image, projection): (Arc<Image>, Projection),
+        image: Arc<Image>,
+        projection: Projection,
         color_space: &'static RgbColorSpace,
         scale: f32,
         scene: SceneSphere,
@@ -344,8 +345,8 @@ mod tests {
             let rotation = DMat4::from_rotation_x(0.3) * DMat4::from_rotation_y(-1.0);
             let transform = Transform::from_f64(rotation).unwrap();
             let scene = SceneSphere { center: Vec3::ZERO, radius: 1.0 };
-            let image = (Arc::new(image.to_f16()), projection);
-            let light = ImageInfiniteLight::new(transform.into(), image, RgbColorSpace::srgb(), 2.0, scene);
+            let (image, space) = (Arc::new(image.to_f16()), RgbColorSpace::srgb());
+            let light = ImageInfiniteLight::new(transform.into(), image, projection, space, 2.0, scene);
             lanes_agree(&Sky(light), 3, 200);
         }
     }

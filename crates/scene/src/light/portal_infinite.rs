@@ -142,7 +142,8 @@ impl RectifiedImage {
     /// interpolated at its middle.
     pub fn new(
         portal: &Portal,
-        (environment, projection): (&EmissionImage, Projection),
+        environment: &EmissionImage,
+        projection: Projection,
         light_from_render: &Transform,
         scale: f32,
     ) -> Self {

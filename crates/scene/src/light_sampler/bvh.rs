@@ -78,7 +78,7 @@ impl BvhLightSampler {
         let count = (2 * bounded.len()).saturating_sub(1);
         let (mut clusters, mut kinds) = (vec![[0.0; NUMBERS]; count], vec![0; count]);
         if count > 0 {
-            build(&mut bounded, (&mut clusters, &mut kinds), [0, 0], cancel)?;
+            build(&mut bounded, &mut clusters, &mut kinds, 0, 0, cancel)?;
         }
         let mut sampler = Self { clusters, kinds, infinite, trails };
         sampler.store_trails(0, 0, 0);
@@ -237,8 +237,10 @@ impl BvhLightSampler {
 /// node has the given index and depth in the whole tree. `None` if `cancel` is set meanwhile.
 fn build(
     lights: &mut [(LightId, LightBounds)],
-    (clusters, kinds): (&mut [[f32; NUMBERS]], &mut [u32]),
-    [index, depth]: [u32; 2],
+    clusters: &mut [[f32; NUMBERS]],
+    kinds: &mut [u32],
+    index: u32,
+    depth: u32,
     cancel: &AtomicBool,
 ) -> Option<LightBounds> {
     if let [(id, bounds)] = lights {
@@ -256,8 +258,8 @@ fn build(
     let (kind, below) = kinds.split_first_mut()?;
     let (left_kinds, right_kinds) = below.split_at_mut(2 * middle - 1);
     let right_index = index + 2 * middle as u32;
-    let mut left = || build(left, (left_clusters, left_kinds), [index + 1, depth + 1], cancel);
-    let mut right = || build(right, (right_clusters, right_kinds), [right_index, depth + 1], cancel);
+    let mut left = || build(left, left_clusters, left_kinds, index + 1, depth + 1, cancel);
+    let mut right = || build(right, right_clusters, right_kinds, right_index, depth + 1, cancel);
     let (left, right) = if is_large { rayon::join(left, right) } else { (left(), right()) };
     let bounds = left?.union(right?);
     (*cluster, *kind) = (Cluster::row(&bounds), right_index);

@@ -51,7 +51,8 @@ impl Coat {
         textures: &Textures,
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
-        (eta, base): (R, B),
+        eta: R,
+        base: B,
     ) -> Layered<B, R> {
         let limit = R::splat(0.999);
         Layered {

@@ -31,6 +31,6 @@ impl MaterialModel for CoatedConductorMaterial {
         let index = self.coat.index(lambda);
         // Seen from within the coat.
         let base = Conductor { eta: base.eta / index, k: base.k / index, ..base };
-        self.coat.over(textures, context, lambda, (index, base))
+        self.coat.over(textures, context, lambda, index, base)
     }
 }

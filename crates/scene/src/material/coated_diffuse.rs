@@ -29,6 +29,6 @@ impl MaterialModel for CoatedDiffuseMaterial {
     ) -> Self::Bxdf<'_, R> {
         let base = self.base.bxdf(textures, context, lambda);
         let index = self.coat.index(lambda);
-        self.coat.over(textures, context, lambda, (index, base))
+        self.coat.over(textures, context, lambda, index, base)
     }
 }

@@ -126,7 +126,9 @@ impl OpenPbrMaterial {
     #[inline(always)]
     fn color<R: Real>(
         &self,
-        (textures, context, lambda): (&Textures, &TextureContext<R>, &SampledWavelengths<R>),
+        textures: &Textures,
+        context: &TextureContext<R>,
+        lambda: &SampledWavelengths<R>,
         id: SpectrumTextureId,
         is_seen: R::Mask,
     ) -> SampledSpectrum<R> {
@@ -172,19 +174,18 @@ impl MaterialModel for OpenPbrMaterial {
         let scatters = p.subsurface_weight.gt(zero);
         // Colours that are not seen are not looked up.
         let [base, specular, transmitted, subsurface, coat, fuzz] = self.colors;
-        let place = (textures, context, &*lambda);
-        p.base_color = self.color(place, base, R::Mask::splat(true));
-        p.specular_color = self.color(place, specular, R::Mask::splat(true));
+        p.base_color = self.color(textures, context, lambda, base, R::Mask::splat(true));
+        p.specular_color = self.color(textures, context, lambda, specular, R::Mask::splat(true));
         let is_tinted = transmits & (!has_inside | transmission.depth.eq(zero));
-        p.transmission_color = self.color(place, transmitted, is_tinted);
-        p.subsurface_color = self.color(place, subsurface, scatters);
+        p.transmission_color = self.color(textures, context, lambda, transmitted, is_tinted);
+        p.subsurface_color = self.color(textures, context, lambda, subsurface, scatters);
         let is_deep = scatters & has_inside & radius.gt(zero);
         if is_deep.any() {
-            let deep = self.color(place, self.radius_scale, is_deep) * radius;
+            let deep = self.color(textures, context, lambda, self.radius_scale, is_deep) * radius;
             p.subsurface_radius = SampledSpectrum::select(is_deep, deep, p.subsurface_radius);
         }
-        p.coat_color = self.color(place, coat, is_coated);
-        p.fuzz_color = self.color(place, fuzz, p.fuzz_weight.gt(zero));
+        p.coat_color = self.color(textures, context, lambda, coat, is_coated);
+        p.fuzz_color = self.color(textures, context, lambda, fuzz, p.fuzz_weight.gt(zero));
         let disperses = has_inside & transmits & transmission.dispersion_scale.gt(zero);
         if disperses.any() {
             let abbe_number = transmission.abbe_number / transmission.dispersion_scale;

@@ -6,6 +6,7 @@ mod code;
 mod crates;
 mod cycles;
 mod documents;
+mod parameters;
 mod rust;
 mod text;
 mod translations;
@@ -43,13 +44,14 @@ impl fmt::Display for Finding {
 }
 
 /// All checks.
-const CHECKS: [fn(&Tree) -> Vec<Finding>; 7] = [
+const CHECKS: [fn(&Tree) -> Vec<Finding>; 8] = [
     text::check,
     code::check,
     crates::check,
     cycles::check,
     citations::check,
     documents::check,
+    parameters::check,
     translations::check,
 ];
 

@@ -19,39 +19,55 @@ pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTre
     let mut ids = pages::zeroed(references.len());
     let mut inner = pages::zeroed(references.len());
     let extent = Extent::around(&references);
-    let tree = grow(&mut references, (&mut ids, &mut inner), 0, extent, blocks, 0);
+    let tree = grow(
+        Part { first: 0, references: &mut references, ids: &mut ids, inner: &mut inner },
+        extent,
+        blocks,
+        0,
+    );
     let size = tree.as_node(&inner);
     BinaryTree { items: ids, inner, root: tree.root, size }
 }
 
-/// Sorts references and writes their ids and inner nodes, one of each per reference. `first` is the
-/// index of the first reference.
-fn grow(
-    references: &mut [Reference],
-    (ids, inner): (&mut [Ids], &mut [InnerNode]),
+/// A range of the references, and where their ids and inner nodes are written, one of each per
+/// reference.
+struct Part<'a> {
+    /// The index of the first reference.
     first: usize,
-    extent: Extent,
-    blocks: Blocks,
-    depth: usize,
-) -> Subtree {
-    let n = references.len();
+    references: &'a mut [Reference],
+    ids: &'a mut [Ids],
+    inner: &'a mut [InnerNode],
+}
+
+impl Part<'_> {
+    fn split_at(&mut self, middle: usize) -> [Part<'_>; 2] {
+        let (left, right) = self.references.split_at_mut(middle);
+        let (left_ids, right_ids) = self.ids.split_at_mut(middle);
+        let (left_inner, right_inner) = self.inner.split_at_mut(middle);
+        [
+            Part { first: self.first, references: left, ids: left_ids, inner: left_inner },
+            Part { first: self.first + middle, references: right, ids: right_ids, inner: right_inner },
+        ]
+    }
+}
+
+/// Sorts the references of a part and writes their ids and inner nodes.
+fn grow(mut part: Part<'_>, extent: Extent, blocks: Blocks, depth: usize) -> Subtree {
+    let n = part.references.len();
     if n <= blocks.width() {
-        ids.iter_mut().zip(references).for_each(|(ids, r)| *ids = r.ids());
+        part.ids.iter_mut().zip(part.references).for_each(|(ids, r)| *ids = r.ids());
         return Subtree::leaf(extent, n as u32, blocks);
     }
-    let (middle, halves) = divide(references, &extent, blocks, depth);
-    let (left, right) = references.split_at_mut(middle);
-    let (left_ids, right_ids) = ids.split_at_mut(middle);
-    let (left_inner, right_inner) = inner.split_at_mut(middle);
-    let [l, r] = halves;
-    let mut left = || grow(left, (left_ids, left_inner), first, l, blocks, depth + 1);
-    let mut right = || grow(right, (right_ids, right_inner), first + middle, r, blocks, depth + 1);
+    let (middle, [l, r]) = divide(part.references, &extent, blocks, depth);
+    let [left, right] = part.split_at(middle);
+    let left = || grow(left, l, blocks, depth + 1);
+    let right = || grow(right, r, blocks, depth + 1);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
     if n > PARALLEL {
-        pages::release(references);
+        pages::release(part.references);
     }
-    let (subtree, node) = Subtree::join(&left, &right, first + middle, blocks);
-    inner[middle] = node;
+    let (subtree, node) = Subtree::join(&left, &right, part.first + middle, blocks);
+    part.inner[middle] = node;
     subtree
 }
 

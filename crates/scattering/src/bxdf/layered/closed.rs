@@ -80,7 +80,8 @@ impl<R: Real, B: CoatedBase<R>> Layered<B, R> {
         &self,
         albedo: SampledSpectrum<R>,
         wo: Vector3<R>,
-        (uc, u): (R, Vec2<R>),
+        uc: R,
+        u: Vec2<R>,
         mode: TransportMode,
     ) -> BsdfSample<R> {
         let entrance = self.interface.sample_f(wo, uc, u, mode, Directions::All);

@@ -240,7 +240,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Sample<'_, B, R> {
         if !closed.any() {
             return R::call(SampleWalk { layers, wo, uc, u, mode });
         }
-        let exact = layers.sample_closed(albedo, wo, (uc, u), mode);
+        let exact = layers.sample_closed(albedo, wo, uc, u, mode);
         if closed.all() {
             return exact;
         }
