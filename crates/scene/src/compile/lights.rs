@@ -46,18 +46,8 @@ impl Compiler<'_> {
     }
 
     fn light(&mut self, desc: &LightDesc, origin: &Origin, scene: SceneSphere) -> Option<Light> {
-        let (power, illuminance) = match desc.kind {
-            LightKind::Point { power, .. }
-            | LightKind::Spot { power, .. }
-            | LightKind::Goniometric { power, .. }
-            | LightKind::Projection { power, .. } => (power, None),
-            LightKind::Distant { illuminance, .. } | LightKind::Infinite { illuminance, .. } => {
-                (None, illuminance)
-            }
-        };
         self.traits.is_lit_from_infinity |= desc.kind.is_distant();
-        let factors = [("scale", Some(desc.scale)), ("power", power), ("illuminance", illuminance)];
-        self.check_brightness(origin, &factors);
+        self.check_factors(desc, origin);
         let Some(render_from_light) = self.motion(&desc.world_from_light) else {
             self.singular("light", origin);
             return None;
@@ -128,17 +118,44 @@ impl Compiler<'_> {
             }
             LightKind::Projection { image: None, .. } => return None,
             LightKind::Projection { image: Some(image), power, fov } => {
-                let (image, mut scale) =
-                    self.emission_image(*image, desc.scale, origin.parameter("filename"))?;
-                self.allow(&image.image, ProjectionLight::BYTES_PER_PIXEL, origin)?;
-                let slide = Slide::new(image, *fov);
-                if let Some(power) = power {
-                    let luminance = slide.image.luminance(slide.total());
-                    scale *= power / self.nonzero(luminance, origin)?;
-                }
-                Light::Projection(Box::new(ProjectionLight::new(render_from_light, slide, scale)))
+                self.projection(*image, *fov, desc.scale, *power, render_from_light, origin)?
             }
         })
+    }
+
+    /// Checks the factors on the brightness of a light.
+    fn check_factors(&mut self, desc: &LightDesc, origin: &Origin) {
+        let (power, illuminance) = match desc.kind {
+            LightKind::Point { power, .. }
+            | LightKind::Spot { power, .. }
+            | LightKind::Goniometric { power, .. }
+            | LightKind::Projection { power, .. } => (power, None),
+            LightKind::Distant { illuminance, .. } | LightKind::Infinite { illuminance, .. } => {
+                (None, illuminance)
+            }
+        };
+        let factors = [("scale", Some(desc.scale)), ("power", power), ("illuminance", illuminance)];
+        self.check_brightness(origin, &factors);
+    }
+
+    /// The light of a projector with an image, whose field of view is `fov` degrees.
+    fn projection(
+        &mut self,
+        image: Handle<ImageDesc>,
+        fov: f32,
+        scale: f32,
+        power: Option<f32>,
+        render_from_light: AnimatedTransform,
+        origin: &Origin,
+    ) -> Option<Light> {
+        let (image, mut scale) = self.emission_image(image, scale, origin.parameter("filename"))?;
+        self.allow(&image.image, ProjectionLight::BYTES_PER_PIXEL, origin)?;
+        let slide = Slide::new(image, fov);
+        if let Some(power) = power {
+            let luminance = slide.image.luminance(slide.total());
+            scale *= power / self.nonzero(luminance, origin)?;
+        }
+        Some(Light::Projection(Box::new(ProjectionLight::new(render_from_light, slide, scale))))
     }
 
     /// The light of an image of the sphere, as far as a portal shows it.

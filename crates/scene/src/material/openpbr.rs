@@ -215,54 +215,33 @@ fn position(name: &str) -> usize {
 /// The parameters of the BxDF, with colours of their defaults; and the radius under the surface.
 #[inline(always)]
 fn parameters<R: Real>(numbers: &Numbers<R>) -> (OpenPbrParameters<R>, Transmission<R>, R) {
-    let [
-        base_weight,
-        base_diffuse_roughness,
-        base_metalness,
-        specular_weight,
-        specular_roughness,
-        specular_roughness_anisotropy,
-        specular_ior,
-        transmission_weight,
+    let mut p = OpenPbrParameters::default();
+    let (depth, dispersion_scale, abbe_number, radius);
+    [
+        p.base_weight,
+        p.base_diffuse_roughness,
+        p.base_metalness,
+        p.specular_weight,
+        p.specular_roughness,
+        p.specular_roughness_anisotropy,
+        p.specular_ior,
+        p.transmission_weight,
         depth,
         dispersion_scale,
         abbe_number,
-        subsurface_weight,
+        p.subsurface_weight,
         radius,
-        subsurface_scatter_anisotropy,
-        coat_weight,
-        coat_roughness,
-        coat_roughness_anisotropy,
-        coat_ior,
-        coat_darkening,
-        fuzz_weight,
-        fuzz_roughness,
-        thin_film_weight,
-        thin_film_thickness,
-        thin_film_ior,
+        p.subsurface_scatter_anisotropy,
+        p.coat_weight,
+        p.coat_roughness,
+        p.coat_roughness_anisotropy,
+        p.coat_ior,
+        p.coat_darkening,
+        p.fuzz_weight,
+        p.fuzz_roughness,
+        p.thin_film_weight,
+        p.thin_film_thickness,
+        p.thin_film_ior,
     ] = *numbers;
-    let parameters = OpenPbrParameters {
-        base_weight,
-        base_diffuse_roughness,
-        base_metalness,
-        specular_weight,
-        specular_roughness,
-        specular_roughness_anisotropy,
-        specular_ior,
-        transmission_weight,
-        subsurface_weight,
-        subsurface_scatter_anisotropy,
-        coat_weight,
-        coat_roughness,
-        coat_roughness_anisotropy,
-        coat_ior,
-        coat_darkening,
-        fuzz_weight,
-        fuzz_roughness,
-        thin_film_weight,
-        thin_film_thickness,
-        thin_film_ior,
-        ..OpenPbrParameters::default()
-    };
-    (parameters, Transmission { depth, dispersion_scale, abbe_number }, radius)
+    (p, Transmission { depth, dispersion_scale, abbe_number }, radius)
 }
