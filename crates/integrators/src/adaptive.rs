@@ -115,13 +115,14 @@ impl<I: PixelIntegrator> Integrator for Adaptive<I> {
 
     fn record(
         &self,
-        sample: ([i32; 2], u32),
+        pixel: [i32; 2],
+        index: u32,
         scene: &Scene,
         view: &View,
         filter: &Filter,
         control: &Control,
     ) -> Option<Result<Record, Cancelled>> {
-        self.integrator.record(sample, scene, view, filter, control)
+        self.integrator.record(pixel, index, scene, view, filter, control)
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

@@ -224,7 +224,7 @@ impl Builder<'_> {
             IntegratorDesc::PhotonMapping(desc) => Box::new(PhotonMapping::new(desc, sampler, seed)),
             IntegratorDesc::Vcm(desc) => {
                 let light_sampler = light_sampler(self.desc);
-                Box::new(Vcm::new(desc, [sampler, light_sampler], seed, MAX_PHOTON_PATHS))
+                Box::new(Vcm::new(desc, sampler, light_sampler, seed, MAX_PHOTON_PATHS))
             }
             IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, seed)),
             IntegratorDesc::Radiosity(desc) => Box::new(Radiosity::new(desc, sampler, color_space)),

@@ -55,7 +55,8 @@ pub trait Integrator: Send {
     /// estimate pixels one by one. `filter` is that of the film.
     fn record(
         &self,
-        _sample: ([i32; 2], u32),
+        _pixel: [i32; 2],
+        _index: u32,
         _scene: &Scene,
         _view: &View,
         _filter: &Filter,

@@ -310,7 +310,7 @@ impl Session {
             self.is_prepared = true;
         }
         let filter = self.state.film.filter();
-        self.integrator.record((pixel, index), &self.scene, &self.view, filter, control).transpose()
+        self.integrator.record(pixel, index, &self.scene, &self.view, filter, control).transpose()
     }
 
     /// The progress of the session.

@@ -301,18 +301,6 @@ impl Scene {
         if ray.camera == CameraEnd::Origin { along > 0.0 } else { along < 0.0 }
     }
 
-    /// Whether the point or direction of a light sample is visible from a surface.
-    pub fn unoccluded(
-        &self,
-        from: &SurfacePoint,
-        sample: &LightLiSample,
-        interfaces: Interfaces,
-        stats: &mut RayStats,
-    ) -> bool {
-        let (ray, t_max) = sample.shadow_ray(from);
-        !self.occluded(&ray, t_max, interfaces, stats)
-    }
-
     /// The stochastic alpha test: a hit counts with probability alpha, decided by a hash of the ray
     /// and the point.
     fn passes_alpha_test(&self, hit: &Hit, ray: &Ray) -> bool {

@@ -113,8 +113,8 @@ fn Dielectric_sample_glossy(this_: Dielectric, wo: vec3f, uc: f32, u: vec2f, mod
     let not_total = parts_1.v2;
     let wi = select(refracted, fresnel_reflect(wo, wm), reflects);
     let eta_1 = select(eta, 1.0f, reflects);
-    let on_its_side_1 = !(same_hemisphere(wo, wi) != reflects) & (wi.z != 0.0f);
-    let valid_1 = (valid & (reflects | not_total)) & on_its_side_1;
+    let on_its_side = !(same_hemisphere(wo, wi) != reflects) & (wi.z != 0.0f);
+    let valid_1 = (valid & (reflects | not_total)) & on_its_side;
     if (!valid_1) {
         return BsdfSample_invalid();
     }

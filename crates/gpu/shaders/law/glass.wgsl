@@ -37,12 +37,12 @@ fn OpenPbr_sample_glass(this_: OpenPbr, wo: vec3f, uc: f32, u: vec2f, directions
     let eta = parts.v1;
     let is_refracted = parts.v2;
     let wi = select(refracted, fresnel_reflect(wo, wm_1), reflects);
-    let on_its_side_1 = !(same_hemisphere(wo, wi) != reflects) & (wi.z != 0.0f);
+    let on_its_side = !(same_hemisphere(wo, wi) != reflects) & (wi.z != 0.0f);
     let width_1 = BxdfFlags_choose(is_smooth, BxdfFlags_SPECULAR, BxdfFlags_GLOSSY);
     let side = BxdfFlags_choose(reflects, BxdfFlags_REFLECTION, BxdfFlags_TRANSMISSION);
     let pdf = select(1.0f - share_1, share_1, reflects);
     let sample = BsdfSample_new(SampledSpectrum_zero(), wi, pdf, width_1 | side);
-    let valid = (reflects | is_refracted) & on_its_side_1;
+    let valid = (reflects | is_refracted) & on_its_side;
     return BsdfSample(sample.f, sample.wi, sample.pdf, sample.flags, select(eta, 1.0f, reflects), sample.pdf_is_proportional, valid);
 }
 

@@ -8,8 +8,8 @@ use scene::light::{LightId, LightPoint};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Interaction, LightVertex, Merges, Vertex, Walk, hero_only};
-use crate::transport::Tracer;
 use crate::transport::parts::group_of;
+use crate::transport::{ShadowRay, Tracer};
 
 /// The contribution of a strategy.
 #[derive(Clone, Copy, Debug)]
@@ -91,8 +91,14 @@ impl Bidirectional<'_> {
     /// finds it.
     pub fn emitted_on_the_way(&self, walk: &mut Walk) -> Option<Found> {
         let l = std::mem::replace(&mut walk.emitted, SampledSpectrum::ZERO);
-        (!l.is_black()).then(|| {
-            self.found(l, walk.lambda.secondary_terminated(), 1.0, (0, walk.depth + 2), (None, walk.first))
+        let is_hero_only = walk.lambda.secondary_terminated();
+        (!l.is_black()).then(|| Found {
+            l: hero_only(l, is_hero_only),
+            weight: 1.0,
+            s: 0,
+            t: walk.depth + 2,
+            light: None,
+            first: walk.first,
         })
     }
 
@@ -124,7 +130,7 @@ impl Bidirectional<'_> {
             let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi), before.merges());
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
-        let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
+        let l = hero_only(l, walk.lambda.secondary_terminated());
         Found { l, weight, s: 0, t: walk.depth + 2, light: Some(light), first: walk.first }
     }
 
@@ -139,11 +145,14 @@ impl Bidirectional<'_> {
         if l.is_black() {
             return None;
         }
-        let (ray, end) = match sample.p {
-            Some(p) => (vertex.ray_to(p, sample.n), Ray::SHADOW_END),
-            None => (Ray::spawn(vertex.p, vertex.n, wi, vertex.time), f32::INFINITY),
+        let shadow = match sample.p {
+            Some(p) => vertex.shadow_ray_to(p, sample.n),
+            None => {
+                let ray = Ray::spawn(vertex.p, vertex.n, wi, vertex.time);
+                ShadowRay { ray, t_max: f32::INFINITY }
+            }
         };
-        let l = l * self.passage(vertex, (&ray, end), &l, lambda, tracer)?;
+        let l = l * tracer.transmittance(&shadow, vertex.medium_towards(shadow.ray.d), &l, lambda)?;
         let point = sample.p.map(|p| (p.p, sample.n));
         let direct = match point {
             Some((p, Normal3::ZERO)) => pmf * vertex.p.p.distance_squared(p),
@@ -158,7 +167,8 @@ impl Bidirectional<'_> {
             Merges { here: 0.0, ..vertex.merges() },
         );
         let (weight, first) = (weight(by_chance, from_light * back), vertex.first_event(wi, tracer));
-        Some(self.found(l, vertex.hero_only, weight, (1, vertex.depth + 1), (Some(light), first)))
+        let l = hero_only(l, vertex.hero_only);
+        Some(Found { l, weight, s: 1, t: vertex.depth + 1, light: Some(light), first })
     }
 
     /// s, t ≥ 2: two vertices are connected.
@@ -176,8 +186,8 @@ impl Bidirectional<'_> {
         if l.is_black() || !l.is_finite() {
             return None;
         }
-        let way = camera.ray_to(light.p, light.n);
-        let l = l * self.passage(camera, (&way, Ray::SHADOW_END), &l, lambda, tracer)?;
+        let way = camera.shadow_ray_to(light.p, light.n);
+        let l = l * tracer.transmittance(&way, camera.medium_towards(way.ray.d), &l, lambda)?;
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
         let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
         let of_light = light.merges().only_if(camera.can_merge() && !camera.is_diffuse());
@@ -185,9 +195,14 @@ impl Bidirectional<'_> {
             to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi), of_light),
             to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), camera.merges()),
         );
-        let hero = camera.hero_only || light.hero_only;
-        let lengths = (light.depth + 1, camera.depth + 1);
-        Some(self.found(l, hero, weight, lengths, (light.light, camera.first_event(wi, tracer))))
+        Some(Found {
+            l: hero_only(l, camera.hero_only || light.hero_only),
+            weight,
+            s: light.depth + 1,
+            t: camera.depth + 1,
+            light: light.light,
+            first: camera.first_event(wi, tracer),
+        })
     }
 
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses;
@@ -212,16 +227,18 @@ impl Bidirectional<'_> {
         if l.is_black() {
             return None;
         }
-        let way = Ray { camera: CameraEnd::Target, ..vertex.ray_to(Point3Error::exact(p), n) };
-        let l = l * self.passage(vertex, (&way, Ray::SHADOW_END), &l, lambda, tracer)?;
+        let mut way = vertex.shadow_ray_to(Point3Error::exact(p), n);
+        way.ray.camera = CameraEnd::Target;
+        let l = l * tracer.transmittance(&way, vertex.medium_towards(way.ray.d), &l, lambda)?;
         let (pdf_position, pdf_direction) = camera.pdf_we(&Ray::new(p, -wi, vertex.time));
         let pdf_area =
             if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
                 * vertex.cos_theta(wi);
         let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.merges());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
-        let part = (vertex.light, vertex.first_event(wi, tracer));
-        Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, (vertex.depth + 1, 1), part) })
+        let (l, first) = (hero_only(l, vertex.hero_only), vertex.first_event(wi, tracer));
+        let found = Found { l, weight, s: vertex.depth + 1, t: 1, light: vertex.light, first };
+        Some(OnFilm { places, found })
     }
 
     /// Whether a photon near the vertex may be merged with it: both lie on surfaces or both in
@@ -243,8 +260,8 @@ impl Bidirectional<'_> {
             self.balance.merging_back(&photon.partial, camera.pdf(wi), of_light),
             self.balance.merging_back(&camera.partial, camera.pdf_back(wi), of_camera),
         );
-        let part = (photon.light(), camera.first_event(wi, tracer));
-        self.found(l, false, weight, (photon.depth.into(), camera.depth + 1), part)
+        let (light, first) = (photon.light(), camera.first_event(wi, tracer));
+        Found { l, weight, s: photon.depth.into(), t: camera.depth + 1, light, first }
     }
 
     /// The unweighted contribution of [`Self::merge`].
@@ -259,32 +276,7 @@ impl Bidirectional<'_> {
         let f = camera.law.f(camera.wo, wi, camera.mode);
         let length = if photon.is_in_medium { self.balance.merging_length() } else { 1.0 };
         let l = camera.beta * photon.beta * f * (cosines / (self.balance.merging * length));
-        if camera.hero_only || photon.hero_only { hero_only(l) } else { l }
-    }
-
-    fn found(
-        &self,
-        l: SampledSpectrum,
-        hero: bool,
-        weight: f32,
-        (s, t): (u32, u32),
-        (light, first): (Option<LightId>, FirstEvent),
-    ) -> Found {
-        Found { l: if hero { hero_only(l) } else { l }, weight, s, t, light, first }
-    }
-
-    /// The transmittance of a ray from a vertex up to its end; `None` if a surface occludes it. `l`
-    /// is what it would carry through empty space.
-    fn passage(
-        &self,
-        from: &Vertex,
-        (ray, end): (&Ray, f32),
-        l: &SampledSpectrum,
-        lambda: &SampledWavelengths,
-        tracer: &mut Tracer,
-    ) -> Option<SampledSpectrum> {
-        let medium = from.medium_towards(ray.d);
-        tracer.transmittance_for(ray, end, medium, l, lambda)
+        hero_only(l, camera.hero_only || photon.hero_only)
     }
 }
 

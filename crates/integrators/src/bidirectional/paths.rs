@@ -58,9 +58,12 @@ pub(crate) struct Bidirectional<'a> {
     pub regularize: bool,
 }
 
-/// Radiance that is known at the first wavelength only, as radiance at all wavelengths with the
+/// Radiance; if it is known at the first wavelength only, as radiance at all wavelengths with the
 /// same expected value.
-pub(crate) fn hero_only(l: SampledSpectrum) -> SampledSpectrum {
+pub(crate) fn hero_only(l: SampledSpectrum, is_hero_only: bool) -> SampledSpectrum {
+    if !is_hero_only {
+        return l;
+    }
     let mut hero = SampledSpectrum::ZERO;
     hero[0] = l[0] * spectrum::N as f32;
     hero

@@ -93,11 +93,11 @@ impl Path<'_> {
     }
 
     /// The density of scattering at a surface, for light or importance from `from` to `to`.
-    fn scattered(&self, index: usize, from: Point3, to: (Point3, Normal3), mode: TransportMode) -> f64 {
+    fn scattered(&self, index: usize, from: Point3, to: Point3, n: Normal3, mode: TransportMode) -> f64 {
         let vertex = self.surfaces[index];
-        let (wo, wi) = ((from - vertex.p.p).normalize(), (to.0 - vertex.p.p).normalize());
+        let (wo, wi) = ((from - vertex.p.p).normalize(), (to - vertex.p.p).normalize());
         let wo = if vertex.is_exit { vertex.wo } else { wo };
-        per_area(vertex.law.pdf(wo, wi, mode), vertex.p.p, to.0, to.1)
+        per_area(vertex.law.pdf(wo, wi, mode), vertex.p.p, to, n)
     }
 
     /// The position of the vertex before or after a surface, seen from the light: index 0 is the
@@ -129,8 +129,8 @@ impl Path<'_> {
         let mut density = f64::from(paths.lights.emitting.pmf(light) * pdf_position)
             * per_area(pdf_direction, p, first.0, first.1);
         for index in 0..s - 2 {
-            let (from, to) = (self.before(index), self.place(index + 1));
-            density *= self.scattered(index, from, to, TransportMode::Importance);
+            let (to, n) = self.place(index + 1);
+            density *= self.scattered(index, self.before(index), to, n, TransportMode::Importance);
         }
         density
     }
@@ -150,12 +150,12 @@ impl Path<'_> {
                 // The way under the surface, which all strategies have.
                 continue;
             }
-            let (from, to) = (self.after(index), self.place(index - 1));
-            density *= self.scattered(index, from, to, TransportMode::Radiance);
+            let (to, n) = self.place(index - 1);
+            density *= self.scattered(index, self.after(index), to, n, TransportMode::Radiance);
         }
         if t == self.surfaces.len() + 2 {
             let (_, p, n) = self.light;
-            density *= self.scattered(0, self.after(0), (p, n), TransportMode::Radiance);
+            density *= self.scattered(0, self.after(0), p, n, TransportMode::Radiance);
         }
         density
     }

@@ -8,9 +8,9 @@ use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
 
 use super::{Law, Merges, Partial};
-use crate::transport::Tracer;
-use crate::transport::direct::on_its_side;
 use crate::transport::parts::{DIFFUSE, event_at, event_of};
+use crate::transport::vertex::on_its_side;
+use crate::transport::{ShadowRay, Tracer};
 
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
@@ -216,10 +216,9 @@ impl<'a> Vertex<'a> {
         if self.is_in_medium() { 1.0 } else { self.n.dot(w).abs() }
     }
 
-    /// The ray to another point, with the normal of its surface if there is one; to be traced up to
-    /// [`Ray::SHADOW_END`].
+    /// The shadow ray to another point, with the normal of its surface if there is one.
     #[inline]
-    pub fn ray_to(&self, p: Point3Error, n: Normal3) -> Ray {
-        Ray::between(self.p, self.n, p, n, self.time)
+    pub fn shadow_ray_to(&self, p: Point3Error, n: Normal3) -> ShadowRay {
+        ShadowRay { ray: Ray::between(self.p, self.n, p, n, self.time), t_max: Ray::SHADOW_END }
     }
 }

@@ -14,10 +14,11 @@
 use film::FirstEvent;
 use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector3};
 use sampling::Sampler;
-use scattering::{Body, BsdfSample, Directions, TransportMode};
+use scattering::{Body, Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
+use scene::SurfaceInteraction;
 use scene::camera::CameraRayDifferential;
 use scene::light::{LightId, LightPoint};
-use scene::medium::{MediumId, MediumInterface};
+use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::under_surface::LightWay;
@@ -25,7 +26,7 @@ use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex}
 use crate::transport::media::{FlightEnd, Heroes};
 use crate::transport::path_state::pass_through;
 use crate::transport::subsurface::Exit;
-use crate::transport::{Tracer, roulette};
+use crate::transport::{ShadowRay, Tracer, roulette};
 
 /// A subpath between two vertices.
 pub(crate) struct Walk<'a> {
@@ -105,17 +106,13 @@ impl<'a> Walk<'a> {
         } else {
             pdf_direction
         };
-        let beta = SampledSpectrum::splat(camera_ray.weight);
-        let origin = if parallel { Origin::Direction } else { Origin::Point };
-        let partial = paths.balance.at_camera(pdf);
-        Self::new(
-            paths,
-            camera_ray.ray,
-            (beta, partial),
-            lambda,
-            (origin, TransportMode::Radiance),
-            paths.view.medium,
-        )
+        Self {
+            beta: SampledSpectrum::splat(camera_ray.weight),
+            partial: paths.balance.at_camera(pdf),
+            medium: paths.view.medium,
+            origin: if parallel { Origin::Direction } else { Origin::Point },
+            ..Self::new(paths, camera_ray.ray, lambda, TransportMode::Radiance)
+        }
     }
 
     /// Starts at a light, chosen by power; `None` if the sampled ray has no radiance.
@@ -144,11 +141,17 @@ impl<'a> Walk<'a> {
         let mut beta = sample.beta() / (pmf * of_lights);
         if sample.p.is_none() && medium.is_some() {
             // The medium that the light comes through before it reaches the scene.
-            let way_back = Ray { d: -sample.ray.d, ..sample.ray };
-            beta *= tracer.transmittance_for(&way_back, f32::INFINITY, medium, &beta, &lambda)?;
+            let ray = Ray { d: -sample.ray.d, ..sample.ray };
+            let way_back = ShadowRay { ray, t_max: f32::INFINITY };
+            beta *= tracer.transmittance(&way_back, medium, &beta, &lambda)?;
         }
-        let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
-        Some(Self::new(paths, sample.ray.into(), (beta, Partial::default()), lambda, origin, medium))
+        Some(Self {
+            beta,
+            medium,
+            light: Some(light),
+            origin: Origin::Light(light, sample.p.map(|p| (p.p, sample.n))),
+            ..Self::new(paths, sample.ray.into(), lambda, TransportMode::Importance)
+        })
     }
 
     /// Starts in a medium that emits; `u` chooses where.
@@ -163,35 +166,32 @@ impl<'a> Walk<'a> {
         let (place, direction) =
             (tracer.sampler.get_2d().extend(tracer.sampler.get_1d()), tracer.sampler.get_2d());
         let start = media.sample(paths.scene, u, place, direction, time, &lambda)?;
-        let beta = start.beta / media.share;
-        let origin = (Origin::Point, TransportMode::Importance);
-        let medium = Some(start.medium);
-        let walk = Self::new(paths, start.ray.into(), (beta, Partial::default()), lambda, origin, medium);
-        Some(Self { begins_in_medium: true, ..walk })
+        Some(Self {
+            beta: start.beta / media.share,
+            medium: Some(start.medium),
+            begins_in_medium: true,
+            ..Self::new(paths, start.ray.into(), lambda, TransportMode::Importance)
+        })
     }
 
+    /// Starts in empty space, at a point without weights.
     fn new(
         paths: &'a Bidirectional,
         ray: RayDifferential,
-        (beta, partial): (SampledSpectrum, Partial),
         lambda: SampledWavelengths,
-        (origin, mode): (Origin, TransportMode),
-        medium: Option<MediumId>,
+        mode: TransportMode,
     ) -> Self {
         Self {
             paths,
             ray,
-            beta,
-            partial,
+            beta: SampledSpectrum::ONE,
+            partial: Partial::default(),
             lambda,
             depth: 0,
             share: SampledSpectrum::ONE,
-            medium,
+            medium: None,
             emitted: SampledSpectrum::ZERO,
-            light: match origin {
-                Origin::Light(light, _) => Some(light),
-                Origin::Point | Origin::Direction => None,
-            },
+            light: None,
             first: FirstEvent::None,
             begins_in_medium: false,
             distance: 0.0,
@@ -199,7 +199,7 @@ impl<'a> Walk<'a> {
             rough_before: false,
             after_diffuse: false,
             exit: None,
-            origin,
+            origin: Origin::Point,
             mode,
         }
     }
@@ -254,22 +254,16 @@ impl<'a> Walk<'a> {
                 };
                 bsdf.bxdf.keep_boundary();
                 bsdf.regularize(self.paths.regularize && self.rough_before);
-                let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
-                let vertex = self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media);
-                Vertex { front: surface.front, ..vertex }
+                self.surface_vertex(surface, bsdf)
             }
             Interaction::Medium(MediumInteraction { p, sigma_s, phase }) => {
                 let (p, n, wo) = (Point3Error::exact(*p), Normal3::ZERO, -self.ray.ray.d);
-                self.vertex((p, n, wo), Law::Medium(*phase), *sigma_s, None)
+                Vertex { presence: *sigma_s, ..self.vertex(p, n, wo, Law::Medium(*phase)) }
             }
             Interaction::Exit(exit) => {
-                let Exit { surface, bsdf, .. } = &**exit;
-                let s = &surface.surface;
                 (self.depth, self.alpha) = (self.depth - 1, 1.0);
-                let law = (Law::Surface(*bsdf), SampledSpectrum::ONE);
-                let vertex = self.vertex((s.p, s.n, s.wo), law.0, law.1, surface.media);
                 // Its partial weights are zero, as if the subpath began there.
-                return Some(Vertex { front: surface.front, is_exit: true, ..vertex });
+                return Some(Vertex { is_exit: true, ..self.surface_vertex(&exit.surface, exit.bsdf) });
             }
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
@@ -286,14 +280,15 @@ impl<'a> Walk<'a> {
         Some(vertex)
     }
 
+    /// The next vertex, on a surface, without its weights.
+    fn surface_vertex(&mut self, surface: &SurfaceInteraction, bsdf: Bsdf<Bxdf<'a>>) -> Vertex<'a> {
+        let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
+        let &SurfaceInteraction { media, front, .. } = surface;
+        Vertex { presence, media, front, ..self.vertex(s.p, s.n, s.wo, Law::Surface(bsdf)) }
+    }
+
     /// The next vertex, without its weights.
-    fn vertex(
-        &mut self,
-        (p, n, wo): (Point3Error, Normal3, Vector3),
-        law: Law<'a>,
-        presence: SampledSpectrum,
-        media: Option<MediumInterface>,
-    ) -> Vertex<'a> {
+    fn vertex(&mut self, p: Point3Error, n: Normal3, wo: Vector3, law: Law<'a>) -> Vertex<'a> {
         self.depth += 1;
         Vertex {
             p,
@@ -302,10 +297,10 @@ impl<'a> Walk<'a> {
             time: self.ray.ray.time,
             law,
             medium: self.medium,
-            media,
+            media: None,
             front: Normal3::ZERO,
             alpha: self.alpha,
-            presence,
+            presence: SampledSpectrum::ONE,
             beta: self.beta,
             hero_only: self.lambda.secondary_terminated(),
             partial: Partial::default(),

@@ -10,12 +10,13 @@ use std::f32::consts::PI;
 
 use description::AmbientOcclusionDesc;
 use lanes::Real;
-use math::{Frame, Ray, RayDifferential, Vec2, Vec3, Vector3};
+use math::{Frame, RayDifferential, Vec2, Vec3, Vector3};
 use sampling::warp;
 use scene::Interfaces;
 use scene::light::LightSampleContext;
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 
+use crate::transport::ShadowRay;
 use crate::{RayIntegrator, Tracer};
 
 /// Ambient occlusion.
@@ -34,20 +35,16 @@ impl AmbientOcclusion {
         Self { settings, white, white_scale }
     }
 
-    /// The distance from which on surfaces do not occlude.
-    pub(crate) fn max_distance(&self) -> f32 {
-        self.settings.max_distance
-    }
-
     /// A ray over the hemisphere of a point on the side of `wo`, and the light along it if nothing
     /// occludes it.
     #[inline(always)]
     pub(crate) fn sample<R: Real>(
         &self,
-        (point, wo): (&LightSampleContext<R>, Vector3<R>),
+        point: &LightSampleContext<R>,
+        wo: Vector3<R>,
         u: Vec2<R>,
         lambda: &SampledWavelengths<R>,
-    ) -> (Ray<R>, SampledSpectrum<R>) {
+    ) -> (ShadowRay<R>, SampledSpectrum<R>) {
         let (wi, pdf) = if self.settings.cos_sample {
             let wi = warp::sample_cosine_hemisphere(u);
             (wi, warp::cosine_hemisphere_pdf(wi.z))
@@ -57,7 +54,9 @@ impl AmbientOcclusion {
         let n = Vec3::select(point.n.dot(wo).lt(R::zero()), -point.n, point.n);
         let scale = R::splat(self.white_scale) * wi.z / (R::splat(PI) * pdf);
         let scale = R::select(pdf.eq(R::zero()), R::zero(), scale);
-        (point.spawn_ray(Frame::from_z(n).from_local(wi)), self.white.sample(lambda) * scale)
+        let ray = point.spawn_ray(Frame::from_z(n).from_local(wi));
+        let shadow = ShadowRay { ray, t_max: R::splat(self.settings.max_distance) };
+        (shadow, self.white.sample(lambda) * scale)
     }
 }
 
@@ -76,8 +75,8 @@ impl RayIntegrator for AmbientOcclusion {
                 continue;
             }
             let (u, point) = (tracer.sampler.get_2d(), surface.light_context());
-            let (outward, l) = self.sample((&point, surface.surface.wo), u, lambda);
-            if l.is_black() || tracer.occluded(&outward, self.settings.max_distance, Interfaces::Stop) {
+            let (outward, l) = self.sample(&point, surface.surface.wo, u, lambda);
+            if l.is_black() || tracer.occluded(&outward, Interfaces::Stop) {
                 return SampledSpectrum::ZERO;
             }
             return l;

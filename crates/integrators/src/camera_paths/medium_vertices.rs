@@ -10,9 +10,9 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Path;
 use crate::Tracer;
-use crate::transport::direct::{MediumVertex, Vertex};
 use crate::transport::media::FlightEnd;
 use crate::transport::path_state::PathState;
+use crate::transport::vertex::{MediumVertex, Vertex};
 
 impl Path {
     /// Lets a path fly through its medium, if it has one, up to `t_max`. Returns the light on the
@@ -43,7 +43,8 @@ impl Path {
         &self,
         tracer: &mut Tracer,
         path: &mut PathState,
-        (p, phase): (Point3, HenyeyGreenstein),
+        p: Point3,
+        phase: HenyeyGreenstein,
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         path.depth += 1;

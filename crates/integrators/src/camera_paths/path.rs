@@ -20,11 +20,12 @@ use math::RayDifferential;
 use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::{Connection, DirectLighting, Vertex, light_context};
+use crate::transport::direct::{Connection, DirectLighting};
 use crate::transport::media::{Arrival, FlightEnd, Heroes, SpectralMis};
 use crate::transport::parts::{DIFFUSE, event_of};
 use crate::transport::path_state::{PathState, Scattered};
 use crate::transport::subsurface::entered;
+use crate::transport::vertex::{SurfaceVertex, Vertex};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing, in vacuum and through participating media.
@@ -79,7 +80,7 @@ impl Path {
             let (light, goes_on) = match (end, hit) {
                 (FlightEnd::Absorbed, _) => return l,
                 (FlightEnd::Scattered { p, phase, .. }, _) => {
-                    self.scatter_in_medium(tracer, &mut path, (p, phase), lambda)
+                    self.scatter_in_medium(tracer, &mut path, p, phase, lambda)
                 }
                 (FlightEnd::Passed, None) if counts => return l + self.escaped(tracer, &path, lambda),
                 (FlightEnd::Passed, None) => return l,
@@ -87,7 +88,7 @@ impl Path {
                     if counts {
                         l += self.emitted(tracer, &path, &surface, lambda);
                     }
-                    self.scatter(tracer, &mut path, (surface, t), lambda)
+                    self.scatter(tracer, &mut path, surface, t, lambda)
                 }
             };
             l += light;
@@ -127,7 +128,8 @@ impl Path {
         &self,
         tracer: &mut Tracer,
         path: &mut PathState,
-        (mut surface, t): (SurfaceInteraction, f32),
+        mut surface: SurfaceInteraction,
+        t: f32,
         lambda: &mut SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let mut l = SampledSpectrum::ZERO;
@@ -145,11 +147,11 @@ impl Path {
         bsdf.bxdf.keep_boundary();
         bsdf.regularize(self.settings.regularize && path.rough_before);
 
-        let context = light_context(&surface, bsdf.flags());
+        let vertex = SurfaceVertex::new(&surface, &bsdf);
         if bsdf.flags().is_non_specular() {
-            l += self.direct(tracer, path, &Vertex::Surface(&surface, &context, &bsdf), lambda);
+            l += self.direct(tracer, path, &Vertex::Surface(&vertex), lambda);
         }
-        let Some(scattered) = Scattered::sample(&surface, &bsdf, tracer.sampler) else { return (l, false) };
+        let Some(scattered) = Scattered::sample(&vertex, tracer.sampler) else { return (l, false) };
         let body = entered(&bsdf, &surface, &scattered.sample);
         if path.depth == 1 && tracer.takes_parts() {
             path.first = match body {
@@ -158,18 +160,15 @@ impl Path {
             };
         }
         if let Some(body) = body {
-            let entry = (&surface, context);
-            let Some(exit) = path.go_under(tracer, entry, (body, &scattered), lambda) else {
+            let Some(exit) = path.go_under(tracer, &vertex, body, &scattered, lambda) else {
                 return (l, false);
             };
-            let context = light_context(&exit.surface, exit.bsdf.flags());
-            l += self.direct(tracer, path, &Vertex::Surface(&exit.surface, &context, &exit.bsdf), lambda);
-            let Some(scattered) = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler) else {
-                return (l, false);
-            };
-            path.scatter(&exit.surface, context, &scattered);
+            let vertex = SurfaceVertex::new(&exit.surface, &exit.bsdf);
+            l += self.direct(tracer, path, &Vertex::Surface(&vertex), lambda);
+            let Some(scattered) = Scattered::sample(&vertex, tracer.sampler) else { return (l, false) };
+            path.scatter(&vertex, &scattered);
         } else {
-            path.scatter(&surface, context, &scattered);
+            path.scatter(&vertex, &scattered);
         }
         (l, self.goes_on(tracer, path))
     }
@@ -192,8 +191,7 @@ impl Path {
         let l = match path.spectral {
             Some(SpectralMis { heroes, r_u, .. }) => {
                 let medium = vertex.medium_towards(light.wi, path.medium);
-                let shadow = (&light.ray, light.t_max);
-                match tracer.transmittance(shadow, medium, lambda, &heroes, numbers) {
+                match tracer.passage(&light.shadow, medium, lambda, &heroes, numbers) {
                     Some(passage) => {
                         let Connection { l, ratio, .. } = light;
                         Arrival { l: path.beta * l, r_u, ratio }.through(&passage, &heroes)
@@ -201,7 +199,7 @@ impl Path {
                     None => return black,
                 }
             }
-            None if tracer.occluded(&light.ray, light.t_max, light.interfaces) => return black,
+            None if tracer.occluded(&light.shadow, light.interfaces) => return black,
             None => path.beta * light.weighted(),
         };
         if tracer.takes_parts() {

@@ -87,7 +87,8 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
 
     fn record(
         &self,
-        (pixel, index): ([i32; 2], u32),
+        pixel: [i32; 2],
+        index: u32,
         scene: &Scene,
         view: &View,
         filter: &Filter,

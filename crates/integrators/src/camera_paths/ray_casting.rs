@@ -9,9 +9,11 @@
 use math::RayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use crate::transport::ShadowRay;
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::pass_through;
 use crate::transport::single_scattering::Scattering;
+use crate::transport::vertex::SurfaceVertex;
 use crate::{RayIntegrator, Tracer};
 
 /// Ray casting. It has no settings.
@@ -32,7 +34,8 @@ impl RayIntegrator for RayCasting {
             if let Some(medium) = medium {
                 let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
                 l += beta * tracer.single_scattering(medium, &ray.ray, t_max, Scattering::Unshadowed, lambda);
-                let Some(passed) = tracer.attenuation(medium, &ray.ray, t_max, &beta, lambda) else {
+                let way = ShadowRay { ray: ray.ray, t_max };
+                let Some(passed) = tracer.transmittance_within(&way, medium, &beta, lambda) else {
                     return l;
                 };
                 beta *= passed;
@@ -44,9 +47,8 @@ impl RayIntegrator for RayCasting {
             match tracer.bsdf(&mut surface, &ray, lambda) {
                 Some(bsdf) => {
                     let mut sum = SampledSpectrum::ZERO;
-                    connect_all(tracer.scene, tracer.sampler, (&surface, false), &bsdf, lambda, |light| {
-                        sum += light.l
-                    });
+                    let vertex = SurfaceVertex::new(&surface, &bsdf);
+                    connect_all(tracer.scene, tracer.sampler, &vertex, false, lambda, |light| sum += light.l);
                     return l + beta * sum;
                 }
                 None => {

@@ -18,8 +18,8 @@ use scene::light_sampler::UniformLightSampler;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::{light_context, scattered};
 use crate::transport::path_state::pass_through;
+use crate::transport::vertex::SurfaceVertex;
 use crate::{RayIntegrator, Tracer};
 
 /// Simple path tracing.
@@ -89,17 +89,17 @@ fn one_light(
     bsdf: &Bsdf<Bxdf>,
     lambda: &SampledWavelengths,
 ) -> SampledSpectrum {
-    let context = light_context(surface, bsdf.flags());
+    let vertex = SurfaceVertex::new(surface, bsdf);
     let lights = UniformLightSampler::new(tracer.scene.lights());
     let Some((light, pmf)) = lights.sample(tracer.sampler.get_1d()) else {
         return SampledSpectrum::ZERO;
     };
-    let Some(sample) = tracer.scene.sample_light(light, &context, tracer.sampler.get_2d(), lambda, false)
-    else {
+    let u = tracer.sampler.get_2d();
+    let Some(sample) = tracer.scene.sample_light(light, &vertex.context, u, lambda, false) else {
         return SampledSpectrum::ZERO;
     };
-    let l = scattered(surface, bsdf, &sample);
-    if l.is_black() || !tracer.sees(&surface.surface, &sample, Interfaces::Stop) {
+    let l = vertex.scattered(&sample);
+    if l.is_black() || tracer.occluded(&vertex.shadow_ray(&sample), Interfaces::Stop) {
         return SampledSpectrum::ZERO;
     }
     l / (pmf * sample.pdf)

@@ -30,10 +30,12 @@ use scene::medium::MediumId;
 use scene::{Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use crate::transport::ShadowRay;
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::{pass_through, throughput};
 use crate::transport::single_scattering::Scattering;
 use crate::transport::surroundings::{AllSurroundings, Surroundings};
+use crate::transport::vertex::SurfaceVertex;
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
@@ -64,7 +66,8 @@ impl Whitted {
     fn surroundings(
         &self,
         hit: &Hit,
-        (w, lambda): (Vector3, &SampledWavelengths),
+        w: Vector3,
+        lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let traced = || Self::new(WhittedDesc { reflections: ReflectionsDesc::Traced, ..self.settings });
@@ -72,8 +75,7 @@ impl Whitted {
             ReflectionsDesc::Hybrid => 0.5 * self.distance(tracer),
             _ => 0.0,
         };
-        let picture = (self.settings.reflection_resolution, beyond);
-        self.surroundings.radiance(hit, (w, lambda), traced, picture, tracer)
+        self.surroundings.radiance(hit, w, lambda, traced, beyond, tracer)
     }
 
     /// From where on reflected rays of a hybrid see the picture alone.
@@ -150,7 +152,7 @@ impl RayIntegrator for Whitted {
                 let share = self.share_of_picture(t_max, tracer);
                 if share > 0.0 {
                     let w = node.ray.ray.d.normalize();
-                    l += node.beta * self.surroundings(&at, (w, lambda), tracer) * share;
+                    l += node.beta * self.surroundings(&at, w, lambda, tracer) * share;
                     node.beta *= 1.0 - share;
                 }
                 if share == 1.0 {
@@ -161,8 +163,8 @@ impl RayIntegrator for Whitted {
                 let is_last = node.depth == self.settings.max_depth;
                 let scattering = if is_last { Scattering::None } else { Scattering::Shadowed };
                 l += node.beta * tracer.single_scattering(medium, &node.ray.ray, t_max, scattering, lambda);
-                let Some(passed) = tracer.attenuation(medium, &node.ray.ray, t_max, &node.beta, lambda)
-                else {
+                let way = ShadowRay { ray: node.ray.ray, t_max };
+                let Some(passed) = tracer.transmittance_within(&way, medium, &node.beta, lambda) else {
                     continue;
                 };
                 node.beta *= passed;
@@ -182,10 +184,11 @@ impl RayIntegrator for Whitted {
                 continue;
             }
             let (scene, sampler) = (tracer.scene, &mut *tracer.sampler);
-            let place = (&surface, self.settings.ambient);
-            let mut sum = connect_all(scene, sampler, place, &bsdf, lambda, |light| connections.push(light));
+            let (vertex, ambient) = (SurfaceVertex::new(&surface, &bsdf), self.settings.ambient);
+            let push = |light| connections.push(light);
+            let mut sum = connect_all(scene, sampler, &vertex, ambient, lambda, push);
             for light in connections.drain(..) {
-                let medium = surface.medium_towards(light.ray.d, medium);
+                let medium = surface.medium_towards(light.shadow.ray.d, medium);
                 sum += light.arriving(medium, lambda, tracer);
             }
             l += beta * sum;
@@ -194,7 +197,7 @@ impl RayIntegrator for Whitted {
             next = match (self.settings.reflections, reflected) {
                 (ReflectionsDesc::Environment, Some(reflected)) => {
                     let w = reflected.ray.ray.d.normalize();
-                    l += reflected.beta * self.surroundings(&hit, (w, lambda), tracer);
+                    l += reflected.beta * self.surroundings(&hit, w, lambda, tracer);
                     None
                 }
                 (ReflectionsDesc::Hybrid, Some(reflected)) => {

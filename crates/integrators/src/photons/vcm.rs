@@ -91,7 +91,8 @@ impl Vcm {
     /// [`MAX_PHOTON_PATHS`] is usual.
     pub fn new(
         settings: VcmDesc,
-        [sampler, light_sampler]: [Sampler; 2],
+        sampler: Sampler,
+        light_sampler: Sampler,
         photon_seed: u32,
         photon_paths: usize,
     ) -> Self {

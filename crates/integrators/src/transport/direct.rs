@@ -10,23 +10,20 @@
 use std::sync::Arc;
 
 use description::LightSamplerDesc;
-use film::FirstEvent;
 use geometry::SurfacePoint;
 use lanes::Real;
-use math::{
-    Frame, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec2, Vec3, Vector3, offset_ray_origin,
-};
+use math::{Frame, Normal3, RayDifferential, Vec2, Vec3, Vector3};
 use sampling::{Sampler, warp};
-use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, TransportMode};
-use scene::light::{Light, LightId, LightLiSample, LightPoint, LightRef, LightSampleContext};
+use scattering::BxdfFlags;
+use scene::light::{Light, LightId, LightLiSample, LightPoint, LightRef};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::Tracer;
-use super::parts::event_at;
 use super::path_state::Origin;
+use super::vertex::{MediumVertex, SurfaceVertex, Vertex};
+use super::{ShadowRay, Tracer};
 use crate::{Cancelled, Control};
 
 /// Direct lighting by one sample of one light, weighted against BSDF sampling.
@@ -138,96 +135,8 @@ impl DirectLighting {
         }
         let (wi, p_l, light) = (sample.wi, pmf * sample.pdf, scene.light(light));
         let ratio = if light.is_delta() { 0.0 } else { vertex.pdf(wi) / p_l };
-        let (ray, t_max) = vertex.shadow_ray(&sample);
-        let interfaces = self.interfaces(light);
-        Some(Connection { light: light.id(), wi, ray, t_max, interfaces, l: l / p_l, ratio })
-    }
-}
-
-/// A vertex from which lights are sampled.
-pub(crate) enum Vertex<'a> {
-    /// On a surface.
-    Surface(&'a SurfaceInteraction, &'a LightSampleContext, &'a Bsdf<Bxdf<'a>>),
-    /// In a medium.
-    Medium(&'a MediumVertex),
-}
-
-impl Vertex<'_> {
-    fn context(&self) -> &LightSampleContext {
-        match self {
-            Self::Surface(_, context, _) => context,
-            Self::Medium(vertex) => &vertex.context,
-        }
-    }
-
-    /// The light of a light sample that it scatters to `wo`, without visibility and density.
-    fn scattered(&self, light: &LightLiSample) -> SampledSpectrum {
-        match self {
-            Self::Surface(surface, _, bsdf) => scattered(surface, bsdf, light),
-            Self::Medium(vertex) => light.l * vertex.phase.p(vertex.wo, light.wi),
-        }
-    }
-
-    /// The density with which it scatters paths to `wi`.
-    fn pdf(&self, wi: Vector3) -> f32 {
-        match self {
-            Self::Surface(surface, _, bsdf) => {
-                bsdf.pdf(surface.surface.wo, wi, TransportMode::Radiance, Directions::All)
-            }
-            Self::Medium(vertex) => vertex.phase.p(vertex.wo, wi),
-        }
-    }
-
-    /// The shadow ray to a light sample, and its end.
-    fn shadow_ray(&self, sample: &LightLiSample) -> (Ray, f32) {
-        match self {
-            Self::Surface(surface, ..) => sample.shadow_ray(&surface.surface),
-            Self::Medium(vertex) => vertex.shadow_ray(sample),
-        }
-    }
-
-    /// The medium of a ray that leaves it along `wi`, if the path came in `medium`.
-    pub fn medium_towards(&self, wi: Vector3, medium: Option<MediumId>) -> Option<MediumId> {
-        match self {
-            Self::Surface(surface, ..) => surface.medium_towards(wi, medium),
-            Self::Medium(_) => medium,
-        }
-    }
-
-    /// The event by which it scatters light from `wi`.
-    pub fn event(&self, wi: Vector3) -> FirstEvent {
-        match self {
-            Self::Surface(surface, _, bsdf) => event_at(bsdf, surface.surface.wo, wi),
-            Self::Medium(_) => FirstEvent::Volume,
-        }
-    }
-}
-
-/// A point in a medium that scatters light.
-#[derive(Clone, Copy)]
-pub(crate) struct MediumVertex {
-    /// The point.
-    pub context: LightSampleContext,
-    /// Unit direction back along the path.
-    pub wo: Vector3,
-    /// How it scatters.
-    pub phase: HenyeyGreenstein,
-}
-
-impl MediumVertex {
-    /// A point at which the flight along `ray` was scattered.
-    pub fn new(p: Point3, ray: &Ray, phase: HenyeyGreenstein) -> Self {
-        let (p, n) = (Point3Error::exact(p), Normal3::ZERO);
-        Self { context: LightSampleContext { p, n, ns: n, time: ray.time }, wo: -ray.d, phase }
-    }
-
-    /// The shadow ray to a light sample, and its end.
-    pub fn shadow_ray(&self, sample: &LightLiSample) -> (Ray, f32) {
-        let context = &self.context;
-        match sample.p {
-            Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
-            None => (context.spawn_ray(sample.wi), f32::INFINITY),
-        }
+        let (shadow, interfaces) = (vertex.shadow_ray(&sample), self.interfaces(light));
+        Some(Connection { light: light.id(), wi, shadow, interfaces, l: l / p_l, ratio })
     }
 }
 
@@ -238,9 +147,7 @@ pub(crate) struct Connection {
     /// Unit direction to it.
     pub wi: Vector3,
     /// The shadow ray.
-    pub ray: Ray,
-    /// Its end.
-    pub t_max: f32,
+    pub shadow: ShadowRay,
     /// Whether interfaces occlude it.
     pub interfaces: Interfaces,
     /// The light that the vertex scatters if nothing occludes the ray, over its density.
@@ -251,8 +158,8 @@ pub(crate) struct Connection {
 
 impl Connection {
     /// To a light that scattering does not look for; interfaces let its shadow ray pass.
-    fn unweighted((light, wi): (LightId, Vector3), (ray, t_max): (Ray, f32), l: SampledSpectrum) -> Self {
-        Self { light, wi, ray, t_max, interfaces: Interfaces::Pass, l, ratio: 0.0 }
+    fn unweighted(light: LightId, wi: Vector3, shadow: ShadowRay, l: SampledSpectrum) -> Self {
+        Self { light, wi, shadow, interfaces: Interfaces::Pass, l, ratio: 0.0 }
     }
 
     /// The light that the vertex scatters, weighted against what scattering finds.
@@ -268,7 +175,7 @@ impl Connection {
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let l = self.weighted();
-        let passed = tracer.transmittance_for(&self.ray, self.t_max, medium, &l, lambda);
+        let passed = tracer.transmittance(&self.shadow, medium, &l, lambda);
         passed.map_or(SampledSpectrum::ZERO, |passed| l * passed)
     }
 }
@@ -287,8 +194,8 @@ pub(crate) fn connect_all_in_medium(
         let Some(sample) = scene.sample_light(light, &vertex.context, u, lambda, false) else { continue };
         let l = sample.l * (vertex.phase.p(vertex.wo, sample.wi) / sample.pdf);
         if !l.is_black() {
-            let (ray, t_max) = vertex.shadow_ray(&sample);
-            connect(Connection::unweighted((light, sample.wi), (ray, t_max), l));
+            let shadow = ShadowRay::to_light(&vertex.context, &sample);
+            connect(Connection::unweighted(light, sample.wi, shadow, l));
         }
     }
 }
@@ -299,32 +206,31 @@ pub(crate) fn connect_all_in_medium(
 pub(crate) fn connect_all(
     scene: &Scene,
     sampler: &mut Sampler,
-    (surface, ambient): (&SurfaceInteraction, bool),
-    bsdf: &Bsdf<Bxdf>,
+    vertex: &SurfaceVertex,
+    ambient: bool,
     lambda: &SampledWavelengths,
     mut connect: impl FnMut(Connection),
 ) -> SampledSpectrum {
     let mut around = SampledSpectrum::ZERO;
-    if !bsdf.flags().is_non_specular() {
+    let flags = vertex.bsdf.flags();
+    if !flags.is_non_specular() {
         return around;
     }
-    let context = light_context(surface, bsdf.flags());
     for light in (0..scene.lights().len() as u32).map(LightId) {
         let u = sampler.get_2d();
         if let (true, Light::UniformInfinite(sky)) = (ambient, scene.light(light).row()) {
-            let (wo, ns) = (surface.surface.wo, surface.surface.shading.n);
-            let (wi, pdf) = sample_ambient(wo, ns, bsdf.flags(), u);
+            let surface = &vertex.surface.surface;
+            let (wi, pdf) = sample_ambient(surface.wo, surface.shading.n, flags, u);
             let l = sky.radiance.sample(lambda);
-            let l = scattered(surface, bsdf, &LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO });
+            let l = vertex.scattered(&LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO });
             around += l.safe_div(SampledSpectrum::splat(pdf));
             continue;
         }
-        let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
-        let l = scattered(surface, bsdf, &sample);
+        let Some(sample) = scene.sample_light(light, &vertex.context, u, lambda, false) else { continue };
+        let l = vertex.scattered(&sample);
         if !l.is_black() {
-            let (ray, t_max) = sample.shadow_ray(&surface.surface);
-            let l = l / sample.pdf;
-            connect(Connection::unweighted((light, sample.wi), (ray, t_max), l));
+            let shadow = vertex.shadow_ray(&sample);
+            connect(Connection::unweighted(light, sample.wi, shadow, l / sample.pdf));
         }
     }
     around
@@ -350,33 +256,6 @@ pub(crate) fn sample_ambient<R: Real>(
     let w = warp::sample_cosine_hemisphere(u);
     let pdf = warp::cosine_hemisphere_pdf(w.z);
     (Frame::from_z(axis).from_local(w), R::select(has_both, pdf * R::splat(0.5), pdf))
-}
-
-/// The light of a light sample that a surface scatters to `wo`: f·|cos|·L, without visibility and
-/// density.
-pub(crate) fn scattered(
-    surface: &SurfaceInteraction,
-    bsdf: &Bsdf<Bxdf>,
-    light: &LightLiSample,
-) -> SampledSpectrum {
-    let cos_theta = light.wi.dot(surface.surface.shading.n).abs();
-    bsdf.f(surface.surface.wo, light.wi, TransportMode::Radiance) * light.l * cos_theta
-}
-
-/// The context for sampling lights from a surface whose BSDF has the given flags.
-pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> LightSampleContext {
-    on_its_side(surface.light_context(), surface.surface.wo, flags)
-}
-
-/// Offsets a point that scatters to one side only to the side of `wo` by its error, so that a light
-/// that intersects its surface is not sampled from behind.
-pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
-    let side = match (flags.is_reflective(), flags.is_transmissive()) {
-        (true, false) => wo,
-        (false, true) => -wo,
-        _ => return context,
-    };
-    LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
 }
 
 /// The power heuristic for a sample of density `p` that another technique finds with density

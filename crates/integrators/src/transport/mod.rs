@@ -9,6 +9,7 @@
 //! | `first_hits` | those of all samples of a pass, for other engines |
 //! | `parts` | the first event of a path, for layers of parts of the light |
 //! | `path_state` | a path from the camera between two vertices |
+//! | `vertex` | vertices from which lights are sampled |
 //! | `direct` | next-event estimation and its weights |
 //! | `media` | flights through participating media, and their transmittance |
 //! | `subsurface` | paths under the surface of bodies |
@@ -31,8 +32,10 @@ pub(crate) mod single_scattering;
 pub(crate) mod subsurface;
 pub(crate) mod surroundings;
 mod tracer;
+pub(crate) mod vertex;
 mod visibility;
 
 pub use first_hits::FirstHits;
 pub use record::{Record, Step};
 pub use tracer::Tracer;
+pub(crate) use visibility::ShadowRay;

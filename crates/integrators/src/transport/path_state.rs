@@ -3,7 +3,7 @@
 use film::FirstEvent;
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, BsdfSample, Bxdf, Directions, TransportMode};
+use scattering::{BsdfSample, Directions, TransportMode};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
 use scene::medium::MediumId;
@@ -12,6 +12,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::Tracer;
 use super::media::{Flight, Heroes, SpectralMis, Throughput};
 use super::roulette;
+use super::vertex::SurfaceVertex;
 
 /// The state of a camera path between two vertices.
 pub(crate) struct PathState {
@@ -54,8 +55,9 @@ pub(crate) struct Scattered {
 }
 
 impl Scattered {
-    /// Samples the BSDF for the outgoing direction of `surface`; `None` without a sample.
-    pub fn sample(surface: &SurfaceInteraction, bsdf: &Bsdf<Bxdf>, sampler: &mut Sampler) -> Option<Self> {
+    /// Samples the BSDF of a vertex for the outgoing direction; `None` without a sample.
+    pub fn sample(vertex: &SurfaceVertex, sampler: &mut Sampler) -> Option<Self> {
+        let SurfaceVertex { surface, bsdf, .. } = vertex;
         let wo = surface.surface.wo;
         let (uc, u) = (sampler.get_1d(), sampler.get_2d());
         let sample = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All)?;
@@ -90,19 +92,15 @@ impl PathState {
         self.ray = pass_through(&self.ray, surface, t);
     }
 
-    /// Leaves a vertex, whose light sampling context is given, along a direction of its BSDF.
-    pub fn scatter(
-        &mut self,
-        surface: &SurfaceInteraction,
-        context: LightSampleContext,
-        Scattered { sample, pdf }: &Scattered,
-    ) {
+    /// Leaves a vertex along a direction of its BSDF.
+    pub fn scatter(&mut self, vertex: &SurfaceVertex, Scattered { sample, pdf }: &Scattered) {
+        let surface = vertex.surface;
         self.beta *= throughput(surface, sample);
         if sample.flags.is_transmissive() {
             self.eta_scale *= sample.eta * sample.eta;
         }
         self.medium = surface.medium_towards(sample.wi, self.medium);
-        let origin = (!sample.flags.is_specular()).then_some(context);
+        let origin = (!sample.flags.is_specular()).then_some(vertex.context);
         self.leave(surface.spawn_scattered(&self.ray, sample), *pdf, origin);
     }
 

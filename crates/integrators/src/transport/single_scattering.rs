@@ -9,8 +9,9 @@ use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
-use super::direct::{MediumVertex, connect_all_in_medium};
+use super::direct::connect_all_in_medium;
 use super::media::FlightEnd;
+use super::vertex::MediumVertex;
 
 /// What single scattering takes into account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -70,7 +70,10 @@ impl AllSurroundings {
     pub fn of(&self, circumstances: Circumstances) -> Arc<Surroundings> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = all.iter().position(|(known, _)| *known == circumstances);
-        let last = known.map_or_else(|| (circumstances, Arc::default()), |place| all.remove(place));
+        let last = known.map_or_else(
+            || (circumstances, Arc::new(Surroundings::new(circumstances.0))),
+            |place| all.remove(place),
+        );
         let surroundings = Arc::clone(&last.1);
         all.truncate(Self::MOST - 1);
         all.insert(0, last);
@@ -80,25 +83,33 @@ impl AllSurroundings {
 
 /// The pictures of objects. An object has none where there is no memory for it.
 #[derive(Debug, Default)]
-pub(crate) struct Surroundings(RwLock<HashMap<Object, Option<Arc<Picture>>>>);
+pub(crate) struct Surroundings {
+    /// Pixels along an edge of a picture.
+    resolution: u32,
+    pictures: RwLock<HashMap<Object, Option<Arc<Picture>>>>,
+}
 
 impl Surroundings {
+    fn new(settings: WhittedDesc) -> Self {
+        Self { resolution: settings.reflection_resolution, ..Self::default() }
+    }
+
     /// The radiance that arrives from direction `w`, of unit length, at the place of the object
-    /// that was hit, as `rays()` estimate it, beyond a distance; the picture has `resolution`
-    /// pixels along an edge. Black after a cancellation.
+    /// that was hit, as `rays()` estimate it, beyond a distance. Black after a cancellation.
     pub fn radiance<R: RayIntegrator>(
         &self,
         hit: &Hit,
-        (w, lambda): (Vector3, &SampledWavelengths),
+        w: Vector3,
+        lambda: &SampledWavelengths,
         rays: impl Fn() -> R,
-        (resolution, beyond): (u32, f32),
+        beyond: f32,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let object = Object::of(hit);
-        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).get(&object).cloned();
+        let known = self.pictures.read().unwrap_or_else(PoisonError::into_inner).get(&object).cloned();
         let picture = known.unwrap_or_else(|| {
-            let mut pictures = self.0.write().unwrap_or_else(PoisonError::into_inner);
-            let picture = || Picture::new(place(hit, tracer), resolution).map(Arc::new);
+            let mut pictures = self.pictures.write().unwrap_or_else(PoisonError::into_inner);
+            let picture = || Picture::new(place(hit, tracer), self.resolution).map(Arc::new);
             pictures.entry(object).or_insert_with(picture).clone()
         });
         let pixel = |at| pixel(at, object, picture.as_deref()?, &rays(), beyond, tracer);

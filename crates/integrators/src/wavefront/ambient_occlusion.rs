@@ -11,9 +11,8 @@ use super::columns::Rows;
 use super::numbers::draw_2d;
 use super::pass::Pass;
 use super::paths::Paths;
-use super::queues::Queues;
+use super::queues::{PathHit, Queues};
 use super::segments::Segments;
-use super::shadows::Shadow;
 use crate::AmbientOcclusion;
 
 impl WaveIntegrator for AmbientOcclusion {
@@ -29,7 +28,7 @@ impl WaveIntegrator for AmbientOcclusion {
             if let Material::Interface | Material::Mix(_) =
                 scene.materials()[entry.material.0 as usize].material
             {
-                batch.columns.queues.scalar.push((row, turn as u32));
+                batch.columns.queues.scalar.push(PathHit { path: row, hit: turn as u32 });
             } else {
                 turns.push(turn as u32);
                 rows.push(row);
@@ -71,7 +70,6 @@ impl Kernel for Occlude<'_, '_> {
     #[inline(always)]
     fn run<R: Real>(self) {
         let Self { pass, algorithm, points, turns, rows, segments, paths, queues } = self;
-        let t_max = R::splat(algorithm.max_distance());
         for (part, queue) in rows.chunks(R::LANES).enumerate() {
             let first = part * R::LANES;
             let rows = Rows::<R>::first(queue);
@@ -81,31 +79,31 @@ impl Kernel for Occlude<'_, '_> {
             let time = R::gather(&segments.time, places.indices);
             let point = LightSampleContext { p, n, ns, time };
             let wo = -segments.direction.vector(places);
-            let (ray, l) = algorithm.sample((&point, wo), u, &paths.lambda_lanes(rows));
+            let (shadow, l) = algorithm.sample(&point, wo, u, &paths.lambda_lanes(rows));
             let [shadows, _] = &mut queues.shadows;
-            shadows.append(rows, rows.active & !l.is_black(), &Shadow { l, ray, t_max });
+            shadows.append(rows, rows.active & !l.is_black(), l, &shadow);
         }
     }
 }
 
 impl AmbientOcclusion {
     /// Continues one path from its hit.
-    fn shade_path(&self, batch: &mut Batch, (path, turn): (u32, u32), hit: &Hit) {
+    fn shade_path(&self, batch: &mut Batch, place: PathHit, hit: &Hit) {
         let Batch { pass, sampler, columns: BatchColumns { paths, segments, queues, .. }, .. } = batch;
-        let (scene, row) = (pass.pixels.scene, path as usize);
-        let mut state = segments.state(turn as usize);
+        let (scene, row) = (pass.pixels.scene, place.path as usize);
+        let mut state = segments.state(place.hit as usize);
         let ray = state.ray.ray;
         let surface = scene.interaction(hit, scene.world().surface(&ray, hit));
         if scene.is_interface(hit, &ray) {
             state.ray.ray = surface.spawn_ray(ray.d);
-            queues.next.push(path, &state);
+            queues.next.push(place.path, &state);
             return;
         }
         paths.resume(sampler, row, pass.pixels.index);
         let (u, point) = (sampler.get_2d(), surface.light_context());
-        let (ray, l) = self.sample((&point, surface.surface.wo), u, &paths.lambda(row));
+        let (shadow, l) = self.sample(&point, surface.surface.wo, u, &paths.lambda(row));
         if !l.is_black() {
-            queues.shadows[0].push(path, l, &ray, self.max_distance());
+            queues.shadows[0].push(place.path, l, &shadow);
         }
     }
 }

@@ -23,6 +23,14 @@ pub(super) struct AreaLights {
     emission: Vec<u32>,
 }
 
+/// Lights of the table, one for each lane.
+pub(super) struct Emitters<R: Real> {
+    pub shape: FlatShape<R>,
+    emission: R::Int,
+    /// The scale of the emission.
+    scale: R,
+}
+
 impl AreaLights {
     /// The row of lights that are not in the table.
     const NONE: u32 = u32::MAX;
@@ -83,9 +91,9 @@ impl AreaLights {
         (R::Int::select(is_row, rows, R::Int::splat(0)), is_row)
     }
 
-    /// The shapes of these rows, and the scales of their emission.
+    /// The lights of these rows.
     #[inline(always)]
-    pub fn shapes<R: Real>(&self, rows: R::Int) -> (FlatShape<R>, R) {
+    pub fn emitters<R: Real>(&self, rows: R::Int) -> Emitters<R> {
         let mut numbers = [R::zero(); NUMBERS];
         let row = rows.to_array()[0];
         if rows.eq(R::Int::splat(row)).all() {
@@ -106,33 +114,33 @@ impl AreaLights {
             n: vector(9),
             is_triangle: numbers[13].gt(R::zero()),
         };
-        (shape, numbers[12])
+        Emitters { emission: R::Int::gather(&self.emission, rows), shape, scale: numbers[12] }
     }
 
-    /// The radiance of these rows, of which shapes and scales are given, along `w`, in the lanes of
-    /// a mask; zero elsewhere.
+    /// The radiance of lights at points of normal `n` along `w`, in the lanes of a mask; zero
+    /// elsewhere.
     #[inline(always)]
     pub fn radiance<R: Real>(
         &self,
         scene: &Scene,
-        (rows, scale): (R::Int, R),
-        (n, w): (Normal3<R>, Vector3<R>),
+        emitters: &Emitters<R>,
+        n: Normal3<R>,
+        w: Vector3<R>,
         lambda: &SampledWavelengths<R>,
         mask: R::Mask,
     ) -> SampledSpectrum<R> {
-        let ids = R::Int::gather(&self.emission, rows);
         let is_outside = n.dot(w).ge(R::zero());
         let mut radiance = SampledSpectrum::splat(R::zero());
         let mut left = mask;
         while left.any() {
-            let id = ids.to_array()[left.bits().trailing_zeros() as usize % R::LANES];
-            let same = left & ids.eq(R::Int::splat(id));
+            let id = emitters.emission.to_array()[left.bits().trailing_zeros() as usize % R::LANES];
+            let same = left & emitters.emission.eq(R::Int::splat(id));
             left = left & !same;
             let emission = &scene.emissions()[id as usize];
             let emits = if emission.two_sided { same } else { same & is_outside };
             let l = emission.radiance.spectrum.sample(lambda);
             radiance = SampledSpectrum::select(emits, l, radiance);
         }
-        radiance * scale
+        radiance * emitters.scale
     }
 }

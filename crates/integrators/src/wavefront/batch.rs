@@ -14,14 +14,14 @@ use super::begin::Begin;
 use super::emission::{Emit, Escape, LightHit};
 use super::exits::Exits;
 use super::finish::{Finish, finish_some, finish_with_first_hits};
-use super::groups::{Grouping, Groups};
+use super::groups::{Group, Grouping, Groups};
 use super::lights::Samples;
 use super::materials::Shading;
 use super::media::MediumVertices;
 use super::normals::Perturb;
 use super::pass::Pass;
 use super::paths::Paths;
-use super::queues::Queues;
+use super::queues::{PathHit, Queues};
 use super::segments::{Besides, Segments};
 use super::shade::Shade;
 use super::stage::{Algorithm, Stage};
@@ -64,6 +64,16 @@ pub(super) struct BatchColumns {
     pub medium_vertices: MediumVertices,
     /// Where paths leave bodies.
     pub exits: Exits,
+}
+
+/// The way of a hit.
+enum Way {
+    /// Its path ends there.
+    Ends,
+    /// It is shaded by itself.
+    Scalar,
+    /// It is shaded in lanes, with the others of a material.
+    Lanes(MaterialId),
 }
 
 /// A vertex of one path.
@@ -113,8 +123,7 @@ impl<'a> Batch<'a> {
     /// one by one (`queues.scalar`). Adds the light from infinity, and that of the lights that
     /// shine in lanes. Paths of `max_depth` scattering events end where no more than this happens.
     pub(super) fn classify(&mut self, max_depth: u32, direct: &DirectLighting) {
-        let scene = self.pass.pixels.scene;
-        self.columns.lanes.clear(scene.materials().len());
+        self.columns.lanes.clear(self.pass.pixels.scene.materials().len());
         self.columns.lit.clear();
         self.columns.escaped.clear();
         let mut left = std::mem::take(&mut self.columns.left);
@@ -127,36 +136,39 @@ impl<'a> Batch<'a> {
             escaped: &mut self.columns.escaped,
             left: &mut left,
         });
-        for turn in left.drain(..) {
-            let (row, geometry) =
-                (self.columns.segments.rows[turn as usize], self.columns.hits.geometry[turn as usize]);
-            let entry = &scene.geometries()[geometry as usize];
-            let light = match entry.first_light {
-                Some(first) => self.pass.area_lights.light_of(first, &self.columns.hits, turn),
-                None => None,
-            };
-            if let Some(LightId(light)) = light {
-                self.columns.lit.push(LightHit { row, turn, light });
-            }
-            let is_emitted = entry.first_light.is_none() || light.is_some();
-            let is_last = self.columns.segments.depth[turn as usize] == max_depth;
-            if is_emitted
-                && is_last
-                && scene.materials()[entry.material.0 as usize].material.stops(scene.textures())
-            {
-                continue;
-            }
-            let material =
-                if is_emitted && !is_last { self.material_at(turn, entry) } else { entry.material };
-            if is_emitted && !is_last && self.pass.materials.shading(material) != Shading::Scalar {
-                self.columns.lanes.push(material, turn, row);
-            } else {
-                self.columns.queues.scalar.push((row, turn));
+        for hit in left.drain(..) {
+            let place = PathHit { path: self.columns.segments.rows[hit as usize], hit };
+            match self.way(place, max_depth) {
+                Way::Ends => (),
+                Way::Scalar => self.columns.queues.scalar.push(place),
+                Way::Lanes(material) => self.columns.lanes.push(material, place),
             }
         }
         self.columns.left = left;
         self.emit(direct);
         self.escape(direct);
+    }
+
+    /// The way of a hit whose group depends on more than its geometry. Lists it if it is of a light
+    /// that shines in lanes.
+    fn way(&mut self, place: PathHit, max_depth: u32) -> Way {
+        let (scene, hit) = (self.pass.pixels.scene, place.hit as usize);
+        let entry = &scene.geometries()[self.columns.hits.geometry[hit] as usize];
+        if let Some(first) = entry.first_light {
+            match self.pass.area_lights.light_of(first, &self.columns.hits, place.hit) {
+                Some(LightId(light)) => self.columns.lit.push(LightHit { place, light }),
+                None => return Way::Scalar,
+            }
+        }
+        if self.columns.segments.depth[hit] == max_depth {
+            let material = &scene.materials()[entry.material.0 as usize].material;
+            return if material.stops(scene.textures()) { Way::Ends } else { Way::Scalar };
+        }
+        let material = self.material_at(place.hit, entry);
+        match self.pass.materials.shading(material) {
+            Shading::Scalar => Way::Scalar,
+            Shading::Lanes | Shading::LanesWithFootprint => Way::Lanes(material),
+        }
     }
 
     /// The material at a hit on a geometry, after the choices of mixes.
@@ -203,7 +215,8 @@ impl<'a> Batch<'a> {
     pub(super) fn shade_in_lanes(&mut self, algorithm: Algorithm) {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
-        for (id, turns, rows) in lanes.iter() {
+        for (id, group) in lanes.iter() {
+            let turns = &group.turns;
             let BatchColumns { segments, hits, points, .. } = &mut *self.columns;
             let entry = &scene.materials()[id.0 as usize];
             if entry.bump_map.is_some() {
@@ -220,25 +233,21 @@ impl<'a> Batch<'a> {
                     points,
                 });
             }
-            match &entry.material {
-                Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::DiffuseTransmission(material) => {
-                    self.dispatch(algorithm, (id, material), turns, rows);
-                }
-                Material::Conductor(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Dielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::ThinDielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::CoatedDiffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::CoatedConductor(material) => {
-                    self.dispatch(algorithm, (id, material), turns, rows);
-                }
-                Material::OpenPbr(material) => self.dispatch(algorithm, (id, &**material), turns, rows),
-                Material::Hair(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Measured(material) => self.dispatch(algorithm, (id, material), turns, rows),
-                Material::Subsurface(body) => self.shade_body(algorithm, (id, body), (turns, rows)),
-                Material::Mix(_) | Material::Interface => {
-                    unreachable!("invariant: LaneMaterials has all others in no lanes")
-                }
+            macro_rules! shade {
+                ($($kind:ident)*) => {
+                    match &entry.material {
+                        $(Material::$kind(material) => self.dispatch(algorithm, id, material, group),)*
+                        Material::OpenPbr(material) => self.dispatch(algorithm, id, &**material, group),
+                        Material::Subsurface(body) => self.shade_body(algorithm, id, body, group),
+                        Material::Mix(_) | Material::Interface => {
+                            unreachable!("invariant: LaneMaterials has all others in no lanes")
+                        }
+                    }
+                };
+            }
+            shade! {
+                Diffuse DiffuseTransmission Conductor Dielectric ThinDielectric CoatedDiffuse
+                CoatedConductor Hair Measured
             }
         }
         self.columns.lanes = lanes;
@@ -248,9 +257,9 @@ impl<'a> Batch<'a> {
     pub(super) fn dispatch<M: MaterialModel>(
         &mut self,
         algorithm: Algorithm,
-        (id, material): (MaterialId, &M),
-        turns: &[u32],
-        rows: &[u32],
+        id: MaterialId,
+        material: &M,
+        group: &Group,
     ) {
         let BatchColumns { segments, points, hits, paths, queues, light_samples, .. } = &mut *self.columns;
         let with_footprint = self.pass.materials.shading(id) == Shading::LanesWithFootprint;
@@ -260,8 +269,8 @@ impl<'a> Batch<'a> {
             with_footprint,
             points,
             hits,
-            turns,
-            rows,
+            turns: &group.turns,
+            rows: &group.rows,
             segments,
             paths,
             queues,
@@ -270,12 +279,12 @@ impl<'a> Batch<'a> {
         self.pass.instruction_set.dispatch_large(Shade { material, stage });
     }
 
-    /// Calls `shade` with each path whose hit is not shaded in lanes, its turn, and the hit.
-    pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, (u32, u32), &Hit)) {
+    /// Calls `shade` with each hit that is not shaded in lanes.
+    pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, PathHit, &Hit)) {
         let mut scalar = std::mem::take(&mut self.columns.queues.scalar);
-        for (path, turn) in scalar.drain(..) {
-            let hit = self.columns.hits.get(turn as usize).expect("invariant: paths without hit have ended");
-            shade(self, (path, turn), &hit);
+        for place in scalar.drain(..) {
+            let hit = self.columns.hits.get(place.hit as usize);
+            shade(self, place, &hit.expect("invariant: paths without hit have ended"));
         }
         self.columns.queues.scalar = scalar;
     }
@@ -284,14 +293,14 @@ impl<'a> Batch<'a> {
     /// `None` where the ray passes through the surface.
     pub(super) fn vertex(
         &mut self,
-        (path, turn): (u32, u32),
+        place: PathHit,
         hit: &Hit,
         direct: &DirectLighting,
     ) -> Option<Vertex<'a>> {
         let Self { pass, sampler, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
         let &PixelSamples { scene, view, index, .. } = pass.pixels;
-        let row = path as usize;
-        let mut state = segments.state(turn as usize);
+        let row = place.path as usize;
+        let mut state = segments.state(place.hit as usize);
         let mut lambda = paths.lambda(row);
         let mut surface = scene.interaction(hit, scene.world().surface(&state.ray.ray, hit));
         if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
@@ -301,7 +310,7 @@ impl<'a> Batch<'a> {
         paths.resume(sampler, row, index);
         let Some(bsdf) = scene.bsdf(view, &mut surface, &state.ray, &mut lambda, sampler) else {
             state.pass_through(&surface, hit.t);
-            queues.next.push(path, &state);
+            queues.next.push(place.path, &state);
             return None;
         };
         paths.set_lambda(row, &lambda);

@@ -13,7 +13,8 @@ use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 
 use super::batch::{Batch, BatchColumns};
 use super::exits::Exits;
-use super::queues::Entering;
+use super::groups::Group;
+use super::queues::{Entering, PathHit};
 use super::shade::Shade;
 use super::stage::{Algorithm, Stage};
 use crate::Tracer;
@@ -38,28 +39,29 @@ impl MaterialModel for Leaving {
 }
 
 impl Batch<'_> {
-    /// Shades hits on a body, of which indices and paths are given.
+    /// Shades hits on a body.
     pub(super) fn shade_body(
         &mut self,
         algorithm: Algorithm,
-        (id, body): (MaterialId, &SubsurfaceMaterial),
-        (turns, rows): (&[u32], &[u32]),
+        id: MaterialId,
+        body: &SubsurfaceMaterial,
+        group: &Group,
     ) {
         let Algorithm::Path(path) = algorithm else {
             unreachable!("invariant: LaneMaterials has bodies for path tracing alone")
         };
         let boundary =
             DielectricMaterial { eta: Spectrum::Constant(body.table.eta()), roughness: body.roughness };
-        self.dispatch(Algorithm::Boundaries(path), (id, &boundary), turns, rows);
+        self.dispatch(Algorithm::Boundaries(path), id, &boundary, group);
         let mut entering = std::mem::take(&mut self.columns.queues.entering);
         let mut exits = std::mem::take(&mut self.columns.exits);
         exits.start(entering.rows.len());
-        let mut places = turns.iter();
-        for (i, (&row, &turn)) in entering.rows.iter().zip(&entering.turns).enumerate() {
+        let mut points = group.turns.iter();
+        for (i, (&path, &hit)) in entering.rows.iter().zip(&entering.turns).enumerate() {
             // Both are in the same order.
-            while places.next().is_some_and(|&other| other != turn) {}
-            let place = turns.len() - places.len() - 1;
-            self.follow(body, (row, turn as usize, place), entering.beta.row(i), &mut exits);
+            while points.next().is_some_and(|&other| other != hit) {}
+            let point = group.turns.len() - points.len() - 1;
+            self.follow(body, PathHit { path, hit }, point, entering.beta.row(i), &mut exits);
         }
         let Exits { segments, points, turns } = &exits;
         let BatchColumns { hits, paths, queues, light_samples, .. } = &mut *self.columns;
@@ -85,19 +87,20 @@ impl Batch<'_> {
         self.columns.queues.entering = entering;
     }
 
-    /// Leads a path that has entered a body out of it; row, turn and place of its point are given.
+    /// Leads a path that has entered a body out of it; the index of its surface point is given.
     fn follow(
         &mut self,
         body: &SubsurfaceMaterial,
-        (path, turn, place): (u32, usize, usize),
+        place: PathHit,
+        point: usize,
         beta: SampledSpectrum,
         exits: &mut Exits,
     ) {
         let Self { pass, sampler, stats, columns } = self;
         let BatchColumns { paths, segments, hits, points, .. } = &mut **columns;
-        let (scene, row) = (pass.pixels.scene, path as usize);
+        let (scene, row) = (pass.pixels.scene, place.path as usize);
         let lambda = paths.lambda(row);
-        let point = points.get::<f32>(place);
+        let (point, turn) = (points.get::<f32>(point), place.hit as usize);
         let ray = segments.ray(turn);
         let material = scene.geometries()[hits.geometry[turn] as usize].material;
         let entry = Entry { p: point.p, n: point.n, ns: point.ns, time: ray.time, material };
@@ -111,10 +114,10 @@ impl Batch<'_> {
         state.eta_scale = segments.eta_scale[turn] * (body.boundary.eta * body.boundary.eta);
         paths.resume(sampler, row, pass.pixels.index);
         let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
-        let under = (Body::Subsurface(&body), -entry.ns);
-        if let Some(exit) = state.leave_body(&mut tracer, &entry, under, &lambda) {
+        let under = Body::Subsurface(&body);
+        if let Some(exit) = state.leave_body(&mut tracer, &entry, under, -entry.ns, &lambda) {
             paths.dimension[row] = sampler.dimension();
-            exits.push(path, &state, &exit.surface, depth);
+            exits.push(place.path, &state, &exit.surface, depth);
         }
     }
 }

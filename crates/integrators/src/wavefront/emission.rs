@@ -11,15 +11,13 @@ use spectrum::SampledSpectrum;
 use super::columns::Rows;
 use super::pass::Pass;
 use super::paths::Paths;
+use super::queues::PathHit;
 use super::segments::Segments;
 use crate::transport::direct::{DirectLighting, power_heuristic};
 
 /// A hit of a light of the table.
 pub(super) struct LightHit {
-    /// The path.
-    pub row: u32,
-    /// The index of its hit.
-    pub turn: u32,
+    pub place: PathHit,
     /// The light.
     pub light: u32,
 }
@@ -51,10 +49,10 @@ impl Emit<'_, '_> {
     fn add<R: Real>(&mut self, found: &[LightHit]) {
         let [mut x, mut y] = [[0.0; MAX_LANES]; 2];
         let [mut queue, mut turns, mut lights] = [[0; MAX_LANES]; 3];
-        for (lane, &LightHit { row, turn, light }) in found.iter().enumerate() {
-            let [u, v] = [&self.hits.uv[0], &self.hits.uv[1]].each(|column| column[turn as usize]);
+        for (lane, &LightHit { place: PathHit { path, hit }, light }) in found.iter().enumerate() {
+            let [u, v] = [&self.hits.uv[0], &self.hits.uv[1]].each(|column| column[hit as usize]);
             (x[lane], y[lane]) = (u, v);
-            (queue[lane], turns[lane], lights[lane]) = (row, turn, light);
+            (queue[lane], turns[lane], lights[lane]) = (path, hit, light);
         }
         let rows = Rows::<R>::first(&queue[..found.len()]);
         let turns = Rows::<R>::first(&turns[..found.len()]);
@@ -64,10 +62,10 @@ impl Emit<'_, '_> {
         let (Pass { area_lights, pixels, .. }, segments, paths) =
             (self.pass, self.segments, &mut *self.paths);
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
-        let (shapes, scale) = area_lights.shapes::<R>(table_rows);
+        let emitters = area_lights.emitters::<R>(table_rows);
         let lambda = paths.lambda_lanes(rows);
         let wo = -segments.direction.vector(turns);
-        let l = area_lights.radiance(pixels.scene, (table_rows, scale), (shapes.n, wo), &lambda, active);
+        let l = area_lights.radiance(pixels.scene, &emitters, emitters.shape.n, wo, &lambda, active);
         let is_lit = active & !l.is_black();
 
         let pdf = R::gather(&segments.pdf, turns.indices);
@@ -76,7 +74,7 @@ impl Emit<'_, '_> {
         if is_weighted.any() {
             let context = segments.last_vertex(turns);
             let pmf = self.direct.lights().pmf_lanes(&context, lights, is_weighted);
-            let other = pmf * shapes.pdf_from(&context, uv);
+            let other = pmf * emitters.shape.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
         }
         let beta = segments.beta.get::<R>(turns);
@@ -126,7 +124,7 @@ impl Kernel for Escape<'_, '_> {
                     // Light samples leave these lights out, so that their light counts fully.
                     Light::UniformInfinite(light) => l += light.radiance.sample(&lambda),
                     Light::ImageInfinite(sky) => {
-                        let weight = sky_weight(direct, (id, sky), segments, (turns, w));
+                        let weight = sky_weight(direct, id, sky, segments, turns, w);
                         l += sky.le_at_rest(w, &lambda) * weight;
                     }
                     _ => unreachable!("invariant: other lights are not infinite"),
@@ -142,9 +140,11 @@ impl Kernel for Escape<'_, '_> {
 #[inline(always)]
 fn sky_weight<R: Real>(
     direct: &DirectLighting,
-    (LightId(id), sky): (LightId, &ImageInfiniteLight),
+    LightId(id): LightId,
+    sky: &ImageInfiniteLight,
     segments: &Segments,
-    (turns, w): (Rows<R>, Vector3<R>),
+    turns: Rows<R>,
+    w: Vector3<R>,
 ) -> R {
     let pdf = R::gather(&segments.pdf, turns.indices);
     let is_weighted = turns.active & pdf.gt(R::zero());

@@ -13,6 +13,7 @@ use super::media::medium;
 use super::medium_vertices::ScatterInMedia;
 use super::segments::Segments;
 use super::shadows::Passages;
+use crate::transport::ShadowRay;
 use crate::transport::media::{Arrival, FlightEnd, Passage};
 use crate::transport::path_state::PathState;
 use crate::{Path, Tracer};
@@ -112,11 +113,11 @@ impl Batch<'_> {
                 let varies = medium.is_some_and(|MediumId(id)| pixels.scene.media()[id as usize].varies());
                 // Within homogeneous media no collisions are chosen.
                 let numbers = if meets_interfaces || varies { tracer.two_numbers() } else { [0.0; 2] };
-                let (ray, t_max) = (rays.ray(shadow), rays.t_max(shadow));
+                let shadow = ShadowRay { ray: rays.ray(shadow), t_max: rays.t_max(shadow) };
                 if meets_interfaces {
-                    tracer.transmittance((&ray, t_max), medium, &lambda, &heroes, numbers)
+                    tracer.passage(&shadow, medium, &lambda, &heroes, numbers)
                 } else {
-                    tracer.transmittance_within((&ray, t_max), medium, &lambda, &heroes, numbers)
+                    tracer.passage_within(&shadow, medium, &lambda, &heroes, numbers)
                 }
             };
             if let Some(passage) = passage {

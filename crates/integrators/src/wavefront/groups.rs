@@ -6,6 +6,7 @@ use scene::material::MaterialId;
 
 use super::columns::Rows;
 use super::materials::LaneMaterials;
+use super::queues::PathHit;
 use super::segments::Segments;
 
 /// Hits of a batch, grouped by material.
@@ -19,10 +20,10 @@ pub(super) struct Groups {
 
 /// The hits of a material.
 #[derive(Default)]
-struct Group {
+pub(super) struct Group {
     /// Their indices, and their paths.
-    turns: Vec<u32>,
-    rows: Vec<u32>,
+    pub turns: Vec<u32>,
+    pub rows: Vec<u32>,
 }
 
 impl Groups {
@@ -48,18 +49,15 @@ impl Groups {
 
     /// Adds a hit.
     #[inline]
-    pub fn push(&mut self, material: MaterialId, turn: u32, row: u32) {
+    pub fn push(&mut self, material: MaterialId, place: PathHit) {
         let Group { turns, rows } = self.group(material);
-        turns.push(turn);
-        rows.push(row);
+        turns.push(place.hit);
+        rows.push(place.path);
     }
 
-    /// The groups: material, indices of the hits, and their paths.
-    pub fn iter(&self) -> impl Iterator<Item = (MaterialId, &[u32], &[u32])> {
-        self.used.iter().map(|&material| {
-            let Group { turns, rows } = &self.groups[material.0 as usize];
-            (material, &turns[..], &rows[..])
-        })
+    /// The groups, with their materials.
+    pub fn iter(&self) -> impl Iterator<Item = (MaterialId, &Group)> {
+        self.used.iter().map(|&material| (material, &self.groups[material.0 as usize]))
     }
 }
 

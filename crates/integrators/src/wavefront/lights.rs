@@ -9,7 +9,9 @@ use scene::Interfaces;
 use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
+use super::numbers::SampleNumbers;
 use super::pass::Pass;
+use crate::transport::ShadowRay;
 use crate::transport::direct::DirectLighting;
 
 /// Light samples, before their visibility is tested.
@@ -43,55 +45,50 @@ impl<R: Real> LightLanes<R> {
         Self { valid, l, wi, pdf, p, n: zero, is_delta: is_not, is_distant: is, passes: is }
     }
 
-    /// The shadow rays from points with geometric normals, and their ends.
+    /// The shadow rays from points with geometric normals.
     #[inline(always)]
-    pub fn shadow_rays(&self, p: Point3Error<R>, n: Normal3<R>, time: R) -> (Ray<R>, R) {
+    pub fn shadow_rays(&self, p: Point3Error<R>, n: Normal3<R>, time: R) -> ShadowRay<R> {
         let target = Ray::between(p, n, self.p, self.n, time);
         let away = offset_ray_origin(p, n, self.wi);
         let o = Vec3::select(self.is_distant, away, target.o);
         let d = Vec3::select(self.is_distant, self.wi, target.d);
         let t_max = R::select(self.is_distant, R::splat(f32::INFINITY), R::splat(Ray::SHADOW_END));
-        (Ray::new(o, d, time), t_max)
+        ShadowRay { ray: Ray::new(o, d, time), t_max }
     }
 }
 
-/// One sample of `light` for each lane of `active`; without it, of a light chosen by `u`. Only a
-/// given light is sampled in directions that are left to the BSDF otherwise.
-#[inline(always)]
-pub(super) fn sample<R: Real>(
-    (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
-    light: Option<LightId>,
-    context: &LightSampleContext<R>,
-    numbers: (R, Vec2<R>),
-    lambda: &SampledWavelengths<R>,
-    active: R::Mask,
-) -> LightLanes<R> {
-    draw((pass, direct, &mut *samples), light, context, numbers, lambda, active);
-    samples.lanes()
+/// The light that is sampled.
+#[derive(Clone, Copy)]
+pub(super) struct LightSampling<'a, 'b> {
+    pub pass: &'b Pass<'a>,
+    pub direct: &'b DirectLighting,
+    /// A given light, also in directions that are left to the BSDF otherwise; without it, a light
+    /// is chosen in each lane.
+    pub light: Option<LightId>,
 }
 
-/// Draws the same samples, and leaves them in arrays.
-#[inline(always)]
-pub(super) fn draw<R: Real>(
-    (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
-    light: Option<LightId>,
-    context: &LightSampleContext<R>,
-    (u, u_light): (R, Vec2<R>),
-    lambda: &SampledWavelengths<R>,
-    active: R::Mask,
-) {
-    pass.instruction_set.dispatch_large(&mut Sample {
-        pass,
-        direct,
-        light,
-        samples,
-        context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
-        time: context.time.to_array(),
-        u: [u, u_light.x, u_light.y].each(R::to_array),
-        lambda: lambda.lambda().each(R::to_array),
-        lambda_pdf: lambda.pdf().0.each(R::to_array),
-        active: active.bits(),
-    });
+impl LightSampling<'_, '_> {
+    /// Draws a sample for each lane of `active`, and leaves them in arrays.
+    #[inline(always)]
+    pub fn draw<R: Real>(
+        self,
+        samples: &mut Samples,
+        context: &LightSampleContext<R>,
+        SampleNumbers { uc, u }: SampleNumbers<R>,
+        lambda: &SampledWavelengths<R>,
+        active: R::Mask,
+    ) {
+        self.pass.instruction_set.dispatch_large(&mut Sample {
+            sampling: self,
+            samples,
+            context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
+            time: context.time.to_array(),
+            u: [uc, u.x, u.y].each(R::to_array),
+            lambda: lambda.lambda().each(R::to_array),
+            lambda_pdf: lambda.pdf().0.each(R::to_array),
+            active: active.bits(),
+        });
+    }
 }
 
 /// Light samples in arrays, which are made once.
@@ -169,9 +166,7 @@ impl Samples {
 
 /// Samples lights; has all that samples depend on, in arrays.
 struct Sample<'a, 'b> {
-    pass: &'b Pass<'a>,
-    direct: &'b DirectLighting,
-    light: Option<LightId>,
+    sampling: LightSampling<'a, 'b>,
     /// Changed where lanes have a sample.
     samples: &'b mut Samples,
     context: [[[f32; MAX_LANES]; 3]; 4],
@@ -191,7 +186,8 @@ impl Kernel for &mut Sample<'_, '_> {
     #[inline(always)]
     fn run<R: Real>(self) {
         self.samples.masks = [0; 4];
-        let Pass { area_lights, pixels, .. } = self.pass;
+        let LightSampling { pass, direct, light } = self.sampling;
+        let Pass { area_lights, pixels, .. } = pass;
         let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
         let [u, x, y] = [0, 1, 2].each(|i| R::load(&self.u[i]));
@@ -199,17 +195,17 @@ impl Kernel for &mut Sample<'_, '_> {
         let [lambda, lambda_pdf] =
             [&self.lambda, &self.lambda_pdf].each(|numbers| [0, 1, 2, 3].each(|i| R::load(&numbers[i])));
         let lambda = SampledWavelengths::new(lambda, lambda_pdf);
-        let (lights, pmf, chosen) = match self.light {
+        let (lights, pmf, chosen) = match light {
             Some(LightId(light)) => (R::Int::splat(light), R::one(), active),
-            None => self.direct.lights().sample_lanes(&context, u, active),
+            None => direct.lights().sample_lanes(&context, u, active),
         };
         let (rows, in_lanes) = area_lights.rows::<R>(lights, chosen);
         if in_lanes.any() {
-            let (shapes, scale) = area_lights.shapes::<R>(rows);
-            let (sample, valid) = shapes.sample_from(&context, Vec2::new(x, y));
+            let emitters = area_lights.emitters::<R>(rows);
+            let (sample, valid) = emitters.shape.sample_from(&context, Vec2::new(x, y));
             let (wi, is_apart) = (sample.p.p - p).normalize_masked();
             let mask = in_lanes & valid & is_apart;
-            let l = area_lights.radiance(pixels.scene, (rows, scale), (sample.n, -wi), &lambda, mask);
+            let l = area_lights.radiance(pixels.scene, &emitters, sample.n, -wi, &lambda, mask);
             let is_lit = (mask & !l.is_black()).bits();
             // Interfaces occlude none of the lights that have a surface.
             let samples = &mut *self.samples;
@@ -227,7 +223,7 @@ impl Kernel for &mut Sample<'_, '_> {
             let lane = others.bits().trailing_zeros() as usize;
             let id = LightId(ids[lane]);
             let same = others & lights.eq(R::Int::splat(id.0));
-            if self.sample_at_rest::<R>(id, (p, Vec2::new(x, y)), &lambda, same) {
+            if self.sample_at_rest::<R>(id, p, Vec2::new(x, y), &lambda, same) {
                 others = others & !same;
             } else {
                 self.sample_one(id, lane);
@@ -252,11 +248,13 @@ impl Sample<'_, '_> {
     fn sample_at_rest<R: Real>(
         &mut self,
         id: LightId,
-        (from, u): (Point3<R>, Vec2<R>),
+        from: Point3<R>,
+        u: Vec2<R>,
         lambda: &SampledWavelengths<R>,
         mask: R::Mask,
     ) -> bool {
-        let (light, is_chosen) = (self.pass.pixels.scene.light(id), self.light.is_none());
+        let LightSampling { pass, direct, light } = self.sampling;
+        let (light, is_chosen) = (pass.pixels.scene.light(id), light.is_none());
         let (l, wi, pdf, has_light) = match light.row() {
             Light::ImageInfinite(sky) if sky.is_at_rest() => sky.sample_at_rest(u, lambda, is_chosen),
             // Left to the BSDF.
@@ -277,7 +275,7 @@ impl Sample<'_, '_> {
             _ => return false,
         };
         let mask = mask & has_light;
-        let passes = self.direct.interfaces(light) == Interfaces::Pass;
+        let passes = direct.interfaces(light) == Interfaces::Pass;
         let is = [true, light.is_delta(), !matches!(light.row(), Light::Point(_)), passes];
         let samples = &mut *self.samples;
         for (lanes, is) in samples.masks.iter_mut().zip(is) {
@@ -291,15 +289,16 @@ impl Sample<'_, '_> {
 
     /// Samples the light of one lane.
     fn sample_one(&mut self, id: LightId, lane: usize) {
-        let (scene, bit) = (self.pass.pixels.scene, 1 << lane);
+        let LightSampling { pass, direct, light } = self.sampling;
+        let (scene, bit) = (pass.pixels.scene, 1 << lane);
         let [_, x, y] = [0, 1, 2].each(|i: usize| self.u[i][lane]);
         let lambda = [0, 1, 2, 3].each(|i: usize| self.lambda[i][lane]);
         let lambda = SampledWavelengths::new(lambda, [0, 1, 2, 3].each(|i: usize| self.lambda_pdf[i][lane]));
-        let (context, is_chosen) = (self.context(lane), self.light.is_none());
+        let (context, is_chosen) = (self.context(lane), light.is_none());
         let sample = scene.sample_light(id, &context, Vec2::new(x, y), &lambda, is_chosen);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
         let light = scene.light(id);
-        let passes = self.direct.interfaces(light) == Interfaces::Pass;
+        let passes = direct.interfaces(light) == Interfaces::Pass;
         let is = [true, light.is_delta(), p.is_none(), passes];
         let samples = &mut *self.samples;
         for (i, is) in is.into_iter().enumerate() {

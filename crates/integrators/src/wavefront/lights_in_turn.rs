@@ -8,9 +8,8 @@ use scene::light::{Light, LightId};
 use spectrum::SampledSpectrum;
 
 use super::all_lights::AllLights;
-use super::lights::{self, LightLanes};
-use super::numbers::{draw_2d, draw_two};
-use super::shadows::Shadow;
+use super::lights::{LightLanes, LightSampling};
+use super::numbers::{SampleNumbers, draw_2d, draw_two};
 use super::stage::{Request, SpecularSamples, Stage, Vertices};
 use crate::transport::direct::sample_ambient;
 use crate::transport::path_state::PathState;
@@ -34,7 +33,7 @@ pub(super) struct LightsInTurn<'b, R: Real> {
     /// The next dimension of the lanes that are not lit.
     unlit: R::Int,
     /// Numbers of samples that reflect and that transmit.
-    numbers: [(R, Vec2<R>); 2],
+    numbers: [SampleNumbers<R>; 2],
     /// Whether rays that are transmitted come next.
     transmits: bool,
 }
@@ -60,7 +59,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             light: None,
             sum: stage.paths.l.get::<R>(vertices.rows),
             unlit: vertices.address.dimension,
-            numbers: [(R::zero(), Vec2::splat(R::zero())); 2],
+            numbers: [SampleNumbers { uc: R::zero(), u: Vec2::splat(R::zero()) }; 2],
             transmits: true,
         };
         let request = state.advance(stage, vertices);
@@ -109,12 +108,11 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
                 (LightLanes::from_afar(l, wi, pdf, *lit), true)
             }
             _ => {
-                let sampling = (&stage.pass, direct, &mut *stage.light_samples);
-                let numbers = (R::zero(), u);
-                (
-                    lights::sample(sampling, Some(id), &vertices.contexts(), numbers, &vertices.lambda, *lit),
-                    false,
-                )
+                let sampling = LightSampling { pass: &stage.pass, direct, light: Some(id) };
+                let numbers = SampleNumbers { uc: R::zero(), u };
+                let (context, lambda) = (vertices.contexts(), &vertices.lambda);
+                sampling.draw(stage.light_samples, &context, numbers, lambda, *lit);
+                (stage.light_samples.lanes(), false)
             }
         }
     }
@@ -136,11 +134,10 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
             if !self.lights.casts_shadows || is_ambient {
                 self.sum = SampledSpectrum::select(valid, self.sum + l, self.sum);
             } else {
-                let (ray, t_max) = light.shadow_rays(p, n, time);
-                let shadow = Shadow { l, ray, t_max };
+                let shadow = light.shadow_rays(p, n, time);
                 let [stopped, passing] = &mut stage.queues.shadows;
-                stopped.append(rows, valid & !light.passes, &shadow);
-                passing.append(rows, valid & light.passes, &shadow);
+                stopped.append(rows, valid & !light.passes, l, &shadow);
+                passing.append(rows, valid & light.passes, l, &shadow);
             }
         }
         self.advance(stage, vertices)

@@ -138,7 +138,8 @@ impl<R: Real> VerticesInMedia<R> {
     pub fn new(
         media: &LaneMedia,
         columns: &MediaColumns,
-        (turns, geometries): (Rows<R>, &[u32]),
+        turns: Rows<R>,
+        geometries: &[u32],
         terminated: R::Mask,
     ) -> Self {
         let (before, r_u) = columns.at(turns);
@@ -160,7 +161,7 @@ impl<R: Real> VerticesInMedia<R> {
 
     /// What segments that leave along `wi` have, in directions of the density `pdf`.
     #[inline(always)]
-    pub fn leave(&self, (wi, n): (Vector3<R>, Normal3<R>), pdf: R) -> SegmentInMedia<R> {
+    pub fn leave(&self, wi: Vector3<R>, n: Normal3<R>, pdf: R) -> SegmentInMedia<R> {
         SegmentInMedia { medium: self.towards(wi, n), r_u: self.r_u, r_l: self.r_u / pdf }
     }
 }

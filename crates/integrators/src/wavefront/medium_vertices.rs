@@ -7,7 +7,7 @@ use scattering::HenyeyGreenstein;
 use scene::light::LightSampleContext;
 
 use super::columns::Rows;
-use super::lights::{self, Samples};
+use super::lights::{LightSampling, Samples};
 use super::media::{MediumVertices, SegmentInMedia};
 use super::numbers::VertexNumbers;
 use super::pass::Pass;
@@ -15,7 +15,7 @@ use super::path_vertices::{Roulette, play};
 use super::paths::Paths;
 use super::queues::Queues;
 use super::segments::{Segment, Segments};
-use super::shadows::{PassageLanes, Shadow};
+use super::shadows::PassageLanes;
 use crate::Path;
 
 /// Scatters paths at vertices in media.
@@ -61,18 +61,18 @@ impl ScatterInMedia<'_, '_> {
         let numbers = VertexNumbers::draw_in_media(&pass, &mut address);
 
         let lambda = self.paths.lambda_lanes(rows);
-        let sampling = (&pass, &algorithm.direct, &mut *self.light_samples);
-        let light = lights::sample(sampling, None, &context, numbers.light, &lambda, rows.active);
+        let sampling = LightSampling { pass: &pass, direct: &algorithm.direct, light: None };
+        sampling.draw(self.light_samples, &context, numbers.light, &lambda, rows.active);
+        let light = self.light_samples.lanes::<R>();
         let value = phase.p(wo, light.wi);
         let l = beta * (light.l * value) / light.pdf;
-        let (ray, t_max) = light.shadow_rays(p, n, time);
+        let shadow = light.shadow_rays(p, n, time);
         let ratio = R::select(light.is_delta, R::zero(), value / light.pdf);
         let passage = PassageLanes { r_u, ratio, medium, dimension: numbers.passage };
         let lit = light.valid & !(light.l * value).is_black();
-        self.queues.passages.append(rows, lit, &Shadow { l, ray, t_max }, &passage);
+        self.queues.passages.append(rows, lit, l, &shadow, &passage);
 
-        let (_, u) = numbers.bsdf;
-        let (wi, pdf) = phase.sample_p(wo, u);
+        let (wi, pdf) = phase.sample_p(wo, numbers.bsdf.u);
         let eta_scale = R::gather(&segments.eta_scale, turns.indices);
         let depth = R::Int::gather(&segments.depth, turns.indices);
         let Roulette { survives, weight, dimension } =

@@ -181,7 +181,8 @@ impl<A: WaveIntegrator> Integrator for Wavefront<A> {
 
     fn record(
         &self,
-        (pixel, index): ([i32; 2], u32),
+        pixel: [i32; 2],
+        index: u32,
         scene: &Scene,
         view: &View,
         filter: &Filter,

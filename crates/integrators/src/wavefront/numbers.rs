@@ -37,14 +37,23 @@ impl<R: Real> CameraNumbers<R> {
     }
 }
 
+/// The numbers of a sample, one for each lane.
+#[derive(Clone, Copy)]
+pub(super) struct SampleNumbers<R> {
+    /// That which chooses a light, or a lobe of the BSDF.
+    pub uc: R,
+    /// Those of a point on the light, or of a direction.
+    pub u: Vec2<R>,
+}
+
 /// The numbers of a vertex, one for each lane.
 pub(super) struct VertexNumbers<R: Real> {
     /// Of a sample of a light; any numbers where there is none.
-    pub light: (R, Vec2<R>),
+    pub light: SampleNumbers<R>,
     /// The dimension of the numbers of a shadow ray in media, the first of two.
     pub passage: R::Int,
     /// Of a sample of the BSDF.
-    pub bsdf: (R, Vec2<R>),
+    pub bsdf: SampleNumbers<R>,
 }
 
 impl<R: Real> VertexNumbers<R> {
@@ -58,7 +67,7 @@ impl<R: Real> VertexNumbers<R> {
         address.skip(2);
         draw.push(Coordinates::Two, address);
         draw.compute(pass);
-        Self { light: (draw.one(0), draw.two(1)), passage, bsdf: (R::zero(), draw.two(2)) }
+        Self { light: draw.sample(0), passage, bsdf: SampleNumbers { uc: R::zero(), u: draw.two(2) } }
     }
 
     /// The next coordinates of each lane; only some lanes sample a light, and not all BSDFs choose
@@ -88,8 +97,7 @@ impl<R: Real> VertexNumbers<R> {
         draw.push_if(chooses_lobes, Coordinates::One, address);
         draw.push(Coordinates::Two, address);
         draw.compute(pass);
-        let bsdf = (draw.one(first), draw.two(first + 1));
-        Self { light: (draw.one(0), draw.two(1)), passage, bsdf }
+        Self { light: draw.sample(0), passage, bsdf: draw.sample(first) }
     }
 }
 
@@ -99,14 +107,14 @@ pub(super) fn draw_two<R: Real>(
     pass: &Pass,
     address: &mut Address<R::Int>,
     chooses_lobes: bool,
-) -> [(R, Vec2<R>); 2] {
+) -> [SampleNumbers<R>; 2] {
     let mut draw = Draw::new(pass, address);
     for _ in 0..2 {
         draw.push_if(chooses_lobes, Coordinates::One, address);
         draw.push(Coordinates::Two, address);
     }
     draw.compute(pass);
-    [(draw.one(0), draw.two(1)), (draw.one(2), draw.two(3))]
+    [draw.sample(0), draw.sample(2)]
 }
 
 /// The next coordinate of each lane.
@@ -193,6 +201,11 @@ impl<'a> Draw<'a> {
     #[inline(always)]
     fn one<R: Real>(&self, draw: usize) -> R {
         R::load(&self.numbers[draw][0])
+    }
+
+    #[inline(always)]
+    fn sample<R: Real>(&self, draw: usize) -> SampleNumbers<R> {
+        SampleNumbers { uc: self.one(draw), u: self.two(draw + 1) }
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@ use scene::Scene;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, BatchColumns};
+use super::queues::PathHit;
 use super::stage::Algorithm;
 use crate::{Path, Tracer};
 
@@ -27,11 +28,11 @@ impl WaveIntegrator for Path {
 
 impl Path {
     /// Shades one path.
-    fn shade_path(&self, batch: &mut Batch, (row, turn): (u32, u32), hit: &Hit) {
+    fn shade_path(&self, batch: &mut Batch, place: PathHit, hit: &Hit) {
         let Batch { pass, sampler, stats, columns } = batch;
         let BatchColumns { paths, segments, queues, .. } = &mut **columns;
-        let (pixels, at) = (pass.pixels, row as usize);
-        let mut path = segments.path(paths, turn as usize);
+        let (pixels, at) = (pass.pixels, place.path as usize);
+        let mut path = segments.path(paths, place.hit as usize);
         let mut lambda = paths.lambda(at);
         let surface = pixels.scene.interaction(hit, pixels.scene.world().surface(&path.ray.ray, hit));
         paths.resume(sampler, at, pixels.index);
@@ -39,13 +40,13 @@ impl Path {
         if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
             paths.add_light(at, self.emitted(&mut tracer, &path, &surface, &lambda));
         }
-        let (l, goes_on) = self.scatter(&mut tracer, &mut path, (surface, hit.t), &mut lambda);
+        let (l, goes_on) = self.scatter(&mut tracer, &mut path, surface, hit.t, &mut lambda);
         paths.add_light(at, l);
         paths.set_lambda(at, &lambda);
         paths.dimension[at] = sampler.dimension();
         paths.rough_before[at] = path.rough_before;
         if goes_on {
-            queues.next.push(row, &path);
+            queues.next.push(place.path, &path);
         }
     }
 }

@@ -2,19 +2,19 @@
 //! roulette.
 
 use lanes::{Int, MAX_LANES, Mask, Real};
-use math::{Ray, Vec2, offset_ray_origin};
+use math::{Ray, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use spectrum::SampledSpectrum;
 
 use super::columns::Rows;
-use super::lights::{self, LightLanes};
+use super::lights::{LightLanes, LightSampling};
 use super::media::VerticesInMedia;
-use super::numbers::{VertexNumbers, draw_1d};
+use super::numbers::{SampleNumbers, VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::queues::Entering;
 use super::segments::Segment;
-use super::shadows::{PassageLanes, Shadow};
+use super::shadows::PassageLanes;
 use super::stage::{Algorithm, Request, SpecularSamples, Stage, Vertices};
 use crate::Path;
 use crate::transport::direct::power_heuristic;
@@ -26,7 +26,7 @@ pub(super) struct PathVertices<R: Real> {
     /// The dimension of the numbers of shadow rays in media.
     passage: R::Int,
     /// The numbers of samples of BSDFs.
-    numbers: (R, Vec2<R>),
+    numbers: SampleNumbers<R>,
 }
 
 impl<R: Real> PathVertices<R> {
@@ -42,9 +42,10 @@ impl<R: Real> PathVertices<R> {
         let samples_light = flags.is_non_specular();
         let media = match &stage.segments.media {
             Some(columns) => {
-                let place = (vertices.turns, &stage.hits.geometry[..]);
-                let terminated = vertices.lambda.secondary_terminated();
-                Some(VerticesInMedia::new(stage.pass.media, columns, place, terminated))
+                let Vertices { turns, lambda, .. } = vertices;
+                let (media, geometries) = (stage.pass.media, &stage.hits.geometry);
+                let terminated = lambda.secondary_terminated();
+                Some(VerticesInMedia::new(media, columns, *turns, geometries, terminated))
             }
             None => None,
         };
@@ -52,8 +53,9 @@ impl<R: Real> PathVertices<R> {
         let numbers = VertexNumbers::draw(&stage.pass, address, samples_light, chooses, has_media);
         let samples = vertices.active & samples_light;
         let request = if samples.any() {
-            let sampling = (&stage.pass, &path.direct, &mut *stage.light_samples);
-            lights::draw(sampling, None, &vertices.contexts(), numbers.light, &vertices.lambda, samples);
+            let sampling = LightSampling { pass: &stage.pass, direct: &path.direct, light: None };
+            let (context, lambda) = (vertices.contexts(), &vertices.lambda);
+            sampling.draw(stage.light_samples, &context, numbers.light, lambda, samples);
             Request::Value(stage.light_samples.directions())
         } else {
             Request::Sample(numbers.bsdf, Directions::All)
@@ -81,24 +83,23 @@ impl<R: Real> PathVertices<R> {
             // Light that comes out has been scattered under the surface.
             lit = lit & !(wo.dot(ns).gt(R::zero()) & wi.dot(ns).lt(R::zero()));
         }
-        let (ray, t_max) = light.shadow_rays(p, n, time);
+        let shadow = light.shadow_rays(p, n, time);
         if let Some(media) = media {
             // The weight depends on what the rays pass.
-            let shadow = Shadow { l: vertices.beta * scattered / pdf, ray, t_max };
+            let l = vertices.beta * scattered / pdf;
             let passage = PassageLanes {
                 r_u: media.r_u,
                 ratio: R::select(light.is_delta, R::zero(), p_b / pdf),
                 medium: media.towards(wi, n),
                 dimension: *passage,
             };
-            stage.queues.passages.append(vertices.rows, lit, &shadow, &passage);
+            stage.queues.passages.append(vertices.rows, lit, l, &shadow, &passage);
         } else {
             let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
             let l = vertices.beta * (scattered * (weight / pdf));
-            let shadow = Shadow { l, ray, t_max };
             let [stopped, passing] = &mut stage.queues.shadows;
-            stopped.append(vertices.rows, lit & !light.passes, &shadow);
-            passing.append(vertices.rows, lit & light.passes, &shadow);
+            stopped.append(vertices.rows, lit & !light.passes, l, &shadow);
+            passing.append(vertices.rows, lit & light.passes, l, &shadow);
         }
         Request::Sample(*numbers, Directions::All)
     }
@@ -132,7 +133,7 @@ impl<R: Real> PathVertices<R> {
         }
         let mut in_media = None;
         if let Some(media) = &self.media {
-            in_media = Some(media.leave((wi, n), density));
+            in_media = Some(media.leave(wi, n, density));
         }
         let segment = Segment {
             ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
@@ -190,7 +191,7 @@ impl Stage<'_, '_> {
     ) {
         let specular = (appended & sample.flags.is_specular()).bits();
         let turns = turns.indices.to_array();
-        self.carry_each(&turns, [appended.bits(), specular], &SpecularSamples::of(sample), first);
+        self.carry_each(&turns, appended.bits(), specular, &SpecularSamples::of(sample), first);
     }
 
     /// Few rays have differentials, so that they are computed one by one.
@@ -198,7 +199,8 @@ impl Stage<'_, '_> {
     fn carry_each(
         &mut self,
         turns: &[u32; MAX_LANES],
-        [appended, mut specular]: [u32; 2],
+        appended: u32,
+        mut specular: u32,
         samples: &SpecularSamples,
         first: usize,
     ) {

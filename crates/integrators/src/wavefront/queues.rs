@@ -10,8 +10,8 @@ use crate::transport::path_state::PathState;
 pub(super) struct Queues {
     /// The paths that go on.
     pub next: Segments,
-    /// Hits to be shaded one by one: path, and index of its hit.
-    pub scalar: Vec<(u32, u32)>,
+    /// Hits to be shaded one by one.
+    pub scalar: Vec<PathHit>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.
     pub shadows: [ShadowRays; 2],
     /// Those of scenes with media.
@@ -19,6 +19,15 @@ pub(super) struct Queues {
     pub waiting: Waiting,
     /// Paths that go on under the surface of a body.
     pub entering: Entering,
+}
+
+/// A hit of a path.
+#[derive(Clone, Copy)]
+pub(super) struct PathHit {
+    /// The index of the path.
+    pub path: u32,
+    /// The index of the hit.
+    pub hit: u32,
 }
 
 /// Paths that go on under the surface of a body, in the order of their hits.

@@ -6,6 +6,7 @@ use super::batch::{Batch, BatchColumns, Vertex};
 use super::stage::Algorithm;
 use crate::RayCasting;
 use crate::transport::direct::connect_all;
+use crate::transport::vertex::SurfaceVertex;
 
 impl WaveIntegrator for RayCasting {
     fn shade(&self, batch: &mut Batch) {
@@ -16,8 +17,9 @@ impl WaveIntegrator for RayCasting {
             let Some(vertex) = batch.vertex(place, hit, &lights.direct) else { return };
             let Vertex { state, lambda, surface, bsdf } = vertex;
             let Batch { pass, sampler, columns: BatchColumns { paths, .. }, .. } = batch;
-            connect_all(pass.pixels.scene, sampler, (&surface, false), &bsdf, &lambda, |light| {
-                paths.add_light(place.0 as usize, state.beta * light.l);
+            let at = SurfaceVertex::new(&surface, &bsdf);
+            connect_all(pass.pixels.scene, sampler, &at, false, &lambda, |light| {
+                paths.add_light(place.path as usize, state.beta * light.l);
             });
         });
     }

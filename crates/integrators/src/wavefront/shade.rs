@@ -15,6 +15,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
 use super::lights_in_turn::LightsInTurn;
+use super::numbers::SampleNumbers;
 use super::path_vertices::PathVertices;
 use super::stage::{Algorithm, Place, Request, Stage, Vertices};
 
@@ -72,7 +73,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
                     let pdf = if weighs { bsdf.pdf(wo, wi, mode, Directions::All) } else { R::one() };
                     step::<R, M, _>(Connect { stage, state: &mut state, f: &f, pdf });
                 }
-                Request::Sample((uc, u), directions) => {
+                Request::Sample(SampleNumbers { uc, u }, directions) => {
                     let sample = bsdf.sample_lanes(wo, uc, u, mode, directions);
                     let pdf = if weighs && sample.pdf_is_proportional {
                         bsdf.pdf(wo, sample.wi, mode, directions)
@@ -141,7 +142,7 @@ impl<'b, R: Real> Callee<R> for Begin<'_, 'b, '_, R> {
     #[inline(always)]
     fn run(self) -> AtVertices<'b, R> {
         let Self { stage, first, wo, lambda, flags, chooses } = self;
-        let mut vertices = stage.vertices::<R>(first, (*wo, *lambda), flags);
+        let mut vertices = stage.vertices::<R>(first, *wo, *lambda, flags);
         let (request, state) = match stage.algorithm {
             Algorithm::Path(path) | Algorithm::Boundaries(path) => {
                 let (state, request) = PathVertices::begin(path, stage, &mut vertices, flags, chooses);

@@ -2,11 +2,11 @@
 
 use geometry::RayBuffer;
 use lanes::{Int, Mask, Real};
-use math::Ray;
 use spectrum::SampledSpectrum;
 
 use super::columns::{Column, Rows};
 use super::spectra::Spectra;
+use crate::transport::ShadowRay;
 
 /// Shadow rays, and the light that their paths get unless they are occluded.
 #[derive(Default)]
@@ -16,27 +16,26 @@ pub(super) struct ShadowRays {
     pub rays: RayBuffer,
 }
 
-/// Shadow rays in lanes.
-pub(super) struct Shadow<R: Real> {
-    pub l: SampledSpectrum<R>,
-    pub ray: Ray<R>,
-    pub t_max: R,
-}
-
 impl ShadowRays {
     /// Adds a ray.
-    pub fn push(&mut self, path: u32, l: SampledSpectrum, ray: &Ray, t_max: f32) {
+    pub fn push(&mut self, path: u32, l: SampledSpectrum, shadow: &ShadowRay) {
         self.paths.push(path);
         self.l.push(l);
-        self.rays.push(ray, t_max);
+        self.rays.push(&shadow.ray, shadow.t_max);
     }
 
     /// Adds the rays of a mask's lanes.
     #[inline(always)]
-    pub fn append<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, shadow: &Shadow<R>) {
+    pub fn append<R: Real>(
+        &mut self,
+        rows: Rows<R>,
+        mask: R::Mask,
+        l: SampledSpectrum<R>,
+        shadow: &ShadowRay<R>,
+    ) {
         if mask.any() {
             rows.indices.append(mask, &mut self.paths);
-            self.l.append(mask, shadow.l);
+            self.l.append(mask, l);
             self.rays.append(&shadow.ray, shadow.t_max, mask);
         }
     }
@@ -63,7 +62,7 @@ pub(super) struct Passages {
     pub dimension: Vec<u32>,
 }
 
-/// Shadow rays in lanes.
+/// The passages of shadow rays in lanes.
 pub(super) struct PassageLanes<R: Real> {
     pub r_u: SampledSpectrum<R>,
     pub ratio: R,
@@ -78,13 +77,14 @@ impl Passages {
         &mut self,
         rows: Rows<R>,
         mask: R::Mask,
-        shadow: &Shadow<R>,
+        l: SampledSpectrum<R>,
+        shadow: &ShadowRay<R>,
         lanes: &PassageLanes<R>,
     ) {
         if !mask.any() {
             return;
         }
-        self.shadows.append(rows, mask, shadow);
+        self.shadows.append(rows, mask, l, shadow);
         self.r_u.append(mask, lanes.r_u);
         lanes.ratio.append(mask, &mut self.ratio);
         lanes.medium.append(mask, &mut self.medium);

@@ -2,7 +2,7 @@
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
 use lanes::{Each, MAX_LANES, Mask, Real};
-use math::{Differentials, Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
+use math::{Differentials, Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::light::LightSampleContext;
@@ -11,6 +11,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::all_lights::AllLights;
 use super::columns::Rows;
 use super::lights::Samples;
+use super::numbers::SampleNumbers;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
@@ -49,7 +50,7 @@ pub(super) enum Request<R> {
     /// The value in a direction.
     Value(Vector3<R>),
     /// A sample by these numbers.
-    Sample((R, Vec2<R>), Directions),
+    Sample(SampleNumbers<R>, Directions),
     /// None: it is done.
     Nothing,
 }
@@ -135,7 +136,8 @@ impl Stage<'_, '_> {
     pub fn vertices<R: Real>(
         &self,
         first: usize,
-        (wo, lambda): (Vector3<R>, SampledWavelengths<R>),
+        wo: Vector3<R>,
+        lambda: SampledWavelengths<R>,
         flags: &BxdfFlags<R>,
     ) -> Vertices<R> {
         let Place { rows, turns } = self.place::<R>(first);

@@ -10,11 +10,13 @@ use scene::Interfaces;
 use super::WaveIntegrator;
 use super::all_lights::AllLights;
 use super::batch::{Batch, BatchColumns, Vertex};
+use super::queues::PathHit;
 use super::stage::Algorithm;
 use crate::Whitted;
 use crate::camera_paths::Node;
 use crate::transport::direct::{Connection, connect_all};
 use crate::transport::path_state::PathState;
+use crate::transport::vertex::SurfaceVertex;
 
 impl WaveIntegrator for Whitted {
     fn shade(&self, batch: &mut Batch) {
@@ -28,18 +30,18 @@ impl WaveIntegrator for Whitted {
 
 impl Whitted {
     /// Shades one path.
-    fn shade_path(&self, batch: &mut Batch, lights: &AllLights, place: (u32, u32), hit: &Hit) {
+    fn shade_path(&self, batch: &mut Batch, lights: &AllLights, place: PathHit, hit: &Hit) {
         let Some(vertex) = batch.vertex(place, hit, &lights.direct) else { return };
         let Vertex { state, lambda, surface, bsdf } = vertex;
         let Batch { pass, sampler, columns: BatchColumns { paths, queues, .. }, .. } = batch;
-        let (path, _) = place;
+        let path = place.path;
         let PathState { ray, beta, depth, .. } = state;
         if depth < self.max_depth() {
-            let at = (&surface, self.is_ambient());
-            let around = connect_all(pass.pixels.scene, sampler, at, &bsdf, &lambda, |light| {
-                let Connection { ray, t_max, interfaces, l, .. } = light;
+            let (scene, at) = (pass.pixels.scene, SurfaceVertex::new(&surface, &bsdf));
+            let around = connect_all(scene, sampler, &at, self.is_ambient(), &lambda, |light| {
+                let Connection { shadow, interfaces, l, .. } = light;
                 let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
-                queue.push(path, beta * l, &ray, t_max);
+                queue.push(path, beta * l, &shadow);
             });
             paths.add_light(path as usize, beta * around);
             let children = Node { ray, medium: None, beta, depth, reflected_at: None }

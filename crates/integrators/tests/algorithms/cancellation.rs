@@ -61,7 +61,7 @@ fn algorithms() -> [(&'static str, Box<dyn Integrator>); 9] {
         ("simple-path by chance", Box::new(PixelLoop::new(simple(false), sampler()))),
         ("light-tracing", Box::new(LightTracing::new(light_tracing, sampler(), sampler()))),
         ("bdpt", Box::new(Bdpt::new(bdpt, sampler(), sampler()))),
-        ("vcm", Box::new(Vcm::new(vcm, [sampler(), sampler()], 3, MAX_PHOTON_PATHS))),
+        ("vcm", Box::new(Vcm::new(vcm, sampler(), sampler(), 3, MAX_PHOTON_PATHS))),
         ("sppm", Box::new(Sppm::new(sppm, sampler(), 3))),
         ("photon-mapping", Box::new(PhotonMapping::new(photons, sampler(), 3))),
         ("mlt", Box::new(Mlt::new(mlt, sampler(), 3))),

@@ -203,7 +203,7 @@ fn the_mean_does_not_depend_on_the_number_of_photon_paths() {
         let sampler = Sampler::Independent(Independent::new(8, seed));
         let light_sampler = Sampler::Independent(Independent::new(8, seed + 100));
         let settings = VcmDesc { max_depth: 3, radius: Some(0.4), ..VcmDesc::default() };
-        let vcm = finished(&desc, Box::new(Vcm::new(settings, [sampler, light_sampler], seed, 7)));
+        let vcm = finished(&desc, Box::new(Vcm::new(settings, sampler, light_sampler, seed, 7)));
         assert!(vcm.integrator().summary()[0].1.contains("from 7 paths"));
         means.push(mean(&vcm.state().film));
     }

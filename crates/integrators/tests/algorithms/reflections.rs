@@ -3,7 +3,7 @@
 use alhazen_integrators::{Control, RayIntegrator, Tracer, Whitted};
 use description::{ReflectionsDesc, SceneDesc, ShapeDesc, ShapeKind, SpheresDesc, WhittedDesc};
 use geometry::RayStats;
-use math::{Point3, Ray, Vector3};
+use math::{Point3, Ray};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scene::Scene;
@@ -16,19 +16,14 @@ fn whitted(reflections: ReflectionsDesc, distance: f32) -> Whitted {
     Whitted::new(WhittedDesc { reflections, reflection_distance, ..WhittedDesc::default() })
 }
 
-/// The luminance along a ray, relative to that of a lamp of scale 1: pictures have colours, whose
-/// spectra are others.
-fn along(reflections: ReflectionsDesc, distance: f32, scene: &Scene, ray: (Point3, Vector3)) -> f64 {
-    along_with_rays(reflections, distance, scene, ray).0
+/// The luminance along a ray downwards, relative to that of a lamp of scale 1: pictures have
+/// colours, whose spectra are others.
+fn along(reflections: ReflectionsDesc, distance: f32, scene: &Scene, o: Point3) -> f64 {
+    along_with_rays(reflections, distance, scene, o).0
 }
 
 /// The same, and the number of rays that it took.
-fn along_with_rays(
-    reflections: ReflectionsDesc,
-    distance: f32,
-    scene: &Scene,
-    (o, d): (Point3, Vector3),
-) -> (f64, u64) {
+fn along_with_rays(reflections: ReflectionsDesc, distance: f32, scene: &Scene, o: Point3) -> (f64, u64) {
     const SAMPLES: u32 = 64;
     let mut rays = whitted(reflections, distance);
     let ((_, view), control) = (viewed(&SceneDesc::default()), Control::default());
@@ -39,7 +34,7 @@ fn along_with_rays(
         sampler.start_pixel_sample([i as i32, 0], 0, 0);
         let mut lambda = SampledWavelengths::sample_visible((i as f32 + 0.5) / SAMPLES as f32);
         let mut tracer = Tracer::new(scene, &view, &control, &mut sampler, &mut stats);
-        let l = rays.li(&mut tracer, Ray::new(o, d, 0.0).into(), &mut lambda);
+        let l = rays.li(&mut tracer, Ray::new(o, v(0.0, 0.0, -1.0), 0.0).into(), &mut lambda);
         [l * CIE_Y_INTEGRAL, SampledSpectrum::ONE].map(|l| f64::from(y_from(&l, &lambda)))
     });
     let [found, white] = samples.fold([0.0; 2], |sum, [l, one]| [sum[0] + l, sum[1] + one]);
@@ -58,9 +53,9 @@ fn ball_among(lamps: &[(Point3, f32, f32)]) -> Scene {
     compile(&desc)
 }
 
-/// Rays that the ball reflects upwards, nearly along the axis, and to the right.
-const UP: (Point3, Vector3) = (Point3::new(0.1, 0.0, 8.0), Vector3::new(0.0, 0.0, -1.0));
-const RIGHT: (Point3, Vector3) = (Point3::new(0.707, 0.0, 8.0), Vector3::new(0.0, 0.0, -1.0));
+/// Origins of rays that the ball reflects upwards, nearly along the axis, and to the right.
+const UP: Point3 = Point3::new(0.1, 0.0, 8.0);
+const RIGHT: Point3 = Point3::new(0.707, 0.0, 8.0);
 
 #[test]
 fn a_sky_is_the_same_from_everywhere() {

@@ -63,7 +63,6 @@ pub(crate) use table::LightTable;
 pub use table::{LightPart, LightRef, Lights};
 pub use uniform_infinite::UniformInfiniteLight;
 
-use geometry::SurfacePoint;
 use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3, closed_set};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -227,7 +226,7 @@ pub struct LightLiSample {
 
 impl LightLiSample {
     /// The shadow ray from a surface to the light, and its end.
-    pub fn shadow_ray(&self, from: &SurfacePoint) -> (Ray, f32) {
+    pub fn shadow_ray(&self, from: &LightSampleContext) -> (Ray, f32) {
         match self.p {
             Some(p) => (Ray::between(from.p, from.n, p, self.n, from.time), Ray::SHADOW_END),
             None => (from.spawn_ray(self.wi), f32::INFINITY),

@@ -312,9 +312,10 @@ fn infinite_planes_occlude_infinite_lights() {
         let floor = hit(&scene, &ray(Vec3::new(3.0, 3.0, 0.0), -Vec3::Z)).unwrap();
         let light = alhazen_scene::light::LightId(0);
         let sample = scene.sample_light(light, &floor.light_context(), Vec2::ZERO, &lambda(), false).unwrap();
+        let (ray, t_max) = sample.shadow_ray(&floor.light_context());
         assert_eq!(
-            scene.unoccluded(&floor.surface, &sample, Interfaces::Stop, &mut Default::default()),
-            !ceiling && sample.wi.z > 0.0
+            scene.occluded(&ray, t_max, Interfaces::Stop, &mut Default::default()),
+            ceiling || sample.wi.z <= 0.0
         );
     }
 }

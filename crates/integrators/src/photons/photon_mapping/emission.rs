@@ -160,7 +160,7 @@ mod tests {
 
     const PATHS: u32 = 30_000;
 
-    fn emit((scene, view): &(Scene, View), kind: Kind, max_depth: u32) -> Vec<Photon> {
+    fn emit(scene: &Scene, view: &View, kind: Kind, max_depth: u32) -> Vec<Photon> {
         let lights = Lights::of(scene, &Control::default()).unwrap();
         let balance = Balance::connecting(1.0);
         let (light_goes_under, regularize) = (true, false);
@@ -174,7 +174,7 @@ mod tests {
 
     /// The power of `photons` over the power of the lights; each subpath has at most one of the
     /// photons.
-    fn shares<'a>((scene, _): &(Scene, View), photons: impl Iterator<Item = &'a Photon>) -> Moments {
+    fn shares<'a>(scene: &Scene, photons: impl Iterator<Item = &'a Photon>) -> Moments {
         let power = scene.light(scene::light::LightId(0)).phi(&SampledWavelengths::sample_visible(0.3))[0];
         let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();
         shares.resize(PATHS as usize, 0.0);
@@ -183,11 +183,11 @@ mod tests {
 
     #[test]
     fn photon_power_falls_with_depth_by_the_albedo() {
-        let furnace = furnace(false);
-        let photons = emit(&furnace, Kind::All, 6);
+        let (scene, view) = furnace(false);
+        let photons = emit(&scene, &view, Kind::All, 6);
         assert!(photons.iter().all(|photon| (1..=6).contains(&photon.depth)));
         for depth in 1..=6 {
-            let found = shares(&furnace, photons.iter().filter(|photon| photon.depth == depth));
+            let found = shares(&scene, photons.iter().filter(|photon| photon.depth == depth));
             let expected = 0.5f64.powi(depth as i32 - 1);
             if (found.mean - expected).abs() > 1e-6 {
                 t_test(&found, expected, 6)
@@ -198,17 +198,17 @@ mod tests {
 
     #[test]
     fn photon_kinds_are_disjoint_and_complete() {
-        let furnace = furnace(true);
+        let (scene, view) = furnace(true);
         let [all, indirect, caustic] =
-            [Kind::All, Kind::Indirect, Kind::Caustic].map(|kind| emit(&furnace, kind, 8));
+            [Kind::All, Kind::Indirect, Kind::Caustic].map(|kind| emit(&scene, &view, kind, 8));
         // The maps of all and of indirect light have the same subpaths.
         let mut rest = indirect.iter().peekable();
         let first: Vec<_> = all.iter().filter(|photon| rest.next_if_eq(photon).is_none()).collect();
         assert!(rest.next().is_none() && !indirect.is_empty());
         assert!(caustic.iter().all(|photon| photon.depth > 1));
-        let direct = shares(&furnace, first.iter().copied().filter(|photon| photon.depth == 1));
-        let expected = shares(&furnace, first.iter().copied().filter(|photon| photon.depth > 1));
+        let direct = shares(&scene, first.iter().copied().filter(|photon| photon.depth == 1));
+        let expected = shares(&scene, first.iter().copied().filter(|photon| photon.depth > 1));
         assert!(direct.mean > 0.3 && expected.mean > 0.3);
-        welch_test(&shares(&furnace, caustic.iter()), &expected, 1).unwrap_or_else(|e| panic!("{e}"));
+        welch_test(&shares(&scene, caustic.iter()), &expected, 1).unwrap_or_else(|e| panic!("{e}"));
     }
 }

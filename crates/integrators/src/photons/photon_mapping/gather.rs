@@ -26,8 +26,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::PhotonMappingDesc;
 use math::{Normal3, RayDifferential, Vec2};
-use scattering::{Bsdf, Bxdf, Directions, TransportMode};
-use scene::SurfaceInteraction;
+use scattering::{Directions, TransportMode};
 use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -35,10 +34,11 @@ use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap, Space};
 use crate::transport::Tracer;
-use crate::transport::direct::{DirectLighting, MediumVertex, Vertex, light_context};
+use crate::transport::direct::DirectLighting;
 use crate::transport::media::FlightEnd;
 use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
 use crate::transport::subsurface::entered;
+use crate::transport::vertex::{MediumVertex, SurfaceVertex, Vertex};
 
 /// Photons count if the cosine between their normal and that of the gather point is at least this.
 const SAME_SURFACE: f32 = 0.7;
@@ -101,8 +101,7 @@ enum Sought {
 /// A point at which photons are looked up.
 #[derive(Clone, Copy)]
 struct GatherPoint<'a> {
-    surface: &'a SurfaceInteraction,
-    bsdf: &'a Bsdf<Bxdf<'a>>,
+    vertex: &'a SurfaceVertex<'a>,
     /// Scattering events from the camera, this one included.
     depth: u32,
     lambda: &'a SampledWavelengths,
@@ -117,15 +116,17 @@ impl Gather<'_> {
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let medium = tracer.view.medium;
-        self.follow((ray, medium), *lambda, (Sought::Radiance, 0), tracer)
+        self.follow(ray, medium, *lambda, Sought::Radiance, 0, tracer)
     }
 
     /// The radiance along a ray in a medium that leaves scattering event number `depth`.
     fn follow(
         &self,
-        (ray, medium): (RayDifferential, Option<MediumId>),
+        ray: RayDifferential,
+        medium: Option<MediumId>,
         mut lambda: SampledWavelengths,
-        (mut sought, depth): (Sought, u32),
+        mut sought: Sought,
+        depth: u32,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let (scene, direct) = (tracer.scene, self.direct);
@@ -188,24 +189,25 @@ impl Gather<'_> {
             path.depth += 1;
 
             bsdf.bxdf.keep_boundary();
-            let point = GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
+            let mut vertex = SurfaceVertex::new(&surface, &bsdf);
+            let point = GatherPoint { vertex: &vertex, depth: path.depth, lambda: &lambda };
             let (found, scattered) = self.at_surface(&path, &point, sought, tracer);
             l += found;
             let Some(mut scattered) = scattered else { return l };
-            let mut flags = bsdf.flags();
-            let mut context = light_context(&surface, flags);
+            let exit;
             if let Some(body) = entered(&bsdf, &surface, &scattered.sample) {
-                let entry = (&surface, context);
-                let Some(exit) = path.go_under(tracer, entry, (body, &scattered), &lambda) else {
+                let Some(left) = path.go_under(tracer, &vertex, body, &scattered, &lambda) else {
                     return l;
                 };
-                let point = GatherPoint { surface: &exit.surface, bsdf: &exit.bsdf, ..point };
+                exit = left;
+                vertex = SurfaceVertex::new(&exit.surface, &exit.bsdf);
+                let point = GatherPoint { vertex: &vertex, depth: path.depth, lambda: &lambda };
                 let (found, again) = self.at_surface(&path, &point, sought, tracer);
                 l += found;
                 let Some(again) = again else { return l };
-                (flags, context) = (exit.bsdf.flags(), light_context(&exit.surface, exit.bsdf.flags()));
-                (scattered, surface) = (again, exit.surface);
+                scattered = again;
             }
+            let flags = vertex.bsdf.flags();
             if scattered.sample.flags.is_specular() {
                 // The photon maps do not include light for specular lobes.
                 emission_is_known &= !flags.is_non_specular();
@@ -218,7 +220,7 @@ impl Gather<'_> {
                 }
                 emission_is_known = true;
             }
-            path.scatter(&surface, context, &scattered);
+            path.scatter(&vertex, &scattered);
             if !path.survives(tracer.sampler) {
                 return l;
             }
@@ -234,18 +236,17 @@ impl Gather<'_> {
         sought: Sought,
         tracer: &mut Tracer,
     ) -> (SampledSpectrum, Option<Scattered>) {
-        let &GatherPoint { surface, bsdf, lambda, .. } = point;
-        let flags = bsdf.flags();
+        let &GatherPoint { vertex, lambda, .. } = point;
+        let flags = vertex.bsdf.flags();
         let mut l = SampledSpectrum::ZERO;
-        if sought == Sought::Radiance && flags.is_non_specular() {
-            let context = light_context(surface, flags);
-            let vertex = Vertex::Surface(surface, &context, bsdf);
-            if let Some(light) = self.direct.connect(tracer, &vertex, lambda) {
-                let medium = surface.medium_towards(light.ray.d, path.medium);
-                l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
-            }
+        if sought == Sought::Radiance
+            && flags.is_non_specular()
+            && let Some(light) = self.direct.connect(tracer, &Vertex::Surface(vertex), lambda)
+        {
+            let medium = vertex.surface.medium_towards(light.shadow.ray.d, path.medium);
+            l += known(path.beta * light.arriving(medium, lambda, tracer), lambda);
         }
-        let scattered = Scattered::sample(surface, bsdf, tracer.sampler);
+        let scattered = Scattered::sample(vertex, tracer.sampler);
         if flags.is_non_specular() {
             if sought == Sought::Reflected {
                 l += path.beta * self.reflected(&self.maps.global, point);
@@ -285,7 +286,7 @@ impl Gather<'_> {
         for i in 0..count {
             let (wi, _) = vertex.phase.sample_p(vertex.wo, lattice_point(i, count, u));
             let ray = vertex.context.spawn_ray(wi).into();
-            sum += self.follow((ray, path.medium), *lambda, (Sought::Reflected, path.depth), tracer);
+            sum += self.follow(ray, path.medium, *lambda, Sought::Reflected, path.depth, tracer);
         }
         l + path.beta * sum / count as f32
     }
@@ -303,7 +304,7 @@ impl Gather<'_> {
         let terminated = lambda.secondary_terminated();
         let weigh = |photon: &Photon| {
             let l = photon.beta * vertex.phase.p(vertex.wo, photon.wi);
-            if terminated || photon.hero_only { hero_only(l) } else { l }
+            hero_only(l, terminated || photon.hero_only)
         };
         let p = vertex.context.p.p;
         let Some((l, radius)) = map.density(p, &self.neighbourhood, Space::Ball, accept, weigh) else {
@@ -322,7 +323,7 @@ impl Gather<'_> {
         if count == 0 {
             return self.reflected(&self.maps.global, point);
         }
-        let GatherPoint { surface, bsdf, depth, lambda } = *point;
+        let &GatherPoint { vertex: SurfaceVertex { surface, bsdf, .. }, depth, lambda } = point;
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
@@ -337,7 +338,7 @@ impl Gather<'_> {
             }
             let ray = surface.spawn_scattered(&path.ray, &sample);
             let medium = surface.medium_towards(sample.wi, path.medium);
-            let l = self.follow((ray, medium), *lambda, (Sought::Reflected, depth), tracer);
+            let l = self.follow(ray, medium, *lambda, Sought::Reflected, depth, tracer);
             sum += throughput(surface, &sample) * l;
         }
         sum / count as f32
@@ -345,7 +346,7 @@ impl Gather<'_> {
 
     /// Reflected light of the photons of a map.
     fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
-        let &GatherPoint { surface, bsdf, depth, lambda } = point;
+        let &GatherPoint { vertex: SurfaceVertex { surface, bsdf, .. }, depth, lambda } = point;
         let s = &surface.surface;
         let deepest = self.settings.max_depth + 1 - depth;
         let transmissive = bsdf.flags().is_transmissive();
@@ -361,7 +362,7 @@ impl Gather<'_> {
             // normal.
             let cosines = (photon.wi.dot(s.shading.n) / photon.wi.dot(s.n)).abs();
             let l = bsdf.f(s.wo, photon.wi, TransportMode::Radiance) * photon.beta * cosines;
-            if terminated || photon.hero_only { hero_only(l) } else { l }
+            hero_only(l, terminated || photon.hero_only)
         };
         let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, Space::Disk, accept, weigh) else {
             return SampledSpectrum::ZERO;
@@ -382,5 +383,5 @@ fn lattice_point(i: u32, count: u32, u: Vec2) -> Vec2 {
 /// Radiance at all wavelengths that the ray began with, of which dispersion may have terminated all
 /// but the first.
 fn known(l: SampledSpectrum, lambda: &SampledWavelengths) -> SampledSpectrum {
-    if lambda.secondary_terminated() { hero_only(l) } else { l }
+    hero_only(l, lambda.secondary_terminated())
 }

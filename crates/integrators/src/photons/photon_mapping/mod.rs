@@ -139,8 +139,7 @@ impl PhotonMapping {
                 &emission.shutter.lambda,
                 tracer,
             ) {
-                let l = vertex.beta * white;
-                let l = if vertex.hero_only { hero_only(l) } else { l };
+                let l = hero_only(vertex.beta * white, vertex.hero_only);
                 seen.splat(&splatter, &l, &emission.shutter.lambda);
             }
         };

@@ -1,7 +1,6 @@
 //! Flights: where a ray interacts with a medium.
 
 use math::{Point3, Ray};
-use sampling::warp;
 use scattering::HenyeyGreenstein;
 use scene::medium::{MediumId, MediumProperties};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -74,7 +73,7 @@ impl Tracer<'_> {
         }
         // Shadow rays compute the transmittance of homogeneous media, so they pass for certain.
         let is_exact = homogeneous.is_some();
-        let (mut u, mut rng) = self.collisions();
+        let mut collisions = self.collisions();
         for segment in medium.majorants(ray, t_max, lambda) {
             let [mut t, end] = segment.t;
             let majorant = segment.majorant;
@@ -84,8 +83,7 @@ impl Tracer<'_> {
                 continue;
             }
             loop {
-                let next = t + warp::sample_exponential(u, majorant[hero]);
-                u = rng.uniform_f32();
+                let next = t + collisions.free_path(majorant[hero]);
                 if next >= end {
                     let passed = attenuation(majorant, end - t);
                     let by_shadow_rays = if is_exact { SampledSpectrum::ONE } else { passed };
@@ -102,7 +100,7 @@ impl Tracer<'_> {
                     emitted += path.beta * passed * source / (pdf * heroes.mean(density));
                 }
                 let real = if is_exact { 1.0 } else { (sigma_t[hero] / majorant[hero]).min(1.0) };
-                if real == 1.0 || rng.uniform_f32() < real {
+                if real == 1.0 || collisions.uniform() < real {
                     let scale = passed / (pdf * real);
                     path.beta *= properties.sigma_s * scale;
                     path.r_u *= sigma_t * scale;

@@ -34,7 +34,7 @@ pub(crate) use passage::Passage;
 pub(crate) use throughput::{Heroes, SpectralMis, Throughput};
 
 use lanes::exp;
-use sampling::{Rng, hash};
+use sampling::{Rng, hash, warp};
 use spectrum::SampledSpectrum;
 
 use super::Tracer;
@@ -42,8 +42,8 @@ use super::Tracer;
 impl Tracer<'_> {
     /// The random numbers of a flight.
     #[inline]
-    pub(super) fn collisions(&mut self) -> (f32, Rng) {
-        collisions(self.two_numbers())
+    pub(super) fn collisions(&mut self) -> Collisions {
+        Collisions::new(self.two_numbers())
     }
 
     /// The coordinates of the sample that a flight or shadow ray takes.
@@ -53,11 +53,32 @@ impl Tracer<'_> {
     }
 }
 
-/// The random numbers of a flight or shadow ray: the first is a coordinate of the sample, the
-/// others follow from two of them.
-#[inline]
-fn collisions([first, seed]: [f32; 2]) -> (f32, Rng) {
-    (first, Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])))
+/// The random numbers of the collisions along a flight or shadow ray: the first is a coordinate of
+/// the sample, the others follow from two of them.
+pub(super) struct Collisions {
+    /// That of the next free path.
+    u: f32,
+    rng: Rng,
+}
+
+impl Collisions {
+    #[inline]
+    fn new([first, seed]: [f32; 2]) -> Self {
+        Self { u: first, rng: Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])) }
+    }
+
+    /// The distance to the next collision in a medium of extinction `sigma`; infinite without any.
+    #[inline]
+    pub fn free_path(&mut self, sigma: f32) -> f32 {
+        let u = std::mem::replace(&mut self.u, self.rng.uniform_f32());
+        if sigma == 0.0 { f32::INFINITY } else { warp::sample_exponential(u, sigma) }
+    }
+
+    /// A number that is uniform in [0, 1).
+    #[inline]
+    pub fn uniform(&mut self) -> f32 {
+        self.rng.uniform_f32()
+    }
 }
 
 /// exp(−σ·d).

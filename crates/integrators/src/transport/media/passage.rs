@@ -1,18 +1,17 @@
-//! The transmittance of shadow rays.
+//! The passage of shadow rays through media, and their transmittance.
 
 use math::Ray;
-use sampling::{Rng, warp};
 use scene::Interfaces;
-use scene::medium::{Medium, MediumId};
+use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Heroes, attenuation, collisions};
-use crate::transport::{Step, Tracer};
+use super::{Collisions, Heroes, attenuation};
+use crate::transport::{ShadowRay, Step, Tracer};
 
 /// The transmittance below which ratio tracking ends at random.
 const FAINT: f32 = 0.05;
 
-/// The transmittance of a shadow ray.
+/// The passage of a shadow ray: its transmittance, and the densities of what has been passed.
 #[derive(Clone, Copy)]
 pub(crate) struct Passage {
     /// Transmittance over the density of ratio tracking of the hero.
@@ -45,30 +44,31 @@ impl Passage {
 }
 
 impl Tracer<'_> {
-    /// The transmittance of a ray that leaves `medium` along 0 < t < `t_max`, through all media and
-    /// interfaces; `None` if a surface occludes it. `numbers` are two coordinates of the sample.
-    pub(crate) fn transmittance(
+    /// The passage of a ray that leaves `medium` through all media and interfaces; `None` if a
+    /// surface occludes it. `numbers` are two coordinates of the sample.
+    pub(crate) fn passage(
         &mut self,
-        (ray, t_max): (&Ray, f32),
+        shadow: &ShadowRay,
         medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
         numbers: [f32; 2],
     ) -> Option<Passage> {
         if self.scene.media().is_empty() {
-            let is_clear = !self.occluded(ray, t_max, Interfaces::Pass);
+            let is_clear = !self.occluded(shadow, Interfaces::Pass);
             return is_clear.then_some(Passage::CLEAR);
         }
-        let passage = self.passage((ray, t_max), medium, lambda, heroes, numbers);
-        self.take_step(|_| Step::Shadow { ray: *ray, t_max, is_clear: passage.is_some() });
+        let passage = self.passage_through_media(*shadow, medium, lambda, heroes, numbers);
+        let &ShadowRay { ray, t_max } = shadow;
+        self.take_step(|_| Step::Shadow { ray, t_max, is_clear: passage.is_some() });
         passage
     }
 
-    /// [`transmittance`](Self::transmittance) of a ray that meets neither surfaces nor interfaces.
+    /// [`passage`](Self::passage) of a ray that meets neither surfaces nor interfaces.
     #[inline]
-    pub(crate) fn transmittance_within(
+    pub(crate) fn passage_within(
         &mut self,
-        (ray, t_max): (&Ray, f32),
+        &ShadowRay { ray, t_max }: &ShadowRay,
         medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
@@ -77,26 +77,24 @@ impl Tracer<'_> {
         let mut passage = Passage::CLEAR;
         if let Some(medium) = medium {
             let scale = ray.d.length();
-            let part = (&Ray { d: ray.d / scale, ..*ray }, t_max * scale);
-            let medium = &self.scene.media()[medium.0 as usize];
-            self.attenuate(medium, part, lambda, heroes, &mut collisions(numbers), &mut passage)?;
+            let part = ShadowRay { ray: Ray { d: ray.d / scale, ..ray }, t_max: t_max * scale };
+            self.attenuate(medium, &part, lambda, heroes, &mut Collisions::new(numbers), &mut passage)?;
         }
         Some(passage)
     }
 
-    /// [`transmittance`](Self::transmittance) in a scene with media.
+    /// [`passage`](Self::passage) in a scene with media.
     #[inline]
-    fn passage(
+    fn passage_through_media(
         &mut self,
-        (ray, t_max): (&Ray, f32),
+        ShadowRay { mut ray, mut t_max }: ShadowRay,
         mut medium: Option<MediumId>,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
         numbers: [f32; 2],
     ) -> Option<Passage> {
         let mut passage = Passage::CLEAR;
-        let mut collisions = collisions(numbers);
-        let (mut ray, mut t_max) = (*ray, t_max);
+        let mut collisions = Collisions::new(numbers);
         // The length of the direction, which is a difference of points for lights at a distance.
         let scale = ray.d.length();
         loop {
@@ -109,10 +107,8 @@ impl Tracer<'_> {
             }
             let end = hit.as_ref().map_or(t_max, |hit| hit.t);
             if let Some(medium) = medium {
-                let unit = Ray { d: ray.d / scale, ..ray };
-                let medium = &self.scene.media()[medium.0 as usize];
-                let part = (&unit, end * scale);
-                self.attenuate(medium, part, lambda, heroes, &mut collisions, &mut passage)?;
+                let part = ShadowRay { ray: Ray { d: ray.d / scale, ..ray }, t_max: end * scale };
+                self.attenuate(medium, &part, lambda, heroes, &mut collisions, &mut passage)?;
             }
             let Some(hit) = hit else { return Some(passage) };
             let surface = self.scene.interaction(&hit, self.scene.world().surface(&ray, &hit));
@@ -125,55 +121,52 @@ impl Tracer<'_> {
         }
     }
 
-    /// The same as an estimate for a ray that would carry `l` through empty space.
-    pub(crate) fn transmittance_for(
+    /// An estimate of the transmittance of a ray that leaves `medium`, and would carry `l` through
+    /// empty space; `None` if a surface occludes it.
+    pub(crate) fn transmittance(
         &mut self,
-        ray: &Ray,
-        t_max: f32,
+        shadow: &ShadowRay,
         medium: Option<MediumId>,
         l: &SampledSpectrum,
         lambda: &SampledWavelengths,
     ) -> Option<SampledSpectrum> {
         if self.scene.media().is_empty() {
-            return (!self.occluded(ray, t_max, Interfaces::Pass)).then_some(SampledSpectrum::ONE);
+            return (!self.occluded(shadow, Interfaces::Pass)).then_some(SampledSpectrum::ONE);
         }
         let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
         let numbers = self.two_numbers();
-        let passage = self.transmittance((ray, t_max), medium, lambda, &heroes, numbers)?;
+        let passage = self.passage(shadow, medium, lambda, &heroes, numbers)?;
         Some(passage.estimate(&heroes))
     }
 
-    /// The transmittance of one medium along a ray of unit direction that carries `l`; `None` if
-    /// nothing is left.
+    /// An estimate of the transmittance of one medium along a ray of unit direction that carries
+    /// `l`; `None` if nothing is left.
     #[inline]
-    pub(crate) fn attenuation(
+    pub(crate) fn transmittance_within(
         &mut self,
+        shadow: &ShadowRay,
         medium: MediumId,
-        ray: &Ray,
-        t_max: f32,
         l: &SampledSpectrum,
         lambda: &SampledWavelengths,
     ) -> Option<SampledSpectrum> {
         let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
-        let mut collisions = collisions(self.two_numbers());
-        let mut passage = Passage::CLEAR;
-        let medium = &self.scene.media()[medium.0 as usize];
-        self.attenuate(medium, (ray, t_max), lambda, &heroes, &mut collisions, &mut passage)?;
+        let (mut collisions, mut passage) = (self.collisions(), Passage::CLEAR);
+        self.attenuate(medium, shadow, lambda, &heroes, &mut collisions, &mut passage)?;
         Some(passage.estimate(&heroes))
     }
 
-    /// Multiplies the transmittance of a part of a ray; `None` if nothing is left.
+    /// Passes one medium along a part of a ray, of unit direction; `None` if nothing is left.
     #[inline]
     fn attenuate(
         &mut self,
-        medium: &Medium,
-        (ray, t_max): (&Ray, f32),
+        medium: MediumId,
+        &ShadowRay { ref ray, t_max }: &ShadowRay,
         lambda: &SampledWavelengths,
         heroes: &Heroes,
-        (u, rng): &mut (f32, Rng),
+        collisions: &mut Collisions,
         passage: &mut Passage,
     ) -> Option<()> {
-        let hero = heroes.hero;
+        let (hero, medium) = (heroes.hero, &self.scene.media()[medium.0 as usize]);
         if let Some(properties) = medium.homogeneous(lambda) {
             let passed = attenuation(properties.sigma_t(), t_max.min(f32::MAX));
             passage.t *= passed;
@@ -184,12 +177,7 @@ impl Tracer<'_> {
             let [mut t, end] = segment.t;
             let majorant = segment.majorant;
             loop {
-                let next = if majorant[hero] == 0.0 {
-                    end
-                } else {
-                    t + warp::sample_exponential(*u, majorant[hero])
-                };
-                *u = rng.uniform_f32();
+                let next = t + collisions.free_path(majorant[hero]);
                 let passed = attenuation(majorant, next.min(end) - t);
                 let passed = passed / passed[hero];
                 if next >= end {
@@ -206,7 +194,7 @@ impl Tracer<'_> {
                 let left = passage.estimate(heroes).max_component();
                 if left < FAINT {
                     // An end at random that keeps the mean.
-                    if left == 0.0 || rng.uniform_f32() < 0.75 {
+                    if left == 0.0 || collisions.uniform() < 0.75 {
                         return None;
                     }
                     passage.t *= 4.0;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{FlightEnd, Heroes, SpectralMis, Throughput};
+use crate::transport::ShadowRay;
 use crate::transport::path_state::PathState;
 use crate::{Control, Tracer};
 use description::{
@@ -98,7 +99,8 @@ fn expected(scene: &Scene, medium: MediumId, lambda: &SampledWavelengths) -> [[f
 /// Calls `sample` many times and tests the mean of each component.
 fn assert_means<const N: usize>(
     what: &str,
-    (scene, view): &(Scene, View),
+    scene: &Scene,
+    view: &View,
     expected: [[f64; 4]; N],
     sample: impl Fn(&mut Tracer) -> [SampledSpectrum; N],
 ) {
@@ -140,7 +142,8 @@ fn fly(
     tracer: &mut Tracer,
     medium: MediumId,
     lambda: &SampledWavelengths,
-    (beta, heroes): (SampledSpectrum, Heroes),
+    beta: SampledSpectrum,
+    heroes: Heroes,
 ) -> [SampledSpectrum; 3] {
     let mut path = Throughput { beta, ..Throughput::ONE };
     let flight = tracer.fly(medium, &ray(), LENGTH, lambda, &heroes, &mut path);
@@ -161,9 +164,9 @@ fn flights_pass_scatter_and_emit_as_integrals_say() {
             for value in &mut expected {
                 value.iter_mut().zip(beta.0).for_each(|(value, beta)| *value *= f64::from(beta));
             }
-            assert_means(&format!("{name}, {choice}"), &scene, expected, |tracer| {
+            assert_means(&format!("{name}, {choice}"), &scene.0, &scene.1, expected, |tracer| {
                 let heroes = heroes(tracer.sampler.get_1d());
-                fly(tracer, medium, &lambda, (beta, heroes))
+                fly(tracer, medium, &lambda, beta, heroes)
             });
         }
     }
@@ -202,12 +205,13 @@ fn shadow_rays_have_the_transmittance_of_the_ray() {
             let [mut transmittance, ..] = expected(&scene.0, medium, &lambda);
             // Of a wavelength that cannot be the hero nothing is known.
             transmittance.iter_mut().zip(beta.0).for_each(|(value, beta)| *value *= f64::from(beta));
-            assert_means(&format!("{name}, {choice}"), &scene, [transmittance], |tracer| {
+            assert_means(&format!("{name}, {choice}"), &scene.0, &scene.1, [transmittance], |tracer| {
                 let heroes = heroes(tracer.sampler.get_1d());
                 // A direction that is not of unit length, as to points on lights.
                 let ray = Ray { d: ray().d * LENGTH, ..ray() };
                 let numbers = tracer.two_numbers();
-                let passage = tracer.transmittance((&ray, 1.0), Some(medium), &lambda, &heroes, numbers);
+                let passage =
+                    tracer.passage(&ShadowRay { ray, t_max: 1.0 }, Some(medium), &lambda, &heroes, numbers);
                 [passage.map_or(SampledSpectrum::ZERO, |passage| passage.estimate(&heroes)) * beta]
             });
         }
@@ -220,7 +224,7 @@ fn the_first_wavelength_goes_on_alone() {
     for (name, medium) in ALL {
         let [transmittance, ..] = expected(&scene.0, medium, &lambda);
         let twice = [transmittance[0] * transmittance[0]; 4];
-        assert_means(name, &scene, [twice], |tracer| {
+        assert_means(name, &scene.0, &scene.1, [twice], |tracer| {
             let spectral = Some(SpectralMis::new(Heroes::any(tracer.sampler.get_1d())));
             let path = PathState::new(ray().into(), 0);
             let mut path = PathState { medium: Some(medium), spectral, ..path };

@@ -17,13 +17,13 @@ mod walk;
 use math::{Normal3, Point3Error, Vector3};
 use scattering::{Body, Bsdf, BsdfSample, Bxdf};
 use scene::SurfaceInteraction;
-use scene::light::LightSampleContext;
 use scene::material::MaterialId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::media::Heroes;
 use super::path_state::{PathState, Scattered};
+use super::vertex::SurfaceVertex;
 
 /// The point where a path enters a body.
 #[derive(Clone, Copy)]
@@ -127,32 +127,36 @@ impl PathState {
     pub(crate) fn go_under<'a>(
         &mut self,
         tracer: &mut Tracer,
-        (entry, context): (&SurfaceInteraction, LightSampleContext),
-        (body, scattered): (Body<'_, 'a>, &Scattered),
+        vertex: &SurfaceVertex,
+        body: Body<'_, 'a>,
+        scattered: &Scattered,
         lambda: &SampledWavelengths,
     ) -> Option<Exit<'a>> {
         let medium = self.medium;
-        self.scatter(entry, context, scattered);
+        self.scatter(vertex, scattered);
         self.medium = medium;
-        Some(self.pass_under(tracer, &entry.into(), (body, scattered.sample.wi), lambda)?.by(body))
+        let entry = vertex.surface.into();
+        Some(self.pass_under(tracer, &entry, body, scattered.sample.wi, lambda)?.by(body))
     }
 
-    /// Leads the path out of a body that it has entered in a direction, to a point.
+    /// Leads the path out of a body that it has entered along `wi`, to a point.
     pub(crate) fn leave_body(
         &mut self,
         tracer: &mut Tracer,
         entry: &Entry,
-        under: (Body, Vector3),
+        body: Body,
+        wi: Vector3,
         lambda: &SampledWavelengths,
     ) -> Option<SurfaceInteraction> {
-        self.pass_under(tracer, entry, under, lambda).map(|left| left.surface)
+        self.pass_under(tracer, entry, body, wi, lambda).map(|left| left.surface)
     }
 
     fn pass_under(
         &mut self,
         tracer: &mut Tracer,
         entry: &Entry,
-        (body, wi): (Body, Vector3),
+        body: Body,
+        wi: Vector3,
         lambda: &SampledWavelengths,
     ) -> Option<Left> {
         let (heroes, r_u) = match &self.spectral {

@@ -48,10 +48,9 @@ impl Tracer<'_> {
         let Interior { sigma_s, sigma_t, phase, eta } = *inside;
         let (mut value, mut density) = (SampledSpectrum::ONE, SampledSpectrum::ONE);
         let mut ray = Ray::spawn(entry.p, entry.n, wi, entry.time);
-        let (mut u, mut rng) = self.collisions();
+        let mut collisions = self.collisions();
         for _ in 0..MAX_EVENTS {
-            let free = sampling::warp::sample_exponential(u, sigma_t[heroes.hero]);
-            u = rng.uniform_f32();
+            let free = collisions.free_path(sigma_t[heroes.hero]);
             let Some((mut surface, distance)) = self.boundary(&ray, free, entry) else {
                 if !(free.is_finite() && self.may_trace()) {
                     return None;
@@ -61,11 +60,11 @@ impl Tracer<'_> {
                 value *= sigma_s * passed / pdf;
                 density *= sigma_t * passed / pdf;
                 let survival = (value.max_component() / heroes.mean(density)).min(1.0);
-                if rng.uniform_f32() >= survival {
+                if collisions.uniform() >= survival {
                     return None;
                 }
                 value /= survival;
-                let (wi, _) = phase.sample_p(-ray.d, Vec2::new(rng.uniform_f32(), rng.uniform_f32()));
+                let (wi, _) = phase.sample_p(-ray.d, Vec2::new(collisions.uniform(), collisions.uniform()));
                 ray = Ray::new(ray.at(free), wi, ray.time);
                 continue;
             };
@@ -75,7 +74,7 @@ impl Tracer<'_> {
             let (wo, n) = (-ray.d, surface.surface.n);
             let reflected = fr_dielectric(-wo.dot(n).abs(), eta);
             let stays = reflected.min(1.0 - least);
-            if rng.uniform_f32() >= stays {
+            if collisions.uniform() >= stays {
                 surface.surface.wo = wo;
                 return Some(Walked { surface, value, density, probability: 1.0 - stays });
             }
