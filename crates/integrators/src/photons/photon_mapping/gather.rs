@@ -25,9 +25,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::PhotonMappingDesc;
-use math::{Normal3, RayDifferential, Vec2};
-use scattering::{Directions, TransportMode};
-use scene::medium::MediumId;
+use math::{Normal3, Point3, RayDifferential, Vec2};
+use scattering::{Directions, HenyeyGreenstein, TransportMode};
+use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::hero_only;
@@ -98,13 +98,48 @@ enum Sought {
     Emission,
 }
 
-/// A point at which photons are looked up.
-#[derive(Clone, Copy)]
-struct GatherPoint<'a> {
-    vertex: &'a SurfaceVertex<'a>,
-    /// Scattering events from the camera, this one included.
-    depth: u32,
-    lambda: &'a SampledWavelengths,
+/// A path that gathers light.
+struct Search {
+    path: PathState,
+    lambda: SampledWavelengths,
+    sought: Sought,
+    /// Whether the caustic map has the emission that the ray finds, if it was scattered specularly.
+    is_mapped: bool,
+    /// The light so far.
+    l: SampledSpectrum,
+}
+
+impl Search {
+    /// Whether emission at the end of the ray counts: all that the map does not have, and after a
+    /// vertex that is not specular, where light sampling finds it, too, and it is weighted.
+    fn counts_emission(&self) -> bool {
+        !self.is_mapped || self.path.origin.is_some()
+    }
+
+    /// Leaves a surface along a scattered ray; `false` if the path ends there.
+    fn leave(&mut self, vertex: &SurfaceVertex, scattered: &Scattered, tracer: &mut Tracer) -> bool {
+        let Search { path, sought, is_mapped, .. } = self;
+        let flags = vertex.bsdf.flags();
+        if scattered.sample.flags.is_specular() {
+            // The photon maps do not include light for specular lobes.
+            *is_mapped &= !flags.is_non_specular();
+        } else {
+            if *sought == Sought::Reflected {
+                return false;
+            }
+            if flags.is_diffuse() {
+                *sought = Sought::Emission;
+            }
+            *is_mapped = true;
+        }
+        path.scatter(vertex, scattered);
+        path.survives(tracer.sampler)
+    }
+
+    /// Adds the radiance of lights that the ray has found.
+    fn add_emission(&mut self, l: SampledSpectrum) {
+        self.l += known(self.path.beta * l, &self.lambda);
+    }
 }
 
 impl Gather<'_> {
@@ -115,128 +150,131 @@ impl Gather<'_> {
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        let medium = tracer.view.medium;
-        self.follow(ray, medium, *lambda, Sought::Radiance, 0, tracer)
+        let path = PathState { medium: tracer.view.medium, ..PathState::new(ray, 0) };
+        self.follow(path, *lambda, Sought::Radiance, tracer)
     }
 
-    /// The radiance along a ray in a medium that leaves scattering event number `depth`.
+    /// The radiance that a path finds.
     fn follow(
         &self,
-        ray: RayDifferential,
-        medium: Option<MediumId>,
-        mut lambda: SampledWavelengths,
-        mut sought: Sought,
-        depth: u32,
+        path: PathState,
+        lambda: SampledWavelengths,
+        sought: Sought,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        let (scene, direct) = (tracer.scene, self.direct);
-        let mut l = SampledSpectrum::ZERO;
-        let mut path = PathState { medium, ..PathState::new(ray, depth) };
-        // Whether the caustic map has the emission that the ray finds beyond specular surfaces.
-        let mut emission_is_known = sought == Sought::Reflected;
-        loop {
-            let counts_emission = !emission_is_known || path.origin.is_some();
-            let hit = tracer.intersect(&path.ray.ray);
-            if let Some(id) = path.medium {
-                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
-                let flight = tracer.fly_alone(id, &path.ray.ray, t_max, &lambda, &mut path.beta);
-                // At a diffuse surface the photon maps have the light that media emit.
-                if sought != Sought::Emission {
-                    l += known(flight.emitted, &lambda);
-                }
-                match flight.end {
-                    FlightEnd::Passed => (),
-                    FlightEnd::Absorbed => return l,
-                    FlightEnd::Scattered { p, phase, .. } => {
-                        if sought == Sought::Emission || path.depth == self.settings.max_depth {
-                            return l;
-                        }
-                        path.depth += 1;
-                        let vertex = MediumVertex::new(p, &path.ray.ray, phase);
-                        if sought == Sought::Reflected {
-                            let scattered = self.scattered(&self.maps.global, &vertex, path.depth, &lambda);
-                            return l + path.beta * scattered;
-                        }
-                        l += self.medium_vertex(&vertex, &path, &lambda, tracer);
-                        // The scattered ray finds emission, as behind a diffuse surface.
-                        sought = Sought::Emission;
-                        emission_is_known = true;
-                        let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
-                        path.ray = vertex.context.spawn_ray(wi).into();
-                        path.origin = Some(Origin { context: vertex.context, pdf });
-                        continue;
-                    }
-                }
-            }
-            let Some((mut surface, t)) = hit else {
-                if counts_emission {
-                    let escaped = direct.escaped(scene, &path.ray, path.origin.as_ref(), &lambda);
-                    l += known(path.beta * escaped, &lambda);
-                }
-                return l;
-            };
-            if counts_emission {
-                let emitted = direct.emitted(scene, &surface, path.origin.as_ref(), &lambda);
-                l += known(path.beta * emitted, &lambda);
-            }
-            let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, &mut lambda) else {
-                path.pass_through(&surface, t);
-                continue;
-            };
-            if sought == Sought::Emission || path.depth == self.settings.max_depth {
-                return l;
-            }
-            path.depth += 1;
+        let is_mapped = sought == Sought::Reflected;
+        let mut search = Search { path, lambda, sought, is_mapped, l: SampledSpectrum::ZERO };
+        while self.goes_on(&mut search, tracer) {}
+        search.l
+    }
 
-            bsdf.bxdf.keep_boundary();
-            let mut vertex = SurfaceVertex::new(&surface, &bsdf);
-            let point = GatherPoint { vertex: &vertex, depth: path.depth, lambda: &lambda };
-            let (found, scattered) = self.at_surface(&path, &point, sought, tracer);
-            l += found;
-            let Some(mut scattered) = scattered else { return l };
-            let exit;
-            if let Some(body) = entered(&bsdf, &surface, &scattered.sample) {
-                let Some(left) = path.go_under(tracer, &vertex, body, &scattered, &lambda) else {
-                    return l;
-                };
-                exit = left;
-                vertex = SurfaceVertex::new(&exit.surface, &exit.bsdf);
-                let point = GatherPoint { vertex: &vertex, depth: path.depth, lambda: &lambda };
-                let (found, again) = self.at_surface(&path, &point, sought, tracer);
-                l += found;
-                let Some(again) = again else { return l };
-                scattered = again;
-            }
-            let flags = vertex.bsdf.flags();
-            if scattered.sample.flags.is_specular() {
-                // The photon maps do not include light for specular lobes.
-                emission_is_known &= !flags.is_non_specular();
-            } else {
-                if sought == Sought::Reflected {
-                    return l;
+    /// Leads a path along its ray, and scatters it at the end; `false` if it ends there.
+    fn goes_on(&self, search: &mut Search, tracer: &mut Tracer) -> bool {
+        let hit = tracer.intersect(&search.path.ray.ray);
+        let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+        match (self.fly(search, t_max, tracer), hit) {
+            (FlightEnd::Absorbed, _) => false,
+            (FlightEnd::Scattered { p, phase, .. }, _) => self.scatter_in_medium(search, p, phase, tracer),
+            (FlightEnd::Passed, Some((surface, t))) => self.scatter(search, surface, t, tracer),
+            (FlightEnd::Passed, None) => {
+                if search.counts_emission() {
+                    let Search { path, lambda, .. } = &*search;
+                    let l = self.direct.escaped(tracer.scene, &path.ray, path.origin.as_ref(), lambda);
+                    search.add_emission(l);
                 }
-                if flags.is_diffuse() {
-                    sought = Sought::Emission;
-                }
-                emission_is_known = true;
-            }
-            path.scatter(&vertex, &scattered);
-            if !path.survives(tracer.sampler) {
-                return l;
+                false
             }
         }
     }
 
-    /// The light that a surface scatters along the path, except what the scattered ray finds, and
-    /// this ray.
+    /// Flies through the medium of the ray; the end is never a vertex beyond what is sought.
+    fn fly(&self, search: &mut Search, t_max: f32, tracer: &mut Tracer) -> FlightEnd {
+        let Search { path, lambda, sought, l, .. } = search;
+        let Some(medium) = path.medium else { return FlightEnd::Passed };
+        let flight = tracer.fly_alone(medium, &path.ray.ray, t_max, lambda, &mut path.beta);
+        // At a diffuse surface the photon maps have the light that media emit.
+        if *sought != Sought::Emission {
+            *l += known(flight.emitted, lambda);
+        }
+        match flight.end {
+            FlightEnd::Scattered { .. } if self.is_last(search) => FlightEnd::Absorbed,
+            end => end,
+        }
+    }
+
+    /// Whether a path scatters no more.
+    fn is_last(&self, search: &Search) -> bool {
+        search.sought == Sought::Emission || search.path.depth == self.settings.max_depth
+    }
+
+    /// Scatters a path in a medium; `false` if it ends there.
+    fn scatter_in_medium(
+        &self,
+        search: &mut Search,
+        p: Point3,
+        phase: HenyeyGreenstein,
+        tracer: &mut Tracer,
+    ) -> bool {
+        let Search { path, lambda, sought, is_mapped, l } = search;
+        path.depth += 1;
+        let vertex = MediumVertex::new(p, &path.ray.ray, phase);
+        if *sought == Sought::Reflected {
+            *l += path.beta * self.scattered(&self.maps.global, &vertex, path.depth, lambda);
+            return false;
+        }
+        *l += self.medium_vertex(&vertex, path, lambda, tracer);
+        // The scattered ray finds emission, as behind a diffuse surface.
+        (*sought, *is_mapped) = (Sought::Emission, true);
+        let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
+        path.ray = vertex.context.spawn_ray(wi).into();
+        path.origin = Some(Origin { context: vertex.context, pdf });
+        true
+    }
+
+    /// Scatters a path at a surface that it has hit at distance `t`; `false` if it ends there.
+    fn scatter(
+        &self,
+        search: &mut Search,
+        mut surface: SurfaceInteraction,
+        t: f32,
+        tracer: &mut Tracer,
+    ) -> bool {
+        if search.counts_emission() {
+            let Search { path, lambda, .. } = &*search;
+            let l = self.direct.emitted(tracer.scene, &surface, path.origin.as_ref(), lambda);
+            search.add_emission(l);
+        }
+        let Search { path, lambda, .. } = search;
+        let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
+            path.pass_through(&surface, t);
+            return true;
+        };
+        if self.is_last(search) {
+            return false;
+        }
+        search.path.depth += 1;
+        bsdf.bxdf.keep_boundary();
+        let vertex = SurfaceVertex::new(&surface, &bsdf);
+        let Some(scattered) = self.at_surface(search, &vertex, tracer) else { return false };
+        let Some(body) = entered(&bsdf, &surface, &scattered.sample) else {
+            return search.leave(&vertex, &scattered, tracer);
+        };
+        let Search { path, lambda, .. } = search;
+        let Some(exit) = path.go_under(tracer, &vertex, body, &scattered, lambda) else { return false };
+        let vertex = SurfaceVertex::new(&exit.surface, &exit.bsdf);
+        let Some(scattered) = self.at_surface(search, &vertex, tracer) else { return false };
+        search.leave(&vertex, &scattered, tracer)
+    }
+
+    /// Adds the light that a surface scatters along the path, except what the scattered ray finds;
+    /// gives this ray.
     fn at_surface(
         &self,
-        path: &PathState,
-        point: &GatherPoint,
-        sought: Sought,
+        search: &mut Search,
+        vertex: &SurfaceVertex,
         tracer: &mut Tracer,
-    ) -> (SampledSpectrum, Option<Scattered>) {
-        let &GatherPoint { vertex, lambda, .. } = point;
+    ) -> Option<Scattered> {
+        let &mut Search { ref path, ref lambda, sought, .. } = search;
         let flags = vertex.bsdf.flags();
         let mut l = SampledSpectrum::ZERO;
         if sought == Sought::Radiance
@@ -249,15 +287,16 @@ impl Gather<'_> {
         let scattered = Scattered::sample(vertex, tracer.sampler);
         if flags.is_non_specular() {
             if sought == Sought::Reflected {
-                l += path.beta * self.reflected(&self.maps.global, point);
+                l += path.beta * self.reflected(&self.maps.global, vertex, path.depth, lambda);
             } else {
-                l += path.beta * self.reflected(&self.maps.caustic, point);
+                l += path.beta * self.reflected(&self.maps.caustic, vertex, path.depth, lambda);
                 if flags.is_diffuse() {
-                    l += path.beta * self.indirect(path, point, tracer);
+                    l += path.beta * self.indirect(path, vertex, lambda, tracer);
                 }
             }
         }
-        (l, scattered)
+        search.l += l;
+        scattered
     }
 
     /// The light that a point in a medium scatters along the path, except emission that the
@@ -286,7 +325,8 @@ impl Gather<'_> {
         for i in 0..count {
             let (wi, _) = vertex.phase.sample_p(vertex.wo, lattice_point(i, count, u));
             let ray = vertex.context.spawn_ray(wi).into();
-            sum += self.follow(ray, path.medium, *lambda, Sought::Reflected, path.depth, tracer);
+            let onward = PathState { medium: path.medium, ..PathState::new(ray, path.depth) };
+            sum += self.follow(onward, *lambda, Sought::Reflected, tracer);
         }
         l + path.beta * sum / count as f32
     }
@@ -315,15 +355,21 @@ impl Gather<'_> {
     }
 
     /// Reflected indirect light.
-    fn indirect(&self, path: &PathState, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
+    fn indirect(
+        &self,
+        path: &PathState,
+        vertex: &SurfaceVertex,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> SampledSpectrum {
         let count = self.settings.gather;
-        if point.depth == self.settings.max_depth {
+        if path.depth == self.settings.max_depth {
             return SampledSpectrum::ZERO;
         }
         if count == 0 {
-            return self.reflected(&self.maps.global, point);
+            return self.reflected(&self.maps.global, vertex, path.depth, lambda);
         }
-        let &GatherPoint { vertex: SurfaceVertex { surface, bsdf, .. }, depth, lambda } = point;
+        let SurfaceVertex { surface, bsdf, .. } = vertex;
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
@@ -338,15 +384,21 @@ impl Gather<'_> {
             }
             let ray = surface.spawn_scattered(&path.ray, &sample);
             let medium = surface.medium_towards(sample.wi, path.medium);
-            let l = self.follow(ray, medium, *lambda, Sought::Reflected, depth, tracer);
+            let onward = PathState { medium, ..PathState::new(ray, path.depth) };
+            let l = self.follow(onward, *lambda, Sought::Reflected, tracer);
             sum += throughput(surface, &sample) * l;
         }
         sum / count as f32
     }
 
     /// Reflected light of the photons of a map.
-    fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
-        let &GatherPoint { vertex: SurfaceVertex { surface, bsdf, .. }, depth, lambda } = point;
+    fn reflected(
+        &self,
+        map: &PhotonMap,
+        SurfaceVertex { surface, bsdf, .. }: &SurfaceVertex,
+        depth: u32,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
         let s = &surface.surface;
         let deepest = self.settings.max_depth + 1 - depth;
         let transmissive = bsdf.flags().is_transmissive();
