@@ -1,8 +1,5 @@
 // Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 
-// Paths of this survival probability or more survive.
-const CERTAIN = 0.999;
-
 // A path between two of its vertices.
 struct Path {
     ray: Ray,
@@ -75,8 +72,8 @@ fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, s
 
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
-    let probability = 3 * SampledSpectrum_max_component((*path).beta * (*path).eta_scale);
-    if ((*path).depth <= 1 || probability >= CERTAIN) {
+    let probability = camera_path_survival((*path).beta * (*path).eta_scale);
+    if (!plays_roulette((*path).depth, probability)) {
         return true;
     }
     if (!(probability > 0 && get_1d() < probability)) {

@@ -3,9 +3,6 @@
 // Kernels say whether there are camera paths, beside which light paths have a weight, and whether
 // these are connected to anything.
 
-// Paths of this survival probability or more survive.
-const CERTAIN = 0.999;
-
 // Partial weights of a subpath.
 struct Partial {
     vcm: f32,
@@ -372,7 +369,7 @@ fn leave(walk: ptr<function, Subpath>, arrival: Arrival, s: Surface, uc: f32, u:
 // Plays Russian roulette.
 fn survive(walk: ptr<function, Subpath>) {
     let probability = SampledSpectrum_max_component((*walk).share);
-    if (!(*walk).goes_on || (*walk).depth <= 1 || probability >= CERTAIN) {
+    if (!(*walk).goes_on || !plays_roulette((*walk).depth, probability)) {
         return;
     }
     (*walk).goes_on = probability > 0 && get_1d() < probability;

@@ -1,9 +1,6 @@
 // Path tracing through media, as `integrators/src/camera_paths/vol_path.rs` has it: next-event
 // estimation, multiple importance sampling over directions and wavelengths, Russian roulette.
 
-// Paths of this survival probability or more survive.
-const CERTAIN = 0.999;
-
 // A path between two of its vertices.
 struct Path {
     ray: Ray,
@@ -124,8 +121,8 @@ fn take_way(path: ptr<function, Path>, value: vec4f, density: vec4f, heroes: Her
 
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
-    let probability = 3 * SampledSpectrum_max_component(carried(*path) * (*path).eta_scale);
-    if ((*path).depth <= 1 || probability >= CERTAIN) {
+    let probability = camera_path_survival(carried(*path) * (*path).eta_scale);
+    if (!plays_roulette((*path).depth, probability)) {
         return true;
     }
     if (!(probability > 0 && get_1d() < probability)) {

@@ -51,13 +51,13 @@ macro_rules! laws {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/law/", $name, ".wgsl"))),*] };
 }
 
-const LAWS: [&str; 63] = laws! {
+const LAWS: [&str; 64] = laws! {
     "address" "arc" "balance" "bilerp" "checkerboard" "circular" "closed" "cluster" "conductor" "dielectric"
     "diffuse" "diffuse_transmission" "direct" "disk" "dispersion" "dots" "error" "exponential" "flags"
     "flat_shape" "float" "footprint" "fractal" "frame" "fresnel" "function" "hair" "hash"
     "hash_sequence" "independent" "interval" "layered" "logarithm" "mapping" "marble" "microfacet"
     "minimum_differentials" "noise" "octahedral" "orthographic" "perspective" "phase" "power"
-    "randomize" "ray" "rectangle" "rgb_spectrum" "sample" "sampled" "scatter" "screen" "sobol"
+    "randomize" "ray" "rectangle" "rgb_spectrum" "roulette" "sample" "sampled" "scatter" "screen" "sobol"
     "sphere" "spherical" "square" "thin_dielectric" "triangle" "tuples" "uplift" "vector" "walk"
     "wavelengths" "zsobol"
 };

@@ -205,6 +205,26 @@ impl Bidirectional<'_> {
         })
     }
 
+    /// s ≥ 1, t ≥ 2: next-event estimation at a vertex of a camera subpath, and its connections to
+    /// the vertices of a light subpath, up to the maximum length of a path.
+    pub fn connect_each<'v>(
+        &self,
+        camera: &Vertex,
+        lights: impl Iterator<Item = &'v Vertex<'v>>,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+        mut add: impl FnMut(&Found, &mut Tracer),
+    ) {
+        if let Some(found) = self.direct(camera, lambda, tracer) {
+            add(&found, tracer);
+        }
+        for light in lights.filter(|light| camera.depth + light.depth <= self.max_depth) {
+            if let Some(found) = self.connect(camera, light, lambda, tracer) {
+                add(&found, tracer);
+            }
+        }
+    }
+
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses;
     /// `None` unless a film position lies within `reach`.
     pub fn connect_to_camera(

@@ -193,16 +193,8 @@ impl Integrator for Vcm {
                     Encounter::Light(found) if chain.add(&found) => (),
                     Encounter::Light(found) => add(&found, tracer),
                     Encounter::Vertex(vertex) if vertex.is_connectible() => {
-                        let depths = paths.max_depth - vertex.depth;
-                        if let Some(found) = paths.direct(vertex, lambda, tracer) {
-                            add(&found, tracer);
-                        }
                         let lights = light_subpath.iter().map(|(light, _)| light);
-                        for light in lights.filter(|light| light.depth <= depths) {
-                            if let Some(found) = paths.connect(vertex, light, lambda, tracer) {
-                                add(&found, tracer);
-                            }
-                        }
+                        paths.connect_each(vertex, lights, lambda, tracer, &mut add);
                         if vertex.can_merge() {
                             photons.within(vertex.p.p, |photon| {
                                 if paths.may_merge(vertex, photon) {

@@ -140,7 +140,7 @@ impl PathState {
 
     /// Plays Russian roulette; `false` if the path has ended.
     pub fn survives(&mut self, sampler: &mut Sampler) -> bool {
-        let probability = roulette::of_camera_path(self.beta * self.eta_scale);
+        let probability = roulette::camera_path_survival(self.beta * self.eta_scale);
         let survival = roulette::survival(self.depth, probability, sampler);
         self.beta /= survival.unwrap_or(1.0);
         survival.is_some()

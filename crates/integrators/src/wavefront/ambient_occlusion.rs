@@ -7,12 +7,12 @@ use scene::material::Material;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, BatchColumns};
-use super::columns::Rows;
+use super::indices::Indices;
 use super::numbers::draw_2d;
 use super::pass::Pass;
-use super::paths::Paths;
+use super::path_columns::PathColumns;
 use super::queues::{PathHit, Queues};
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 use crate::AmbientOcclusion;
 
 impl WaveIntegrator for AmbientOcclusion {
@@ -20,27 +20,27 @@ impl WaveIntegrator for AmbientOcclusion {
 
     fn shade(&self, batch: &mut Batch) {
         let scene = batch.pass.pixels.scene;
-        let (mut turns, mut rows) = (Vec::new(), Vec::new());
-        for (turn, (&row, &geometry)) in
+        let (mut hit_indices, mut rows) = (Vec::new(), Vec::new());
+        for (hit_index, (&row, &geometry)) in
             batch.columns.segments.rows.iter().zip(&batch.columns.hits.geometry).enumerate()
         {
             let Some(entry) = scene.geometries().get(geometry as usize) else { continue };
             if let Material::Interface | Material::Mix(_) =
                 scene.materials()[entry.material.0 as usize].material
             {
-                batch.columns.queues.scalar.push(PathHit { path: row, hit: turn as u32 });
+                batch.columns.queues.scalar.push(PathHit { path: row, hit: hit_index as u32 });
             } else {
-                turns.push(turn as u32);
+                hit_indices.push(hit_index as u32);
                 rows.push(row);
             }
         }
         let BatchColumns { segments, hits, points, .. } = &mut *batch.columns;
-        scene.world().points(segments.rays(), hits, &turns, points);
+        scene.world().points(segments.rays(), hits, &hit_indices, points);
         batch.pass.instruction_set.dispatch_large(Occlude {
             pass: batch.pass,
             algorithm: self,
             points: &batch.columns.points,
-            turns: &turns,
+            hit_indices: &hit_indices,
             rows: &rows,
             segments: &batch.columns.segments,
             paths: &batch.columns.paths,
@@ -57,10 +57,10 @@ struct Occlude<'a, 'b> {
     /// Their surface points.
     points: &'b PointColumns,
     /// Indices of hits, and their paths.
-    turns: &'b [u32],
+    hit_indices: &'b [u32],
     rows: &'b [u32],
-    segments: &'b Segments,
-    paths: &'b Paths,
+    segments: &'b SegmentColumns,
+    paths: &'b PathColumns,
     queues: &'b mut Queues,
 }
 
@@ -69,13 +69,13 @@ impl Kernel for Occlude<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { pass, algorithm, points, turns, rows, segments, paths, queues } = self;
+        let Self { pass, algorithm, points, hit_indices, rows, segments, paths, queues } = self;
         for (part, queue) in rows.chunks(R::LANES).enumerate() {
             let first = part * R::LANES;
-            let rows = Rows::<R>::first(queue);
+            let rows = Indices::<R>::first(queue);
             let PatchPoints { p, n, ns, .. } = points.get::<R>(first);
             let u = draw_2d::<R>(&pass, &mut paths.address(rows, pass.pixels.index));
-            let places = Rows::<R>::first(&turns[first..first + queue.len()]);
+            let places = Indices::<R>::first(&hit_indices[first..first + queue.len()]);
             let time = R::gather(&segments.time, places.indices);
             let point = LightSampleContext { p, n, ns, time };
             let wo = -segments.direction.vector(places);

@@ -74,9 +74,9 @@ impl AreaLights {
 
     /// The light of a hit on a geometry whose first light is given, if it is in the table.
     #[inline]
-    pub fn light_of(&self, first: u32, hits: &HitColumns, turn: u32) -> Option<LightId> {
-        let light = LightId(first + hits.primitive[turn as usize]);
-        (self.contains(light) && hits.is_in_top_group(turn as usize)).then_some(light)
+    pub fn light_of(&self, first: u32, hits: &HitColumns, hit_index: u32) -> Option<LightId> {
+        let light = LightId(first + hits.primitive[hit_index as usize]);
+        (self.contains(light) && hits.is_in_top_group(hit_index as usize)).then_some(light)
     }
 
     /// The rows of these lights, and the lanes of `mask` whose lights are in the table; the rows

@@ -20,9 +20,9 @@ use super::materials::Shading;
 use super::media::MediumVertices;
 use super::normals::Perturb;
 use super::pass::Pass;
-use super::paths::Paths;
+use super::path_columns::PathColumns;
 use super::queues::{PathHit, Queues};
-use super::segments::{Besides, Segments};
+use super::segment_columns::{OptionalColumns, SegmentColumns};
 use super::shade::Shade;
 use super::stage::{Algorithm, Stage};
 use crate::Cancelled;
@@ -43,16 +43,16 @@ pub struct Batch<'a> {
 /// The columns of a batch. Those of the next batch take their memory.
 #[derive(Default)]
 pub(super) struct BatchColumns {
-    pub paths: Paths,
+    pub paths: PathColumns,
     pub queues: Queues,
     /// The paths whose rays are traced, in the order of their hits.
-    pub segments: Segments,
+    pub segments: SegmentColumns,
     pub hits: HitColumns,
     /// Surface points of some of the hits.
     pub points: PointColumns,
     /// Hits to be shaded in lanes.
     lanes: Groups,
-    /// The turns of paths that have left the scene.
+    /// The hits of paths that have left the scene.
     escaped: Vec<u32>,
     /// Hits whose group depends on more than their geometry.
     left: Vec<u32>,
@@ -91,15 +91,15 @@ impl<'a> Batch<'a> {
     }
 
     /// Starts a path for each pixel that takes a sample, whose camera ray may have differentials.
-    pub(super) fn begin(&mut self, tiles: &[FilmTile], besides: Besides) {
+    pub(super) fn begin(&mut self, tiles: &[FilmTile], optional: OptionalColumns) {
         let instruction_set = self.pass.instruction_set;
         let with_weights = !self.pass.pixels.view.camera.is_unweighted();
         let Self { pass, columns: BatchColumns { paths, segments, queues, .. }, .. } = self;
         let bounds = tiles.iter().map(FilmTile::bounds);
-        paths.start(bounds, |pixel| pass.pixels.takes(pixel), with_weights, besides.media);
-        segments.start_from_camera(paths.len(), besides, pass.pixels.view.medium);
-        queues.next.start(paths.len(), besides);
-        instruction_set.dispatch_large(Begin { pass: *pass, paths, segments, besides });
+        paths.start(bounds, |pixel| pass.pixels.takes(pixel), with_weights, optional.media);
+        segments.start_from_camera(paths.len(), optional, pass.pixels.view.medium);
+        queues.next.start(paths.len(), optional);
+        instruction_set.dispatch_large(Begin { pass: *pass, paths, segments, optional });
         queues.waiting.clear();
         if with_weights {
             queues.next.camera = segments.camera;
@@ -172,13 +172,13 @@ impl<'a> Batch<'a> {
     }
 
     /// The material at a hit on a geometry, after the choices of mixes.
-    fn material_at(&self, turn: u32, entry: &GeometryEntry) -> MaterialId {
+    fn material_at(&self, hit_index: u32, entry: &GeometryEntry) -> MaterialId {
         let &PixelSamples { scene, view, .. } = self.pass.pixels;
         if !matches!(scene.materials()[entry.material.0 as usize].material, Material::Mix(_)) {
             return entry.material;
         }
-        let hit = self.columns.hits.get(turn as usize).expect("invariant: paths without hit have ended");
-        let ray = self.columns.segments.state(turn as usize).ray;
+        let hit = self.columns.hits.get(hit_index as usize).expect("invariant: paths without hit have ended");
+        let ray = self.columns.segments.state(hit_index as usize).ray;
         let mut interaction = scene.interaction(&hit, scene.world().surface(&ray.ray, &hit));
         scene.material_at(view, &mut interaction, &ray)
     }
@@ -203,9 +203,9 @@ impl<'a> Batch<'a> {
             self.pass.instruction_set.dispatch_large(Escape { scene, direct, queue, segments, paths });
             return;
         }
-        for turn in queue.iter().map(|&turn| turn as usize) {
-            let row = segments.rows[turn] as usize;
-            let (state, lambda) = (segments.state(turn), paths.lambda(row));
+        for hit_index in queue.iter().map(|&hit_index| hit_index as usize) {
+            let row = segments.rows[hit_index] as usize;
+            let (state, lambda) = (segments.state(hit_index), paths.lambda(row));
             let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
             paths.add_light(row, l);
         }
@@ -216,19 +216,19 @@ impl<'a> Batch<'a> {
         let scene = self.pass.pixels.scene;
         let lanes = std::mem::take(&mut self.columns.lanes);
         for (id, group) in lanes.iter() {
-            let turns = &group.turns;
+            let hit_indices = &group.hit_indices;
             let BatchColumns { segments, hits, points, .. } = &mut *self.columns;
             let entry = &scene.materials()[id.0 as usize];
             if entry.bump_map.is_some() {
-                scene.world().points_with_shading(segments.rays(), hits, turns, points);
+                scene.world().points_with_shading(segments.rays(), hits, hit_indices, points);
             } else {
-                scene.world().points(segments.rays(), hits, turns, points);
+                scene.world().points(segments.rays(), hits, hit_indices, points);
             }
             if entry.normal_map.is_some() || entry.bump_map.is_some() {
                 self.pass.instruction_set.dispatch_large(Perturb {
                     pass: self.pass,
                     entry,
-                    turns,
+                    hit_indices,
                     segments,
                     points,
                 });
@@ -269,7 +269,7 @@ impl<'a> Batch<'a> {
             with_footprint,
             points,
             hits,
-            turns: &group.turns,
+            hit_indices: &group.hit_indices,
             rows: &group.rows,
             segments,
             paths,

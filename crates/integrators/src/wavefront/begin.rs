@@ -7,15 +7,15 @@ use scene::camera::differential_scale;
 
 use super::numbers::{CameraNumbers, draw_1d};
 use super::pass::Pass;
-use super::paths::Paths;
-use super::segments::{Besides, Segments, numbers_of};
+use super::path_columns::PathColumns;
+use super::segment_columns::{OptionalColumns, SegmentColumns, numbers_of};
 
 /// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
 pub(super) struct Begin<'a, 'b> {
     pub pass: Pass<'a>,
-    pub paths: &'b mut Paths,
-    pub segments: &'b mut Segments,
-    pub besides: Besides,
+    pub paths: &'b mut PathColumns,
+    pub segments: &'b mut SegmentColumns,
+    pub optional: OptionalColumns,
 }
 
 impl Kernel for Begin<'_, '_> {
@@ -41,14 +41,14 @@ impl Begin<'_, '_> {
         let time = ShutterSample::shutter(pixels.view, numbers.time);
         let sample = pixels.camera_sample(pixel, numbers.place, time, numbers.lens);
         let (paths, segments) = (&mut *self.paths, &mut *self.segments);
-        if self.besides.media {
+        if self.optional.media {
             paths.choose_heroes(first, draw_1d::<R>(&self.pass, &mut address));
         }
         address.dimension.store(&mut paths.dimension[first..]);
         sample.filter_weight.store(&mut paths.filter_weight[first..]);
         paths.set_wavelengths(first, &lambda);
         let camera = &pixels.view.camera;
-        let (ray, weight) = if self.besides.differentials {
+        let (ray, weight) = if self.optional.differentials {
             let (ray, mut differentials, weight) = camera.ray_and_neighbours(&sample);
             differentials.scale(&ray, R::splat(differential_scale(pixels.view.samples_per_pixel)));
             segments.differentials.store(first, numbers_of(&differentials));

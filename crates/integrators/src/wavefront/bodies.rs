@@ -56,14 +56,14 @@ impl Batch<'_> {
         let mut entering = std::mem::take(&mut self.columns.queues.entering);
         let mut exits = std::mem::take(&mut self.columns.exits);
         exits.start(entering.rows.len());
-        let mut points = group.turns.iter();
-        for (i, (&path, &hit)) in entering.rows.iter().zip(&entering.turns).enumerate() {
+        let mut points = group.hit_indices.iter();
+        for (i, (&path, &hit)) in entering.rows.iter().zip(&entering.hit_indices).enumerate() {
             // Both are in the same order.
             while points.next().is_some_and(|&other| other != hit) {}
-            let point = group.turns.len() - points.len() - 1;
+            let point = group.hit_indices.len() - points.len() - 1;
             self.follow(body, PathHit { path, hit }, point, entering.beta.row(i), &mut exits);
         }
-        let Exits { segments, points, turns } = &exits;
+        let Exits { segments, points, hit_indices } = &exits;
         let BatchColumns { hits, paths, queues, light_samples, .. } = &mut *self.columns;
         let stage = Stage {
             pass: self.pass,
@@ -71,7 +71,7 @@ impl Batch<'_> {
             with_footprint: false,
             points,
             hits,
-            turns,
+            hit_indices,
             rows: &segments.rows,
             segments,
             paths,
@@ -81,8 +81,8 @@ impl Batch<'_> {
         let leaving = Leaving(NormalizedFresnel::new(&body.table));
         self.pass.instruction_set.dispatch_large(Shade { material: &leaving, stage });
         self.columns.exits = exits;
-        let Entering { rows, turns, beta } = &mut entering;
-        [rows, turns].into_iter().for_each(Vec::clear);
+        let Entering { rows, hit_indices, beta } = &mut entering;
+        [rows, hit_indices].into_iter().for_each(Vec::clear);
         beta.clear();
         self.columns.queues.entering = entering;
     }
@@ -100,18 +100,18 @@ impl Batch<'_> {
         let BatchColumns { paths, segments, hits, points, .. } = &mut **columns;
         let (scene, row) = (pass.pixels.scene, place.path as usize);
         let lambda = paths.lambda(row);
-        let (point, turn) = (points.get::<f32>(point), place.hit as usize);
-        let ray = segments.ray(turn);
-        let material = scene.geometries()[hits.geometry[turn] as usize].material;
+        let (point, hit_index) = (points.get::<f32>(point), place.hit as usize);
+        let ray = segments.ray(hit_index);
+        let material = scene.geometries()[hits.geometry[hit_index] as usize].material;
         let entry = Entry { p: point.p, n: point.n, ns: point.ns, time: ray.time, material };
         let context =
             TextureContext { p: point.p.p, n: point.n, uv: point.uv, footprint: Footprint::point() };
         let body = body.bxdf(scene.textures(), &context, &lambda);
-        let depth = segments.depth[turn];
+        let depth = segments.depth[hit_index];
         let mut state = PathState::new(ray.into(), depth + 1);
         state.beta = beta;
         // As the boundary has scaled it, up to where it leaves.
-        state.eta_scale = segments.eta_scale[turn] * (body.boundary.eta * body.boundary.eta);
+        state.eta_scale = segments.eta_scale[hit_index] * (body.boundary.eta * body.boundary.eta);
         paths.resume(sampler, row, pass.pixels.index);
         let mut tracer = Tracer::new(scene, pass.pixels.view, pass.control, sampler, stats);
         let under = Body::Subsurface(&body);

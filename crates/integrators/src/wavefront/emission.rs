@@ -8,11 +8,11 @@ use scene::Scene;
 use scene::light::{ImageInfiniteLight, Light, LightId};
 use spectrum::SampledSpectrum;
 
-use super::columns::Rows;
+use super::indices::{HitIndices, Indices};
 use super::pass::Pass;
-use super::paths::Paths;
+use super::path_columns::PathColumns;
 use super::queues::PathHit;
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 use crate::transport::direct::{DirectLighting, power_heuristic};
 
 /// A hit of a light of the table.
@@ -29,8 +29,8 @@ pub(super) struct Emit<'a, 'b> {
     pub direct: &'b DirectLighting,
     pub hits: &'b HitColumns,
     pub found: &'b [LightHit],
-    pub segments: &'b Segments,
-    pub paths: &'b mut Paths,
+    pub segments: &'b SegmentColumns,
+    pub paths: &'b mut PathColumns,
 }
 
 impl Kernel for Emit<'_, '_> {
@@ -48,14 +48,14 @@ impl Emit<'_, '_> {
     #[inline(always)]
     fn add<R: Real>(&mut self, found: &[LightHit]) {
         let [mut x, mut y] = [[0.0; MAX_LANES]; 2];
-        let [mut queue, mut turns, mut lights] = [[0; MAX_LANES]; 3];
+        let [mut queue, mut hit_indices, mut lights] = [[0; MAX_LANES]; 3];
         for (lane, &LightHit { place: PathHit { path, hit }, light }) in found.iter().enumerate() {
             let [u, v] = [&self.hits.uv[0], &self.hits.uv[1]].each(|column| column[hit as usize]);
             (x[lane], y[lane]) = (u, v);
-            (queue[lane], turns[lane], lights[lane]) = (path, hit, light);
+            (queue[lane], hit_indices[lane], lights[lane]) = (path, hit, light);
         }
-        let rows = Rows::<R>::first(&queue[..found.len()]);
-        let turns = Rows::<R>::first(&turns[..found.len()]);
+        let rows = Indices::<R>::first(&queue[..found.len()]);
+        let hit_indices = Indices::<R>::first(&hit_indices[..found.len()]);
         let uv = Vec2::new(R::load(&x), R::load(&y));
         let lights = R::Int::load(&lights);
 
@@ -64,20 +64,20 @@ impl Emit<'_, '_> {
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
         let emitters = area_lights.emitters::<R>(table_rows);
         let lambda = paths.lambda_lanes(rows);
-        let wo = -segments.direction.vector(turns);
+        let wo = -segments.direction.vector(hit_indices);
         let l = area_lights.radiance(pixels.scene, &emitters, emitters.shape.n, wo, &lambda, active);
         let is_lit = active & !l.is_black();
 
-        let pdf = R::gather(&segments.pdf, turns.indices);
+        let pdf = R::gather(&segments.pdf, hit_indices.indices);
         let is_weighted = is_lit & pdf.gt(R::zero());
         let mut weight = R::one();
         if is_weighted.any() {
-            let context = segments.last_vertex(turns);
+            let context = segments.last_vertex(hit_indices);
             let pmf = self.direct.lights().pmf_lanes(&context, lights, is_weighted);
             let other = pmf * emitters.shape.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
         }
-        let beta = segments.beta.get::<R>(turns);
+        let beta = segments.beta.get::<R>(hit_indices);
         let sum: SampledSpectrum<R> = paths.l.get(rows) + beta * (l * weight);
         paths.l.set(rows, is_lit, sum);
     }
@@ -88,10 +88,10 @@ impl Emit<'_, '_> {
 pub(super) struct Escape<'a, 'b> {
     pub scene: &'a Scene,
     pub direct: &'a DirectLighting,
-    /// The turns of paths.
+    /// The indices of their hits.
     pub queue: &'b [u32],
-    pub segments: &'b Segments,
-    pub paths: &'b mut Paths,
+    pub segments: &'b SegmentColumns,
+    pub paths: &'b mut PathColumns,
 }
 
 impl Escape<'_, '_> {
@@ -113,24 +113,24 @@ impl Kernel for Escape<'_, '_> {
     fn run<R: Real>(self) {
         let Self { scene, direct, queue, segments, paths } = self;
         for queue in queue.chunks(R::LANES) {
-            let turns = Rows::<R>::first(queue);
-            let indices = R::Int::gather(&segments.rows, turns.indices);
-            let rows = Rows { indices, active: turns.active };
+            let hit_indices = Indices::<R>::first(queue);
+            let indices = R::Int::gather(&segments.rows, hit_indices.indices);
+            let rows = Indices { indices, active: hit_indices.active };
             let lambda = paths.lambda_lanes(rows);
-            let w = segments.direction.vector(turns);
+            let w = segments.direction.vector(hit_indices);
             let mut l = SampledSpectrum::splat(R::zero());
             for &id in scene.infinite_lights() {
                 match scene.light(id).row() {
                     // Light samples leave these lights out, so that their light counts fully.
                     Light::UniformInfinite(light) => l += light.radiance.sample(&lambda),
                     Light::ImageInfinite(sky) => {
-                        let weight = sky_weight(direct, id, sky, segments, turns, w);
+                        let weight = sky_weight(direct, id, sky, segments, hit_indices, w);
                         l += sky.le_at_rest(w, &lambda) * weight;
                     }
                     _ => unreachable!("invariant: other lights are not infinite"),
                 }
             }
-            let sum: SampledSpectrum<R> = paths.l.get(rows) + segments.beta.get::<R>(turns) * l;
+            let sum: SampledSpectrum<R> = paths.l.get(rows) + segments.beta.get::<R>(hit_indices) * l;
             paths.l.set(rows, rows.active, sum);
         }
     }
@@ -142,15 +142,15 @@ fn sky_weight<R: Real>(
     direct: &DirectLighting,
     LightId(id): LightId,
     sky: &ImageInfiniteLight,
-    segments: &Segments,
-    turns: Rows<R>,
+    segments: &SegmentColumns,
+    hit_indices: HitIndices<R>,
     w: Vector3<R>,
 ) -> R {
-    let pdf = R::gather(&segments.pdf, turns.indices);
-    let is_weighted = turns.active & pdf.gt(R::zero());
+    let pdf = R::gather(&segments.pdf, hit_indices.indices);
+    let is_weighted = hit_indices.active & pdf.gt(R::zero());
     if !is_weighted.any() {
         return R::one();
     }
-    let pmf = direct.lights().pmf_lanes(&segments.last_vertex(turns), R::Int::splat(id), is_weighted);
+    let pmf = direct.lights().pmf_lanes(&segments.last_vertex(hit_indices), R::Int::splat(id), is_weighted);
     R::select(is_weighted, power_heuristic(pdf, pmf * sky.pdf_at_rest(w, true)), R::one())
 }

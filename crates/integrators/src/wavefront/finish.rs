@@ -7,14 +7,14 @@ use lanes::{Kernel, Real};
 use sampling::Sampler;
 
 use super::pass::Pass;
-use super::paths::Paths;
+use super::path_columns::PathColumns;
 use crate::transport::pixel_samples::PixelSample;
 use crate::{Cancelled, Tracer};
 use geometry::RayStats;
 
 /// Adds the light of paths to the pixels of a tile, all of which have one.
 pub(super) struct Finish<'a, 'film> {
-    pub paths: &'a Paths,
+    pub paths: &'a PathColumns,
     /// The rows of the paths of the tile.
     pub rows: Range<usize>,
     pub tile: &'a mut FilmTile<'film>,

@@ -11,22 +11,22 @@ use super::batch::{Batch, BatchColumns};
 use super::groups::Grouping;
 use super::media::medium;
 use super::medium_vertices::ScatterInMedia;
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 use super::shadows::Passages;
 use crate::transport::ShadowRay;
 use crate::transport::media::{Arrival, FlightEnd, Passage};
 use crate::transport::path_state::PathState;
 use crate::{Path, Tracer};
 
-impl Segments {
+impl SegmentColumns {
     /// Changes the weights of a path that has passed its medium.
-    fn pass(&mut self, turn: usize, path: &PathState) {
-        self.beta.set_row(turn, path.beta);
+    fn pass(&mut self, hit_index: usize, path: &PathState) {
+        self.beta.set_row(hit_index, path.beta);
         if let Some(origin) = &path.origin {
-            self.pdf[turn] = origin.pdf;
+            self.pdf[hit_index] = origin.pdf;
         }
         if let (Some(media), Some(spectral)) = (&mut self.media, &path.spectral) {
-            media.set(turn, path.medium, spectral);
+            media.set(hit_index, path.medium, spectral);
         }
     }
 }
@@ -38,28 +38,28 @@ impl Batch<'_> {
         let pixels = pass.pixels;
         let BatchColumns { paths, segments, hits, medium_vertices, .. } = &mut **columns;
         medium_vertices.clear();
-        for turn in 0..segments.rows.len() {
-            if segments.media().medium(turn).is_none() {
+        for hit_index in 0..segments.rows.len() {
+            if segments.media().medium(hit_index).is_none() {
                 continue;
             }
-            let mut path = segments.path(paths, turn);
-            let at = segments.rows[turn] as usize;
+            let mut path = segments.path(paths, hit_index);
+            let at = segments.rows[hit_index] as usize;
             let lambda = paths.lambda(at);
             paths.resume(sampler, at, pixels.index);
             let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
-            let has_hit = hits.geometry[turn] != HitColumns::NONE;
-            let t_max = if has_hit { hits.t[turn] } else { f32::INFINITY };
+            let has_hit = hits.geometry[hit_index] != HitColumns::NONE;
+            let t_max = if has_hit { hits.t[hit_index] } else { f32::INFINITY };
             let (l, end) = algorithm.fly(&mut tracer, &mut path, t_max, &lambda, true);
             paths.add_light(at, l);
             paths.dimension[at] = sampler.dimension();
             match end {
-                FlightEnd::Passed => segments.pass(turn, &path),
+                FlightEnd::Passed => segments.pass(hit_index, &path),
                 FlightEnd::Scattered { p, phase, .. } => {
-                    segments.pass(turn, &path);
-                    medium_vertices.push(turn, p, phase);
-                    hits.geometry[turn] = Grouping::GONE;
+                    segments.pass(hit_index, &path);
+                    medium_vertices.push(hit_index, p, phase);
+                    hits.geometry[hit_index] = Grouping::GONE;
                 }
-                FlightEnd::Absorbed => hits.geometry[turn] = Grouping::GONE,
+                FlightEnd::Absorbed => hits.geometry[hit_index] = Grouping::GONE,
             }
         }
         if !self.columns.medium_vertices.is_empty() {

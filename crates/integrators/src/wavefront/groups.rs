@@ -4,10 +4,10 @@ use geometry::HitColumns;
 use lanes::{Int, Kernel, Mask, Real};
 use scene::material::MaterialId;
 
-use super::columns::Rows;
+use super::indices::Indices;
 use super::materials::LaneMaterials;
 use super::queues::PathHit;
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 
 /// Hits of a batch, grouped by material.
 #[derive(Default)]
@@ -22,7 +22,7 @@ pub(super) struct Groups {
 #[derive(Default)]
 pub(super) struct Group {
     /// Their indices, and their paths.
-    pub turns: Vec<u32>,
+    pub hit_indices: Vec<u32>,
     pub rows: Vec<u32>,
 }
 
@@ -30,8 +30,8 @@ impl Groups {
     /// Removes all hits. Materials have ids below `materials`.
     pub fn clear(&mut self, materials: usize) {
         for MaterialId(id) in self.used.drain(..) {
-            let Group { turns, rows } = &mut self.groups[id as usize];
-            turns.clear();
+            let Group { hit_indices, rows } = &mut self.groups[id as usize];
+            hit_indices.clear();
             rows.clear();
         }
         self.groups.resize_with(materials, Group::default);
@@ -41,7 +41,7 @@ impl Groups {
     #[inline(always)]
     fn group(&mut self, MaterialId(id): MaterialId) -> &mut Group {
         let group = &mut self.groups[id as usize];
-        if group.turns.is_empty() {
+        if group.hit_indices.is_empty() {
             self.used.push(MaterialId(id));
         }
         group
@@ -50,8 +50,8 @@ impl Groups {
     /// Adds a hit.
     #[inline]
     pub fn push(&mut self, material: MaterialId, place: PathHit) {
-        let Group { turns, rows } = self.group(material);
-        turns.push(place.hit);
+        let Group { hit_indices, rows } = self.group(material);
+        hit_indices.push(place.hit);
         rows.push(place.path);
     }
 
@@ -65,13 +65,13 @@ impl Groups {
 /// scene.
 pub(super) struct Grouping<'a> {
     pub materials: &'a LaneMaterials,
-    pub segments: &'a Segments,
+    pub segments: &'a SegmentColumns,
     /// The geometry of each hit.
     pub geometries: &'a [u32],
     /// Paths of that many scattering events are left.
     pub max_depth: u32,
     pub groups: &'a mut Groups,
-    /// The turns of the paths that hit nothing.
+    /// The hits of the paths that hit nothing.
     pub escaped: &'a mut Vec<u32>,
     /// Those that are left.
     pub left: &'a mut Vec<u32>,
@@ -90,22 +90,22 @@ impl Kernel for Grouping<'_> {
         let Self { materials, segments, geometries, max_depth, groups, escaped, left } = self;
         let lanes = R::Int::from_fn(|lane| lane as u32);
         for first in (0..geometries.len()).step_by(R::LANES) {
-            let Rows { indices: geometry, active } = Rows::<R>::first(&geometries[first..]);
+            let Indices { indices: geometry, active } = Indices::<R>::first(&geometries[first..]);
             let active = active & !geometry.eq(R::Int::splat(Self::GONE));
-            let rows = Rows::<R>::first(&segments.rows[first..]);
-            let turns = lanes.wrapping_add(R::Int::splat(first as u32));
+            let rows = Indices::<R>::first(&segments.rows[first..]);
+            let hit_indices = lanes.wrapping_add(R::Int::splat(first as u32));
             let material = materials.of_geometries::<R>(geometry);
             let has_left = active & material.eq(R::Int::splat(LaneMaterials::NOTHING));
             let is_last = R::Int::load(&segments.depth[first..]).eq(R::Int::splat(max_depth));
             let mut grouped = active & !is_last & material.lt(R::Int::splat(LaneMaterials::DEPENDS));
-            turns.append(has_left, escaped);
-            turns.append(active & !has_left & !grouped, left);
+            hit_indices.append(has_left, escaped);
+            hit_indices.append(active & !has_left & !grouped, left);
             while grouped.any() {
                 let id = material.to_array()[grouped.bits().trailing_zeros() as usize % R::LANES];
                 let same = grouped & material.eq(R::Int::splat(id));
                 grouped = grouped & !same;
                 let group = groups.group(MaterialId(id));
-                turns.append(same, &mut group.turns);
+                hit_indices.append(same, &mut group.hit_indices);
                 rows.indices.append(same, &mut group.rows);
             }
         }

@@ -91,76 +91,79 @@ impl LightSampling<'_, '_> {
     }
 }
 
-/// Light samples in arrays, which are made once.
+/// Numbers, one for each lane.
+type Lanes = [f32; MAX_LANES];
+
+/// Light samples in arrays, which are made once: the columns of [`LightLanes`], and its masks as
+/// bits.
 #[derive(Default)]
 pub(super) struct Samples {
-    /// Radiance, direction, density, position, its error and normal.
-    columns: [[f32; MAX_LANES]; 17],
-    /// The lanes that have a sample, and those of delta lights, of distant ones, and of those that
-    /// interfaces do not occlude.
-    masks: [u32; 4],
+    l: [Lanes; N],
+    wi: [Lanes; 3],
+    pdf: Lanes,
+    p: [Lanes; 3],
+    p_error: [Lanes; 3],
+    n: [Lanes; 3],
+    valid: u32,
+    is_delta: u32,
+    is_distant: u32,
+    passes: u32,
 }
 
 impl Samples {
-    const WI: usize = N;
-    const PDF: usize = N + 3;
-    const P: usize = N + 4;
-    const P_ERROR: usize = N + 7;
-    /// Follows the error.
-    const NORMAL: usize = N + 10;
-
     /// The samples.
     #[inline(always)]
     pub fn lanes<R: Real>(&self) -> LightLanes<R> {
-        let [valid, is_delta, is_distant, passes] = self.masks.each(R::Mask::from_bits);
         LightLanes {
-            valid,
-            l: SampledSpectrum([0, 1, 2, 3].each(|i: usize| R::load(&self.columns[i]))),
-            wi: self.vector(Self::WI),
-            pdf: R::load(&self.columns[Self::PDF]),
-            p: Point3Error::new(self.vector(Self::P), self.vector(Self::P_ERROR)),
-            n: self.vector(Self::NORMAL),
-            is_delta,
-            is_distant,
-            passes,
+            valid: R::Mask::from_bits(self.valid),
+            l: SampledSpectrum([0, 1, 2, 3].each(|i: usize| R::load(&self.l[i]))),
+            wi: self.directions(),
+            pdf: R::load(&self.pdf),
+            p: Point3Error::new(vector(&self.p), vector(&self.p_error)),
+            n: vector(&self.n),
+            is_delta: R::Mask::from_bits(self.is_delta),
+            is_distant: R::Mask::from_bits(self.is_distant),
+            passes: R::Mask::from_bits(self.passes),
         }
     }
 
     /// The directions to the lights.
     #[inline(always)]
     pub fn directions<R: Real>(&self) -> Vector3<R> {
-        self.vector(Self::WI)
+        vector(&self.wi)
     }
 
+    /// Adds lanes that have a sample of a light.
     #[inline(always)]
-    fn vector<R: Real>(&self, first: usize) -> Vector3<R> {
-        let [x, y, z] = [0, 1, 2].each(|axis| R::load(&self.columns[first + axis]));
-        Vec3::new(x, y, z)
+    fn add_lanes(&mut self, lanes: u32, is_delta: bool, is_distant: bool, passes: bool) {
+        self.valid |= lanes;
+        self.is_delta |= if is_delta { lanes } else { 0 };
+        self.is_distant |= if is_distant { lanes } else { 0 };
+        self.passes |= if passes { lanes } else { 0 };
     }
+}
 
-    /// Sets numbers of all lanes.
-    #[inline(always)]
-    fn store<R: Real>(&mut self, first: usize, values: &[R]) {
-        for (i, value) in values.iter().enumerate() {
-            value.store(&mut self.columns[first + i]);
-        }
+/// Sets columns in all lanes.
+#[inline(always)]
+fn store<R: Real>(columns: &mut [Lanes], values: &[R]) {
+    for (column, value) in columns.iter_mut().zip(values) {
+        value.store(column);
     }
+}
 
-    /// Sets numbers of the lanes of a mask.
-    #[inline(always)]
-    fn blend<R: Real>(&mut self, first: usize, mask: R::Mask, values: &[R]) {
-        for (i, &value) in values.iter().enumerate() {
-            let column = &mut self.columns[first + i];
-            R::select(mask, value, R::load(column)).store(column);
-        }
+/// Sets columns in the lanes of a mask.
+#[inline(always)]
+fn blend<R: Real>(columns: &mut [Lanes], mask: R::Mask, values: &[R]) {
+    for (column, &value) in columns.iter_mut().zip(values) {
+        R::select(mask, value, R::load(column)).store(column);
     }
+}
 
-    /// Sets numbers of one lane.
-    #[inline]
-    fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
-        for (i, &value) in values.iter().enumerate() {
-            self.columns[first + i][lane] = value;
-        }
+/// Sets columns in one lane.
+#[inline]
+fn set(columns: &mut [Lanes], lane: usize, values: &[f32]) {
+    for (column, &value) in columns.iter_mut().zip(values) {
+        column[lane] = value;
     }
 }
 
@@ -169,12 +172,12 @@ struct Sample<'a, 'b> {
     sampling: LightSampling<'a, 'b>,
     /// Changed where lanes have a sample.
     samples: &'b mut Samples,
-    context: [[[f32; MAX_LANES]; 3]; 4],
-    time: [f32; MAX_LANES],
+    context: [[Lanes; 3]; 4],
+    time: Lanes,
     /// Numbers that choose the light and the point.
-    u: [[f32; MAX_LANES]; 3],
-    lambda: [[f32; MAX_LANES]; N],
-    lambda_pdf: [[f32; MAX_LANES]; N],
+    u: [Lanes; 3],
+    lambda: [Lanes; N],
+    lambda_pdf: [Lanes; N],
     /// The lanes to sample.
     active: u32,
 }
@@ -185,7 +188,8 @@ impl Kernel for &mut Sample<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        self.samples.masks = [0; 4];
+        let samples = &mut *self.samples;
+        (samples.valid, samples.is_delta, samples.is_distant, samples.passes) = (0, 0, 0, 0);
         let LightSampling { pass, direct, light } = self.sampling;
         let Pass { area_lights, pixels, .. } = pass;
         let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));
@@ -209,13 +213,13 @@ impl Kernel for &mut Sample<'_, '_> {
             let is_lit = (mask & !l.is_black()).bits();
             // Interfaces occlude none of the lights that have a surface.
             let samples = &mut *self.samples;
-            samples.masks = [is_lit, 0, 0, is_lit];
-            samples.store(0, &l.0);
-            samples.store(Samples::WI, &wi.to_array());
-            samples.store(Samples::PDF, &[sample.pdf]);
-            samples.store(Samples::P, &sample.p.p.to_array());
-            samples.store(Samples::P_ERROR, &sample.p.error.to_array());
-            samples.store(Samples::NORMAL, &sample.n.to_array());
+            samples.add_lanes(is_lit, false, false, true);
+            store(&mut samples.l, &l.0);
+            store(&mut samples.wi, &wi.to_array());
+            sample.pdf.store(&mut samples.pdf);
+            store(&mut samples.p, &sample.p.p.to_array());
+            store(&mut samples.p_error, &sample.p.error.to_array());
+            store(&mut samples.n, &sample.n.to_array());
         }
         let mut others = chosen & !in_lanes;
         let ids = lights.to_array();
@@ -230,8 +234,7 @@ impl Kernel for &mut Sample<'_, '_> {
                 others = others & R::Mask::from_bits(others.bits() & (others.bits() - 1));
             }
         }
-        let pdf = R::load(&self.samples.columns[Samples::PDF]) * pmf;
-        self.samples.store(Samples::PDF, &[pdf]);
+        (R::load(&self.samples.pdf) * pmf).store(&mut self.samples.pdf);
     }
 }
 
@@ -268,29 +271,29 @@ impl Sample<'_, '_> {
             }
             Light::Point(lamp) if lamp.motion.is_none() => {
                 let (l, wi, is_apart) = lamp.sample_at_rest(from, lambda);
-                self.samples.blend(Samples::P, mask, &splat::<R>(lamp.p).to_array());
-                self.samples.blend(Samples::P_ERROR, mask, &[R::zero(); 6]);
+                let (samples, zero) = (&mut *self.samples, [R::zero(); 3]);
+                blend(&mut samples.p, mask, &splat::<R>(lamp.p).to_array());
+                blend(&mut samples.p_error, mask, &zero);
+                blend(&mut samples.n, mask, &zero);
                 (l, wi, R::one(), is_apart)
             }
             _ => return false,
         };
         let mask = mask & has_light;
         let passes = direct.interfaces(light) == Interfaces::Pass;
-        let is = [true, light.is_delta(), !matches!(light.row(), Light::Point(_)), passes];
+        let is_distant = !matches!(light.row(), Light::Point(_));
         let samples = &mut *self.samples;
-        for (lanes, is) in samples.masks.iter_mut().zip(is) {
-            *lanes |= if is { mask.bits() } else { 0 };
-        }
-        samples.blend(0, mask, &l.0);
-        samples.blend(Samples::WI, mask, &wi.to_array());
-        samples.blend(Samples::PDF, mask, &[pdf]);
+        samples.add_lanes(mask.bits(), light.is_delta(), is_distant, passes);
+        blend(&mut samples.l, mask, &l.0);
+        blend(&mut samples.wi, mask, &wi.to_array());
+        R::select(mask, pdf, R::load(&samples.pdf)).store(&mut samples.pdf);
         true
     }
 
     /// Samples the light of one lane.
     fn sample_one(&mut self, id: LightId, lane: usize) {
         let LightSampling { pass, direct, light } = self.sampling;
-        let (scene, bit) = (pass.pixels.scene, 1 << lane);
+        let scene = pass.pixels.scene;
         let [_, x, y] = [0, 1, 2].each(|i: usize| self.u[i][lane]);
         let lambda = [0, 1, 2, 3].each(|i: usize| self.lambda[i][lane]);
         let lambda = SampledWavelengths::new(lambda, [0, 1, 2, 3].each(|i: usize| self.lambda_pdf[i][lane]));
@@ -299,19 +302,16 @@ impl Sample<'_, '_> {
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
         let light = scene.light(id);
         let passes = direct.interfaces(light) == Interfaces::Pass;
-        let is = [true, light.is_delta(), p.is_none(), passes];
         let samples = &mut *self.samples;
-        for (i, is) in is.into_iter().enumerate() {
-            samples.masks[i] |= if is { bit } else { 0 };
-        }
-        samples.set(lane, 0, &l.0);
-        samples.set(lane, Samples::WI, &wi.to_array());
-        samples.set(lane, Samples::PDF, &[pdf]);
+        samples.add_lanes(1 << lane, light.is_delta(), p.is_none(), passes);
+        set(&mut samples.l, lane, &l.0);
+        set(&mut samples.wi, lane, &wi.to_array());
+        samples.pdf[lane] = pdf;
         if let Some(p) = p {
-            samples.set(lane, Samples::P, &p.p.to_array());
-            samples.set(lane, Samples::P_ERROR, &p.error.to_array());
+            set(&mut samples.p, lane, &p.p.to_array());
+            set(&mut samples.p_error, lane, &p.error.to_array());
         }
-        samples.set(lane, Samples::NORMAL, &n.to_array());
+        set(&mut samples.n, lane, &n.to_array());
     }
 }
 
@@ -321,11 +321,11 @@ fn splat<R: Real>(v: Vector3) -> Vector3<R> {
 }
 
 #[inline(always)]
-fn arrays<R: Real>(v: Vector3<R>) -> [[f32; MAX_LANES]; 3] {
+fn arrays<R: Real>(v: Vector3<R>) -> [Lanes; 3] {
     v.to_array().each(R::to_array)
 }
 
 #[inline(always)]
-fn vector<R: Real>(columns: &[[f32; MAX_LANES]; 3]) -> Vector3<R> {
-    Vec3::from_array(columns.each(|column| R::load(&column)))
+fn vector<R: Real>(columns: &[Lanes; 3]) -> Vector3<R> {
+    Vec3::from_array([0, 1, 2].each(|axis: usize| R::load(&columns[axis])))
 }

@@ -173,22 +173,22 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         vertices: &Vertices<R>,
         sample: &BsdfSample<R>,
     ) -> Request<R> {
-        let Vertices { rows, turns, p, n, ns, time, beta, .. } = *vertices;
+        let Vertices { rows, hit_indices, p, n, ns, time, beta, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
         let samples = SpecularSamples::of(sample);
         let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
         let o = offset_ray_origin(p, n, wi).to_array().each(R::to_array);
-        let (turn_of, time) = (turns.indices.to_array(), time.to_array());
+        let (hit_of, time) = (hit_indices.indices.to_array(), time.to_array());
         rows.each_of(valid & self.specular & flags.is_specular(), |lane, row| {
-            let turn = turn_of[lane] as usize;
+            let hit_index = hit_of[lane] as usize;
             let sample = samples.at(lane);
             let o = Vec3::from_array(o.each(|lanes| lanes[lane]));
             let ray = RayDifferential {
                 ray: Ray::new(o, sample.wi, time[lane]),
-                differentials: stage.scattered_differentials(turn, &sample),
+                differentials: stage.scattered_differentials(hit_index, &sample),
             };
             let beta = SampledSpectrum::new(beta.each(|lanes| lanes[lane]));
-            let depth = stage.segments.depth[turn] + 1;
+            let depth = stage.segments.depth[hit_index] + 1;
             stage.queues.waiting.push(row as u32, PathState { beta, ..PathState::new(ray, depth) });
         });
         if std::mem::take(&mut self.transmits) {

@@ -12,8 +12,9 @@ use scene::material::{Material, MaterialEntry};
 use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
 
-use super::columns::{Column, Rows};
-use super::spectra::Spectra;
+use super::float_columns::FloatColumn;
+use super::indices::HitIndices;
+use super::spectrum_column::SpectrumColumn;
 use crate::transport::media::{Heroes, SpectralMis};
 
 /// The media of a scene, as lanes look them up.
@@ -49,14 +50,14 @@ pub(super) fn medium(number: u32) -> Option<MediumId> {
     number.checked_sub(1).map(MediumId)
 }
 
-/// What [`Segments`] have besides where there are media.
+/// What [`SegmentColumns`] have besides where there are media.
 #[derive(Default)]
 pub(super) struct MediaColumns {
     /// The media of the rays, as numbers.
     medium: Vec<u32>,
     /// As of [`SpectralMis`].
-    r_u: Spectra,
-    r_l: Spectra,
+    r_u: SpectrumColumn,
+    r_l: SpectrumColumn,
 }
 
 impl MediaColumns {
@@ -76,41 +77,41 @@ impl MediaColumns {
     }
 
     /// The medium of a path.
-    pub fn medium(&self, turn: usize) -> Option<MediumId> {
-        medium(self.medium[turn])
+    pub fn medium(&self, hit_index: usize) -> Option<MediumId> {
+        medium(self.medium[hit_index])
     }
 
     /// The weights of a path that has these heroes.
-    pub fn spectral(&self, turn: usize, heroes: Heroes) -> SpectralMis {
-        SpectralMis { heroes, r_u: self.r_u.row(turn), r_l: self.r_l.row(turn) }
+    pub fn spectral(&self, hit_index: usize, heroes: Heroes) -> SpectralMis {
+        SpectralMis { heroes, r_u: self.r_u.row(hit_index), r_l: self.r_l.row(hit_index) }
     }
 
     /// Copies a path.
-    pub fn copy(&mut self, turn: usize, from: &Self, from_turn: usize) {
-        self.medium[turn] = from.medium[from_turn];
-        self.r_u.set_row(turn, from.r_u.row(from_turn));
-        self.r_l.set_row(turn, from.r_l.row(from_turn));
+    pub fn copy(&mut self, hit_index: usize, from: &Self, from_index: usize) {
+        self.medium[hit_index] = from.medium[from_index];
+        self.r_u.set_row(hit_index, from.r_u.row(from_index));
+        self.r_l.set_row(hit_index, from.r_l.row(from_index));
     }
 
     /// Changes a path.
-    pub fn set(&mut self, turn: usize, medium: Option<MediumId>, spectral: &SpectralMis) {
-        self.medium[turn] = number(medium);
-        self.r_u.set_row(turn, spectral.r_u);
-        self.r_l.set_row(turn, spectral.r_l);
+    pub fn set(&mut self, hit_index: usize, medium: Option<MediumId>, spectral: &SpectralMis) {
+        self.medium[hit_index] = number(medium);
+        self.r_u.set_row(hit_index, spectral.r_u);
+        self.r_l.set_row(hit_index, spectral.r_l);
     }
 
     /// The media of paths, and r_u.
     #[inline(always)]
-    pub fn at<R: Real>(&self, turns: Rows<R>) -> (R::Int, SampledSpectrum<R>) {
-        (R::Int::gather(&self.medium, turns.indices), self.r_u.get(turns))
+    pub fn at<R: Real>(&self, hit_indices: HitIndices<R>) -> (R::Int, SampledSpectrum<R>) {
+        (R::Int::gather(&self.medium, hit_indices.indices), self.r_u.get(hit_indices))
     }
 
     /// Changes successive paths to those of a mask's lanes.
     #[inline(always)]
-    pub fn compress<R: Real>(&mut self, turn: usize, mask: R::Mask, segment: &SegmentInMedia<R>) {
-        segment.medium.compress(mask, &mut self.medium[turn..]);
-        self.r_u.compress(turn, mask, segment.r_u);
-        self.r_l.compress(turn, mask, segment.r_l);
+    pub fn compress<R: Real>(&mut self, hit_index: usize, mask: R::Mask, segment: &SegmentInMedia<R>) {
+        segment.medium.compress(mask, &mut self.medium[hit_index..]);
+        self.r_u.compress(hit_index, mask, segment.r_u);
+        self.r_l.compress(hit_index, mask, segment.r_l);
     }
 }
 
@@ -138,12 +139,12 @@ impl<R: Real> VerticesInMedia<R> {
     pub fn new(
         media: &LaneMedia,
         columns: &MediaColumns,
-        turns: Rows<R>,
+        hit_indices: HitIndices<R>,
         geometries: &[u32],
         terminated: R::Mask,
     ) -> Self {
-        let (before, r_u) = columns.at(turns);
-        let geometry = R::Int::gather(geometries, turns.indices);
+        let (before, r_u) = columns.at(hit_indices);
+        let geometry = R::Int::gather(geometries, hit_indices.indices);
         let [inside, outside] = R::Int::gather_rows(media.sides.as_flattened(), geometry.shl(1));
         let is_same = inside.eq(R::Int::splat(LaneMedia::SAME));
         Self {
@@ -169,26 +170,26 @@ impl<R: Real> VerticesInMedia<R> {
 /// Where paths have been scattered by media.
 #[derive(Default)]
 pub(super) struct MediumVertices {
-    /// The turns of the paths.
-    pub turns: Vec<u32>,
-    pub p: [Column; 3],
+    /// The indices of the paths' hits.
+    pub hit_indices: Vec<u32>,
+    pub p: [FloatColumn; 3],
     /// The asymmetry of the phase function.
-    pub g: Column,
+    pub g: FloatColumn,
 }
 
 impl MediumVertices {
-    pub fn push(&mut self, turn: usize, p: Point3, phase: HenyeyGreenstein) {
-        self.turns.push(turn as u32);
+    pub fn push(&mut self, hit_index: usize, p: Point3, phase: HenyeyGreenstein) {
+        self.hit_indices.push(hit_index as u32);
         self.p.iter_mut().zip(p.to_array()).for_each(|(column, x)| column.push(x));
         self.g.push(phase.g);
     }
 
     pub fn is_empty(&self) -> bool {
-        self.turns.is_empty()
+        self.hit_indices.is_empty()
     }
 
     pub fn clear(&mut self) {
-        self.turns.clear();
+        self.hit_indices.clear();
         self.p.iter_mut().for_each(Vec::clear);
         self.g.clear();
     }

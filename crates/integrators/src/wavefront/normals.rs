@@ -7,17 +7,17 @@ use scene::Footprint;
 use scene::material::MaterialEntry;
 use scene::texture::TextureContext;
 
-use super::columns::Rows;
+use super::indices::Indices;
 use super::pass::Pass;
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 
 /// Changes the normals and tangents of hits on a material that has a map.
 pub(super) struct Perturb<'a, 'b> {
     pub pass: Pass<'a>,
     pub entry: &'a MaterialEntry,
     /// Indices of hits.
-    pub turns: &'b [u32],
-    pub segments: &'b Segments,
+    pub hit_indices: &'b [u32],
+    pub segments: &'b SegmentColumns,
     /// Their surface points; with shading geometry for a bump map.
     pub points: &'b mut PointColumns,
 }
@@ -27,10 +27,10 @@ impl Kernel for Perturb<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { pass, entry, turns, segments, points } = self;
+        let Self { pass, entry, hit_indices, segments, points } = self;
         let (scene, view) = (pass.pixels.scene, pass.pixels.view);
         let with_footprints = scene.needs_footprints(view);
-        for (part, turns) in turns.chunks(R::LANES).enumerate() {
+        for (part, hit_indices) in hit_indices.chunks(R::LANES).enumerate() {
             let first = part * R::LANES;
             let surface = points.get::<R>(first);
             if let Some(map) = &entry.normal_map {
@@ -38,7 +38,7 @@ impl Kernel for Perturb<'_, '_> {
                 points.set_normals(first, face_forward(frame.z, surface.n), frame.x);
             } else if let Some(map) = &entry.bump_map {
                 let footprint = if with_footprints {
-                    segments.footprint(view, Rows::first(turns), &surface)
+                    segments.footprint(view, Indices::first(hit_indices), &surface)
                 } else {
                     Footprint::point()
                 };

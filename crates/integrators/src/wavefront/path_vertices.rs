@@ -7,18 +7,18 @@ use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use spectrum::SampledSpectrum;
 
-use super::columns::Rows;
+use super::indices::HitIndices;
 use super::lights::{LightLanes, LightSampling};
 use super::media::VerticesInMedia;
 use super::numbers::{SampleNumbers, VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::queues::Entering;
-use super::segments::Segment;
+use super::segment_columns::Segment;
 use super::shadows::PassageLanes;
 use super::stage::{Algorithm, Request, SpecularSamples, Stage, Vertices};
 use crate::Path;
 use crate::transport::direct::power_heuristic;
-use crate::transport::roulette::{self, CERTAIN};
+use crate::transport::roulette;
 
 /// Path tracing at vertices. The samples of lights stay in the stage.
 pub(super) struct PathVertices<R: Real> {
@@ -42,10 +42,10 @@ impl<R: Real> PathVertices<R> {
         let samples_light = flags.is_non_specular();
         let media = match &stage.segments.media {
             Some(columns) => {
-                let Vertices { turns, lambda, .. } = vertices;
+                let Vertices { hit_indices, lambda, .. } = vertices;
                 let (media, geometries) = (stage.pass.media, &stage.hits.geometry);
                 let terminated = lambda.secondary_terminated();
-                Some(VerticesInMedia::new(media, columns, *turns, geometries, terminated))
+                Some(VerticesInMedia::new(media, columns, *hit_indices, geometries, terminated))
             }
             None => None,
         };
@@ -113,17 +113,17 @@ impl<R: Real> PathVertices<R> {
         sample: &BsdfSample<R>,
         density: R,
     ) -> Request<R> {
-        let Vertices { rows, turns, p, n, ns, time, .. } = *vertices;
+        let Vertices { rows, hit_indices, p, n, ns, time, .. } = *vertices;
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = *sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
-        let eta_scale = R::gather(&stage.segments.eta_scale, turns.indices);
+        let eta_scale = R::gather(&stage.segments.eta_scale, hit_indices.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let mut valid = valid & vertices.active;
         if let Algorithm::Boundaries(_) = stage.algorithm {
             valid = valid & !vertices.enter(stage, sample, beta, valid);
         }
 
-        let depth = R::Int::gather(&stage.segments.depth, turns.indices);
+        let depth = R::Int::gather(&stage.segments.depth, hit_indices.indices).wrapping_add(R::Int::splat(1));
         let Roulette { survives, weight, dimension } =
             play(&stage.pass, vertices.address, depth, beta * eta_scale, valid);
         dimension.scatter(survives, &mut stage.paths.dimension, rows.indices);
@@ -139,7 +139,7 @@ impl<R: Real> PathVertices<R> {
             ray: Ray::new(offset_ray_origin(p, n, wi), wi, time),
             beta: beta * weight,
             eta_scale,
-            depth: depth.wrapping_add(R::Int::splat(1)),
+            depth,
             vertex: vertices.contexts(),
             pdf: R::select(is_specular, R::zero(), density),
             media: in_media,
@@ -147,7 +147,7 @@ impl<R: Real> PathVertices<R> {
         let first = stage.queues.next.rows.len();
         stage.queues.next.append(rows.indices, survives, &segment);
         if !stage.segments.are_differentials.is_empty() && (survives & is_specular).any() {
-            stage.carry_differentials(turns, survives, sample, first);
+            stage.carry_differentials(hit_indices, survives, sample, first);
         }
         Request::Nothing
     }
@@ -169,9 +169,9 @@ impl<R: Real> Vertices<R> {
         if enters.any() {
             let rows = self.rows.indices;
             self.address.dimension.scatter(enters, &mut stage.paths.dimension, rows);
-            let Entering { rows: to, turns, beta: betas } = &mut stage.queues.entering;
+            let Entering { rows: to, hit_indices, beta: betas } = &mut stage.queues.entering;
             rows.append(enters, to);
-            self.turns.indices.append(enters, turns);
+            self.hit_indices.indices.append(enters, hit_indices);
             betas.append(enters, beta);
         }
         enters
@@ -184,21 +184,21 @@ impl Stage<'_, '_> {
     #[inline(always)]
     fn carry_differentials<R: Real>(
         &mut self,
-        turns: Rows<R>,
+        hit_indices: HitIndices<R>,
         appended: R::Mask,
         sample: &BsdfSample<R>,
         first: usize,
     ) {
         let specular = (appended & sample.flags.is_specular()).bits();
-        let turns = turns.indices.to_array();
-        self.carry_each(&turns, appended.bits(), specular, &SpecularSamples::of(sample), first);
+        let hit_indices = hit_indices.indices.to_array();
+        self.carry_each(&hit_indices, appended.bits(), specular, &SpecularSamples::of(sample), first);
     }
 
     /// Few rays have differentials, so that they are computed one by one.
     #[inline(never)]
     fn carry_each(
         &mut self,
-        turns: &[u32; MAX_LANES],
+        hit_indices: &[u32; MAX_LANES],
         appended: u32,
         mut specular: u32,
         samples: &SpecularSamples,
@@ -209,7 +209,7 @@ impl Stage<'_, '_> {
             specular &= specular - 1;
             let place = first + (appended & ((1 << lane) - 1)).count_ones() as usize;
             let sample = samples.at(lane);
-            if let Some(differentials) = self.scattered_differentials(turns[lane] as usize, &sample) {
+            if let Some(differentials) = self.scattered_differentials(hit_indices[lane] as usize, &sample) {
                 self.queues.next.set_differentials(place, Some(&differentials));
             }
         }
@@ -226,7 +226,7 @@ pub(super) struct Roulette<R: Real> {
 }
 
 /// Plays Russian roulette for the `valid` paths, which `carry` so much after `depth` scattering
-/// events and one more.
+/// events.
 #[inline(always)]
 pub(super) fn play<R: Real>(
     pass: &Pass,
@@ -235,10 +235,8 @@ pub(super) fn play<R: Real>(
     carry: SampledSpectrum<R>,
     valid: R::Mask,
 ) -> Roulette<R> {
-    // The first scattering event is never the last by roulette.
-    let is_first = depth.eq(R::Int::splat(0));
-    let probability = roulette::of_camera_path(carry);
-    let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
+    let probability = roulette::camera_path_survival(carry);
+    let plays = roulette::plays_roulette(depth, probability) & valid;
     let draws = plays & probability.gt(R::zero());
     let mut survives = valid & !plays;
     if draws.any() {

@@ -1,15 +1,15 @@
 //! What stages hand to each other.
 
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 use super::shadows::{Passages, ShadowRays};
-use super::spectra::Spectra;
+use super::spectrum_column::SpectrumColumn;
 use crate::transport::path_state::PathState;
 
 /// The queues of a batch.
 #[derive(Default)]
 pub(super) struct Queues {
     /// The paths that go on.
-    pub next: Segments,
+    pub next: SegmentColumns,
     /// Hits to be shaded one by one.
     pub scalar: Vec<PathHit>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.
@@ -34,9 +34,9 @@ pub(super) struct PathHit {
 #[derive(Default)]
 pub(super) struct Entering {
     pub rows: Vec<u32>,
-    pub turns: Vec<u32>,
+    pub hit_indices: Vec<u32>,
     /// Throughput beyond the boundary.
-    pub beta: Spectra,
+    pub beta: SpectrumColumn,
 }
 
 /// Rays that wait until their path has no other: a stack for each path. All stacks share memory,

@@ -13,7 +13,7 @@ use scene::material::MaterialModel;
 use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::columns::Rows;
+use super::indices::HitIndices;
 use super::lights_in_turn::LightsInTurn;
 use super::numbers::SampleNumbers;
 use super::path_vertices::PathVertices;
@@ -40,11 +40,11 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize) {
         let Self { material, stage } = self;
-        let Place { rows, turns } = stage.place::<R>(first);
+        let Place { rows, hit_indices } = stage.place::<R>(first);
         let surface: PatchPoints<R> = stage.points.get(first);
-        let (wo, before) = (stage.outgoing(turns), stage.paths.lambda_lanes(rows));
+        let (wo, before) = (stage.outgoing(hit_indices), stage.paths.lambda_lanes(rows));
         let footprint = if stage.with_footprint {
-            R::call(FootprintAt { stage, turns, surface: &surface })
+            R::call(FootprintAt { stage, hit_indices, surface: &surface })
         } else {
             Footprint::point()
         };
@@ -98,7 +98,7 @@ fn step<R: Real, M: MaterialModel, C: Callee<R>>(callee: C) -> C::Output {
 /// The footprints of pixels at surface points.
 struct FootprintAt<'a, 'b, 'c, R: Real> {
     stage: &'c Stage<'a, 'b>,
-    turns: Rows<R>,
+    hit_indices: HitIndices<R>,
     surface: &'c PatchPoints<R>,
 }
 
@@ -107,8 +107,8 @@ impl<R: Real> Callee<R> for FootprintAt<'_, '_, '_, R> {
 
     #[inline(always)]
     fn run(self) -> Footprint<R> {
-        let Self { stage, turns, surface } = self;
-        stage.segments.footprint(stage.pass.pixels.view, turns, surface)
+        let Self { stage, hit_indices, surface } = self;
+        stage.segments.footprint(stage.pass.pixels.view, hit_indices, surface)
     }
 }
 

@@ -4,15 +4,16 @@ use geometry::RayBuffer;
 use lanes::{Int, Mask, Real};
 use spectrum::SampledSpectrum;
 
-use super::columns::{Column, Rows};
-use super::spectra::Spectra;
+use super::float_columns::FloatColumn;
+use super::indices::PathIndices;
+use super::spectrum_column::SpectrumColumn;
 use crate::transport::ShadowRay;
 
 /// Shadow rays, and the light that their paths get unless they are occluded.
 #[derive(Default)]
 pub(super) struct ShadowRays {
     pub paths: Vec<u32>,
-    pub l: Spectra,
+    pub l: SpectrumColumn,
     pub rays: RayBuffer,
 }
 
@@ -28,7 +29,7 @@ impl ShadowRays {
     #[inline(always)]
     pub fn append<R: Real>(
         &mut self,
-        rows: Rows<R>,
+        rows: PathIndices<R>,
         mask: R::Mask,
         l: SampledSpectrum<R>,
         shadow: &ShadowRay<R>,
@@ -54,8 +55,8 @@ pub(super) struct Passages {
     /// The rays, and the light of [`Arrival`].
     pub shadows: ShadowRays,
     /// As of [`Arrival`].
-    pub r_u: Spectra,
-    pub ratio: Column,
+    pub r_u: SpectrumColumn,
+    pub ratio: FloatColumn,
     /// The media where they leave their vertices, as numbers.
     pub medium: Vec<u32>,
     /// The dimension of their random numbers.
@@ -75,7 +76,7 @@ impl Passages {
     #[inline(always)]
     pub fn append<R: Real>(
         &mut self,
-        rows: Rows<R>,
+        rows: PathIndices<R>,
         mask: R::Mask,
         l: SampledSpectrum<R>,
         shadow: &ShadowRay<R>,

@@ -9,13 +9,13 @@ use scene::light::LightSampleContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::all_lights::AllLights;
-use super::columns::Rows;
+use super::indices::{HitIndices, Indices, PathIndices};
 use super::lights::Samples;
 use super::numbers::SampleNumbers;
 use super::pass::Pass;
-use super::paths::Paths;
+use super::path_columns::PathColumns;
 use super::queues::Queues;
-use super::segments::Segments;
+use super::segment_columns::SegmentColumns;
 use crate::Path;
 use crate::transport::pixel_samples::PixelSamples;
 
@@ -65,25 +65,25 @@ pub(super) struct Stage<'a, 'b> {
     /// The hits of all paths.
     pub hits: &'b HitColumns,
     /// Indices of hits, and their paths.
-    pub turns: &'b [u32],
+    pub hit_indices: &'b [u32],
     pub rows: &'b [u32],
-    pub segments: &'b Segments,
-    pub paths: &'b mut Paths,
+    pub segments: &'b SegmentColumns,
+    pub paths: &'b mut PathColumns,
     pub queues: &'b mut Queues,
     pub light_samples: &'b mut Samples,
 }
 
-/// Paths, and the turns of their hits.
+/// Paths, and their hits.
 pub(super) struct Place<R: Real> {
-    pub rows: Rows<R>,
-    pub turns: Rows<R>,
+    pub rows: PathIndices<R>,
+    pub hit_indices: HitIndices<R>,
 }
 
 /// The vertices of the paths in the lanes.
 pub(super) struct Vertices<R: Real> {
-    pub rows: Rows<R>,
-    /// Their turns.
-    pub turns: Rows<R>,
+    pub rows: PathIndices<R>,
+    /// Their hits.
+    pub hit_indices: HitIndices<R>,
     /// The lanes that have a vertex.
     pub active: R::Mask,
     pub p: Point3Error<R>,
@@ -111,13 +111,16 @@ impl<R: Real> Vertices<R> {
 impl Stage<'_, '_> {
     #[inline(always)]
     pub fn place<R: Real>(&self, first: usize) -> Place<R> {
-        Place { rows: Rows::first(&self.rows[first..]), turns: Rows::first(&self.turns[first..]) }
+        Place {
+            rows: Indices::first(&self.rows[first..]),
+            hit_indices: Indices::first(&self.hit_indices[first..]),
+        }
     }
 
     /// The directions back along the rays.
     #[inline(always)]
-    pub fn outgoing<R: Real>(&self, turns: Rows<R>) -> Vector3<R> {
-        -self.segments.direction.vector(turns).normalize()
+    pub fn outgoing<R: Real>(&self, hit_indices: HitIndices<R>) -> Vector3<R> {
+        -self.segments.direction.vector(hit_indices).normalize()
     }
 
     /// The lanes whose paths have been scattered by a rough surface.
@@ -140,7 +143,7 @@ impl Stage<'_, '_> {
         lambda: SampledWavelengths<R>,
         flags: &BxdfFlags<R>,
     ) -> Vertices<R> {
-        let Place { rows, turns } = self.place::<R>(first);
+        let Place { rows, hit_indices } = self.place::<R>(first);
         let PatchPoints { p, n, ns, .. } = self.points.get(first);
         let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
         let one_sided = reflects ^ transmits;
@@ -148,15 +151,15 @@ impl Stage<'_, '_> {
         let moved = Point3Error::exact(offset_ray_origin(p, n, side));
         Vertices {
             rows,
-            turns,
+            hit_indices,
             active: rows.active,
             p,
             n,
             ns,
             wo,
-            time: R::gather(&self.segments.time, turns.indices),
+            time: R::gather(&self.segments.time, hit_indices.indices),
             lambda,
-            beta: self.segments.beta.get(turns),
+            beta: self.segments.beta.get(hit_indices),
             address: self.paths.address(rows, self.pass.pixels.index),
             origin: Point3Error::new(
                 Vec3::select(one_sided, moved.p, p.p),
@@ -165,15 +168,15 @@ impl Stage<'_, '_> {
         }
     }
 
-    /// The differentials of the ray that a specular sample makes of that of a turn, if this has
+    /// The differentials of the ray that a specular sample makes of that of a hit, if this has
     /// any.
-    pub fn scattered_differentials(&self, turn: usize, sample: &BsdfSample) -> Option<Differentials> {
-        if !self.segments.has_differentials(turn as u32) {
+    pub fn scattered_differentials(&self, hit_index: usize, sample: &BsdfSample) -> Option<Differentials> {
+        if !self.segments.has_differentials(hit_index as u32) {
             return None;
         }
         let PixelSamples { scene, view, .. } = *self.pass.pixels;
-        let hit = self.hits.get(turn).expect("invariant: vertices have hits");
-        scene.scattered_differentials(view, &self.segments.state(turn).ray, &hit, sample)
+        let hit = self.hits.get(hit_index).expect("invariant: vertices have hits");
+        scene.scattered_differentials(view, &self.segments.state(hit_index).ray, &hit, sample)
     }
 }
 

@@ -126,16 +126,7 @@ impl Integrator for Bdpt {
                 paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| match encounter {
                     Encounter::Light(found) => add(&found, tracer),
                     Encounter::Vertex(vertex) if vertex.is_connectible() => {
-                        if let Some(found) = paths.direct(vertex, lambda, tracer) {
-                            add(&found, tracer);
-                        }
-                        for light in &light_subpath {
-                            if vertex.depth + light.depth <= paths.max_depth
-                                && let Some(found) = paths.connect(vertex, light, lambda, tracer)
-                            {
-                                add(&found, tracer);
-                            }
-                        }
+                        paths.connect_each(vertex, light_subpath.iter(), lambda, tracer, &mut add);
                     }
                     Encounter::Vertex(_) => (),
                 });

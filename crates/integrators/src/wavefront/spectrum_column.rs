@@ -3,14 +3,15 @@
 use lanes::{Int, MAX_LANES, Mask, Real};
 use spectrum::{N, SampledSpectrum};
 
-use super::columns::{Rows, fill, grow};
+use super::float_columns::{fill, grow};
+use super::indices::Indices;
 
 /// A spectrum for each path. The numbers of one are side by side, so that lanes read or write one
 /// cache line each, and not four.
 #[derive(Default)]
-pub(super) struct Spectra(Vec<[f32; N]>);
+pub(super) struct SpectrumColumn(Vec<[f32; N]>);
 
-impl Spectra {
+impl SpectrumColumn {
     /// Appends a spectrum.
     pub fn push(&mut self, s: SampledSpectrum) {
         self.0.push(s.0);
@@ -71,14 +72,14 @@ impl Spectra {
 
     /// The spectra of rows.
     #[inline(always)]
-    pub fn get<R: Real>(&self, rows: Rows<R>) -> SampledSpectrum<R> {
+    pub fn get<R: Real>(&self, rows: Indices<R>) -> SampledSpectrum<R> {
         const { assert!(N == 4) };
         SampledSpectrum(R::gather_rows(self.0.as_flattened(), rows.indices.shl(2)))
     }
 
     /// Changes the spectra of a mask's lanes.
     #[inline(always)]
-    pub fn set<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, s: SampledSpectrum<R>) {
+    pub fn set<R: Real>(&mut self, rows: Indices<R>, mask: R::Mask, s: SampledSpectrum<R>) {
         let mut spectra = [[0.0; N]; MAX_LANES];
         R::compress_four(s.0, R::Mask::splat(true), spectra.as_flattened_mut());
         rows.each_of(mask, |lane, row| self.0[row] = spectra[lane]);

@@ -6,35 +6,36 @@ use sampling::Sampler;
 use sampling::sampler::Address;
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
-use super::columns::{Column, Rows, fill, grow};
-use super::spectra::Spectra;
+use super::float_columns::{FloatColumn, fill, grow};
+use super::indices::PathIndices;
+use super::spectrum_column::SpectrumColumn;
 use crate::transport::media::Heroes;
 
 /// What the paths of a batch have from their start to their end; a path is a row. Columns are
 /// longer, so that a vector can begin at any row.
 #[derive(Default)]
-pub(super) struct Paths {
+pub(super) struct PathColumns {
     count: usize,
     /// Column and row of the pixel.
     pixels: Vec<[u32; 2]>,
     /// Weight of the sample in the pixel.
-    pub filter_weight: Column,
+    pub filter_weight: FloatColumn,
     /// The share of the light along its camera ray that reaches the film; empty where all of it
     /// does.
-    pub camera_weight: Column,
+    pub camera_weight: FloatColumn,
     /// The sampler's next dimension.
     pub dimension: Vec<u32>,
     /// Wavelengths, and their densities.
-    wavelengths: [Spectra; 2],
+    wavelengths: [SpectrumColumn; 2],
     /// The light so far.
-    pub l: Spectra,
+    pub l: SpectrumColumn,
     /// Whether a rough surface scattered it before.
     pub rough_before: Vec<bool>,
     /// The wavelengths that choose collisions with media, if there are any.
     heroes: Vec<u32>,
 }
 
-impl Paths {
+impl PathColumns {
     /// The number of paths.
     pub fn len(&self) -> usize {
         self.count
@@ -71,7 +72,7 @@ impl Paths {
 
     /// The next address of the sampler of each path, at the sample of an index.
     #[inline(always)]
-    pub fn address<R: Real>(&self, rows: Rows<R>, index: u32) -> Address<R::Int> {
+    pub fn address<R: Real>(&self, rows: PathIndices<R>, index: u32) -> Address<R::Int> {
         Address {
             pixel: R::Int::gather_rows(self.pixels.as_flattened(), rows.indices.shl(1)),
             index,
@@ -104,7 +105,7 @@ impl Paths {
 
     /// The wavelengths of paths in lanes.
     #[inline(always)]
-    pub fn lambda_lanes<R: Real>(&self, rows: Rows<R>) -> SampledWavelengths<R> {
+    pub fn lambda_lanes<R: Real>(&self, rows: PathIndices<R>) -> SampledWavelengths<R> {
         let [lambda, pdf] = &self.wavelengths;
         SampledWavelengths::new(lambda.get(rows).0, pdf.get(rows).0)
     }

@@ -1,45 +1,12 @@
-//! The state of paths as structures of arrays.
+//! Columns of floats: structures of arrays, of which each element is of a path.
 
-use lanes::{Int, Mask, Real};
+use lanes::Real;
 use math::{Vec3, Vector3};
 
-/// Rows of columns, one for each lane.
-#[derive(Clone, Copy)]
-pub(super) struct Rows<R: Real> {
-    /// The indices of the rows; lanes that are not active repeat one of them.
-    pub indices: R::Int,
-    /// The lanes in use.
-    pub active: R::Mask,
-}
-
-impl<R: Real> Rows<R> {
-    /// The first rows of a queue, which must not be empty.
-    #[inline(always)]
-    pub fn first(queue: &[u32]) -> Self {
-        let count = queue.len().min(R::LANES);
-        let indices = if queue.len() >= R::LANES {
-            R::Int::load(queue)
-        } else {
-            R::Int::from_fn(|lane| queue[lane.min(count - 1)])
-        };
-        Self { indices, active: R::Mask::from_bits(u32::MAX >> (32 - count)) }
-    }
-
-    /// Calls `f` with lane and row of each lane of a mask.
-    #[inline(always)]
-    pub fn each_of(&self, mask: R::Mask, mut f: impl FnMut(usize, usize)) {
-        let rows = self.indices.to_array();
-        let mut bits = mask.bits();
-        while bits != 0 {
-            let lane = bits.trailing_zeros() as usize;
-            f(lane, rows[lane] as usize);
-            bits &= bits - 1;
-        }
-    }
-}
+use super::indices::Indices;
 
 /// A number for each path.
-pub(super) type Column = Vec<f32>;
+pub(super) type FloatColumn = Vec<f32>;
 
 /// Changes a column to `count` times the same number.
 pub(super) fn fill<T: Clone>(column: &mut Vec<T>, count: usize, value: T) {
@@ -55,15 +22,15 @@ pub(super) fn grow<T: Clone + Default>(column: &mut Vec<T>, count: usize) {
 }
 
 /// Numbers for each path, in several columns.
-pub(super) struct Columns<const C: usize>([Column; C]);
+pub(super) struct FloatColumns<const C: usize>([FloatColumn; C]);
 
-impl<const C: usize> Default for Columns<C> {
+impl<const C: usize> Default for FloatColumns<C> {
     fn default() -> Self {
         Self(std::array::from_fn(|_| Vec::new()))
     }
 }
 
-impl<const C: usize> Columns<C> {
+impl<const C: usize> FloatColumns<C> {
     /// Makes place for `count` rows, of any numbers.
     pub fn grow(&mut self, count: usize) {
         self.0.iter_mut().for_each(|column| grow(column, count));
@@ -105,7 +72,7 @@ impl<const C: usize> Columns<C> {
 
     /// Rows in lanes.
     #[inline(always)]
-    pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {
+    pub fn get<R: Real>(&self, rows: Indices<R>) -> [R; C] {
         let mut values = [R::zero(); C];
         for (c, value) in values.iter_mut().enumerate() {
             *value = R::gather(&self.0[c], rows.indices);
@@ -114,7 +81,7 @@ impl<const C: usize> Columns<C> {
     }
 }
 
-impl Columns<3> {
+impl FloatColumns<3> {
     /// The columns.
     #[inline]
     pub fn slices(&self) -> [&[f32]; 3] {
@@ -124,7 +91,7 @@ impl Columns<3> {
 
     /// Vectors in lanes.
     #[inline(always)]
-    pub fn vector<R: Real>(&self, rows: Rows<R>) -> Vector3<R> {
+    pub fn vector<R: Real>(&self, rows: Indices<R>) -> Vector3<R> {
         Vec3::from_array(self.get(rows))
     }
 }
