@@ -93,7 +93,7 @@ impl<'a> Vertex<'a> {
     #[inline]
     pub fn light_context(&self) -> LightSampleContext {
         let context = LightSampleContext { p: self.p, n: self.n, ns: self.ns(), time: self.time };
-        on_its_side(context, self.wo, self.flags())
+        on_its_side(context, self.wo, &self.flags())
     }
 
     /// Whether other vertices can be connected to it.

@@ -18,7 +18,7 @@ use scene::light_sampler::UniformLightSampler;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::path_state::pass_through;
+use crate::transport::path_state::{pass_through, throughput};
 use crate::transport::vertex::SurfaceVertex;
 use crate::{RayIntegrator, Tracer};
 
@@ -109,8 +109,7 @@ fn one_light(
 fn by_bsdf(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<Bxdf>) -> Option<Onward> {
     let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
     let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, Directions::All)?;
-    let cos_theta = sample.wi.dot(surface.surface.shading.n).abs();
-    let weight = sample.f * (cos_theta / sample.pdf);
+    let weight = throughput(surface.surface.shading.n, &sample);
     Some(Onward { wi: sample.wi, weight, specular: sample.flags.is_specular() })
 }
 

@@ -120,7 +120,7 @@ impl Node {
             sample.flags.is_specular().then(|| Self {
                 ray: surface.spawn_scattered(&self.ray, &sample),
                 medium: surface.medium_towards(sample.wi, self.medium),
-                beta: self.beta * throughput(surface, &sample),
+                beta: self.beta * throughput(surface.surface.shading.n, &sample),
                 depth: self.depth + 1,
                 reflected_at: None,
             })

@@ -1,7 +1,8 @@
 //! A path from the camera between two of its vertices.
 
 use film::FirstEvent;
-use math::RayDifferential;
+use lanes::Real;
+use math::{Normal3, RayDifferential};
 use sampling::Sampler;
 use scattering::{BsdfSample, Directions, TransportMode};
 use scene::SurfaceInteraction;
@@ -95,10 +96,8 @@ impl PathState {
     /// Leaves a vertex along a direction of its BSDF.
     pub fn scatter(&mut self, vertex: &SurfaceVertex, Scattered { sample, pdf }: &Scattered) {
         let surface = vertex.surface;
-        self.beta *= throughput(surface, sample);
-        if sample.flags.is_transmissive() {
-            self.eta_scale *= sample.eta * sample.eta;
-        }
+        self.beta *= throughput(surface.surface.shading.n, sample);
+        self.eta_scale = eta_scale(self.eta_scale, sample);
         self.medium = surface.medium_towards(sample.wi, self.medium);
         let origin = (!sample.flags.is_specular()).then_some(vertex.context);
         self.leave(surface.spawn_scattered(&self.ray, sample), *pdf, origin);
@@ -147,9 +146,16 @@ impl PathState {
     }
 }
 
-/// f·|cos|/p of a direction sampled from a BSDF.
-pub(crate) fn throughput(surface: &SurfaceInteraction, sample: &BsdfSample) -> SampledSpectrum {
-    sample.f * (sample.wi.dot(surface.surface.shading.n).abs() / sample.pdf)
+/// f·|cos|/p of a direction sampled from the BSDF of a surface with shading normal `ns`.
+#[inline(always)]
+pub(crate) fn throughput<R: Real>(ns: Normal3<R>, sample: &BsdfSample<R>) -> SampledSpectrum<R> {
+    sample.f * (sample.wi.dot(ns).abs() / sample.pdf)
+}
+
+/// The product of η² over the refractions, after one more sample.
+#[inline(always)]
+pub(crate) fn eta_scale<R: Real>(before: R, sample: &BsdfSample<R>) -> R {
+    R::select(sample.flags.is_transmissive(), before * (sample.eta * sample.eta), before)
 }
 
 /// The ray beyond a surface at distance `t` that does not scatter.

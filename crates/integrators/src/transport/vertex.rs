@@ -1,7 +1,8 @@
 //! Vertices of paths from which lights are sampled.
 
 use film::FirstEvent;
-use math::{Normal3, Point3, Point3Error, Ray, Vector3, offset_ray_origin};
+use lanes::Real;
+use math::{Normal3, Point3, Point3Error, Ray, Vec3, Vector3, offset_ray_origin};
 use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, TransportMode};
 use scene::SurfaceInteraction;
 use scene::light::{LightLiSample, LightSampleContext};
@@ -83,7 +84,7 @@ pub(crate) struct SurfaceVertex<'a> {
 impl<'a> SurfaceVertex<'a> {
     /// A point with this BSDF.
     pub fn new(surface: &'a SurfaceInteraction, bsdf: &'a Bsdf<Bxdf<'a>>) -> Self {
-        let context = on_its_side(surface.light_context(), surface.surface.wo, bsdf.flags());
+        let context = on_its_side(surface.light_context(), surface.surface.wo, &bsdf.flags());
         Self { surface, bsdf, context }
     }
 
@@ -91,8 +92,8 @@ impl<'a> SurfaceVertex<'a> {
     /// density.
     pub fn scattered(&self, light: &LightLiSample) -> SampledSpectrum {
         let surface = &self.surface.surface;
-        let cos_theta = light.wi.dot(surface.shading.n).abs();
-        self.bsdf.f(surface.wo, light.wi, TransportMode::Radiance) * light.l * cos_theta
+        let f = self.bsdf.f(surface.wo, light.wi, TransportMode::Radiance);
+        scattered(f, light.l, light.wi, surface.shading.n)
     }
 
     /// The shadow ray to a light sample.
@@ -122,11 +123,26 @@ impl MediumVertex {
 
 /// Offsets a point that scatters to one side only to the side of `wo` by its error, so that a light
 /// that intersects its surface is not sampled from behind.
-pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
-    let side = match (flags.is_reflective(), flags.is_transmissive()) {
-        (true, false) => wo,
-        (false, true) => -wo,
-        _ => return context,
-    };
-    LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
+#[inline(always)]
+pub(crate) fn on_its_side<R: Real>(
+    context: LightSampleContext<R>,
+    wo: Vector3<R>,
+    flags: &BxdfFlags<R>,
+) -> LightSampleContext<R> {
+    let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
+    let (p, is_one_sided) = (context.p, reflects ^ transmits);
+    let moved = offset_ray_origin(p, context.n, Vec3::select(reflects, wo, -wo));
+    let error = Vec3::select(is_one_sided, Vec3::splat(R::zero()), p.error);
+    LightSampleContext { p: Point3Error::new(Vec3::select(is_one_sided, moved, p.p), error), ..context }
+}
+
+/// f·|cos|·L: the light from `wi` that a surface scatters.
+#[inline(always)]
+pub(crate) fn scattered<R: Real>(
+    f: SampledSpectrum<R>,
+    l: SampledSpectrum<R>,
+    wi: Vector3<R>,
+    ns: Normal3<R>,
+) -> SampledSpectrum<R> {
+    f * l * wi.dot(ns).abs()
 }

@@ -12,7 +12,8 @@ use super::lights::{LightLanes, LightSampling};
 use super::numbers::{SampleNumbers, draw_2d, draw_two};
 use super::stage::{Request, SpecularSamples, Stage, Vertices};
 use crate::transport::direct::sample_ambient;
-use crate::transport::path_state::PathState;
+use crate::transport::path_state::{PathState, throughput};
+use crate::transport::vertex::scattered;
 
 /// The lights at vertices, one after another; then the rays of specular surfaces.
 pub(super) struct LightsInTurn<'b, R: Real> {
@@ -128,7 +129,7 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         let Vertices { rows, p, n, ns, time, beta, .. } = *vertices;
         if let Some((light, is_ambient)) = self.light.take() {
             let LightLanes { valid, l, wi, pdf, .. } = light;
-            let scattered = f * l * wi.dot(ns).abs();
+            let scattered = scattered(f, l, wi, ns);
             let valid = valid & !scattered.is_black();
             let l = beta * (scattered / pdf);
             if !self.lights.casts_shadows || is_ambient {
@@ -174,9 +175,9 @@ impl<'b, R: Real> LightsInTurn<'b, R> {
         sample: &BsdfSample<R>,
     ) -> Request<R> {
         let Vertices { rows, hit_indices, p, n, ns, time, beta, .. } = *vertices;
-        let BsdfSample { f, wi, pdf, flags, valid, .. } = *sample;
+        let BsdfSample { wi, flags, valid, .. } = *sample;
         let samples = SpecularSamples::of(sample);
-        let beta = (beta * (f * (wi.dot(ns).abs() / pdf))).0.each(R::to_array);
+        let beta = (beta * throughput(ns, sample)).0.each(R::to_array);
         let o = offset_ray_origin(p, n, wi).to_array().each(R::to_array);
         let (hit_of, time) = (hit_indices.indices.to_array(), time.to_array());
         rows.each_of(valid & self.specular & flags.is_specular(), |lane, row| {

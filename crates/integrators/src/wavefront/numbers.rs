@@ -40,9 +40,9 @@ impl<R: Real> CameraNumbers<R> {
 /// The numbers of a sample, one for each lane.
 #[derive(Clone, Copy)]
 pub(super) struct SampleNumbers<R> {
-    /// That which chooses a light, or a lobe of the BSDF.
+    /// Chooses a light, or a lobe of the BSDF.
     pub uc: R,
-    /// Those of a point on the light, or of a direction.
+    /// Choose a point on the light, or a direction.
     pub u: Vec2<R>,
 }
 

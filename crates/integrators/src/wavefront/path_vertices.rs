@@ -18,7 +18,9 @@ use super::shadows::PassageLanes;
 use super::stage::{Algorithm, Request, SpecularSamples, Stage, Vertices};
 use crate::Path;
 use crate::transport::direct::power_heuristic;
+use crate::transport::path_state::{self, throughput};
 use crate::transport::roulette;
+use crate::transport::vertex::scattered;
 
 /// Path tracing at vertices. The samples of lights stay in the stage.
 pub(super) struct PathVertices<R: Real> {
@@ -77,7 +79,7 @@ impl<R: Real> PathVertices<R> {
         let light = stage.light_samples.lanes::<R>();
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { p, n, ns, wo, time, .. } = *vertices;
-        let scattered = f * l * wi.dot(ns).abs();
+        let scattered = scattered(f, l, wi, ns);
         let mut lit = valid & !scattered.is_black();
         if let Algorithm::Boundaries(_) = stage.algorithm {
             // Light that comes out has been scattered under the surface.
@@ -114,10 +116,10 @@ impl<R: Real> PathVertices<R> {
         density: R,
     ) -> Request<R> {
         let Vertices { rows, hit_indices, p, n, ns, time, .. } = *vertices;
-        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = *sample;
-        let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
+        let BsdfSample { wi, flags, valid, .. } = *sample;
+        let beta = vertices.beta * throughput(ns, sample);
         let eta_scale = R::gather(&stage.segments.eta_scale, hit_indices.indices);
-        let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
+        let eta_scale = path_state::eta_scale(eta_scale, sample);
         let mut valid = valid & vertices.active;
         if let Algorithm::Boundaries(_) = stage.algorithm {
             valid = valid & !vertices.enter(stage, sample, beta, valid);

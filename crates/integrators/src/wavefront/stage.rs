@@ -2,7 +2,7 @@
 
 use geometry::{HitColumns, PatchPoints, PointColumns};
 use lanes::{Each, MAX_LANES, Mask, Real};
-use math::{Differentials, Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
+use math::{Differentials, Normal3, Point3Error, Vec3, Vector3};
 use sampling::sampler::Address;
 use scattering::{BsdfSample, BxdfFlags, Directions};
 use scene::light::LightSampleContext;
@@ -18,6 +18,7 @@ use super::queues::Queues;
 use super::segment_columns::SegmentColumns;
 use crate::Path;
 use crate::transport::pixel_samples::PixelSamples;
+use crate::transport::vertex::on_its_side;
 
 /// The algorithm at vertices.
 #[derive(Clone, Copy)]
@@ -133,8 +134,7 @@ impl Stage<'_, '_> {
         R::Mask::from_bits(bits)
     }
 
-    /// The vertices of BSDFs with these flags. As in `transport/direct.rs`, lights are sampled from
-    /// points that are offset to the side of `wo` where they scatter to one side only.
+    /// The vertices of BSDFs with these flags.
     #[inline(always)]
     pub fn vertices<R: Real>(
         &self,
@@ -145,10 +145,7 @@ impl Stage<'_, '_> {
     ) -> Vertices<R> {
         let Place { rows, hit_indices } = self.place::<R>(first);
         let PatchPoints { p, n, ns, .. } = self.points.get(first);
-        let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
-        let one_sided = reflects ^ transmits;
-        let side: Normal3<R> = Vec3::select(reflects, wo, -wo);
-        let moved = Point3Error::exact(offset_ray_origin(p, n, side));
+        let time = R::gather(&self.segments.time, hit_indices.indices);
         Vertices {
             rows,
             hit_indices,
@@ -157,14 +154,11 @@ impl Stage<'_, '_> {
             n,
             ns,
             wo,
-            time: R::gather(&self.segments.time, hit_indices.indices),
+            time,
             lambda,
             beta: self.segments.beta.get(hit_indices),
             address: self.paths.address(rows, self.pass.pixels.index),
-            origin: Point3Error::new(
-                Vec3::select(one_sided, moved.p, p.p),
-                Vec3::select(one_sided, moved.error, p.error),
-            ),
+            origin: on_its_side(LightSampleContext { p, n, ns, time }, wo, flags).p,
         }
     }
 

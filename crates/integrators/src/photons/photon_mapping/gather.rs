@@ -386,7 +386,7 @@ impl Gather<'_> {
             let medium = surface.medium_towards(sample.wi, path.medium);
             let onward = PathState { medium, ..PathState::new(ray, path.depth) };
             let l = self.follow(onward, *lambda, Sought::Reflected, tracer);
-            sum += throughput(surface, &sample) * l;
+            sum += throughput(surface.surface.shading.n, &sample) * l;
         }
         sum / count as f32
     }

@@ -56,7 +56,7 @@ impl Tracer<'_> {
 /// The random numbers of the collisions along a flight or shadow ray: the first is a coordinate of
 /// the sample, the others follow from two of them.
 pub(super) struct Collisions {
-    /// That of the next free path.
+    /// The number of the next free path.
     u: f32,
     rng: Rng,
 }
