@@ -6,8 +6,8 @@
 //! through glass do not end early. Subpaths of bidirectional methods and light paths have this q,
 //! too, as each of their vertices costs connections.
 //!
-//! Camera paths have q = min(1, 3 c_max) ([`camera_path_survival`]). Their vertices are cheap, and a path
-//! that ends by chance is no longer spread evenly by the sampler: `docs/performance.md` has
+//! Camera paths have q = min(1, 3 c_max) ([`camera_path_survival`]). Their vertices are cheap, and
+//! a path that ends by chance is no longer spread evenly by the sampler: `docs/performance.md` has
 //! figures.
 
 use lanes::{Int, Real};

@@ -1,8 +1,8 @@
 //! Paths between two vertices, in columns, in the order of their rays.
 //!
-//! What changes at each vertex is here, and is appended to the columns of the next wave; what stays
-//! is in [`PathColumns`](super::path_columns::PathColumns). So rays are read, and paths written, without gathers and
-//! scatters, which take several times as long.
+//! The state that changes at each vertex is here, and is appended to the columns of the next wave;
+//! [`PathColumns`](super::path_columns::PathColumns) has the rest. So rays are read, and paths
+//! written, without gathers and scatters, which take several times as long.
 
 use geometry::{PatchPoints, RayColumns};
 use lanes::{Each, Int, MAX_LANES, Mask, Real};
