@@ -24,8 +24,9 @@ mod realtime;
 mod records;
 mod renderer;
 pub mod shaders;
-mod structure;
+
 mod tags;
+mod trees;
 
 pub use algorithm::Algorithm;
 pub use bvh::{Bvh, BvhError, Top, Words};
@@ -35,4 +36,4 @@ pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
 pub use renderer::{FindFirstHit, Kernels, PassError, Renderer, Schedule};
-pub use structure::Trees;
+pub use trees::Trees;

@@ -4,7 +4,7 @@
 //! their leaves, [`node`] collapses these into nodes of eight children, whose boxes are quantised
 //! to eight bits a plane. Quantised boxes contain the exact ones. A group has a tree of triangles
 //! and one of items, which are instances and single shapes ([`item`]). `shaders/trace.wgsl`
-//! traverses them. [`structure`] has the same for ray queries, whose trees are the driver's.
+//! traverses them. [`ray_queries`] has the same for ray queries, whose trees are the driver's.
 //!
 //! A reference to a child or root is a node's index, or a leaf: a range of triangles or items.
 
@@ -13,7 +13,7 @@ mod item;
 mod node;
 mod paths;
 mod placed;
-mod structure;
+mod ray_queries;
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ use node::Writer;
 use crate::records::record;
 pub(crate) use node::{ITEMS, TRIANGLES};
 pub(crate) use placed::Placed;
-pub(crate) use structure::{MOST as MOST_FOR_RAY_QUERIES, Plan};
+pub(crate) use ray_queries::{MOST as MOST_FOR_RAY_QUERIES, Plan};
 
 /// The entries of the stack of `shaders/trace.wgsl`.
 pub(crate) const STACK: usize = 24;

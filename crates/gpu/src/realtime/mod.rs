@@ -37,7 +37,7 @@ use crate::dynamic::{Moving, MovingError, Update};
 use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
-use crate::structure::Trees;
+use crate::trees::Trees;
 use crate::tags::SamplerTag;
 use canvas::Canvas;
 use frame::{Eye, Frame, Level};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Kernels;
 use crate::device::{Binding, Buffer, Device, GpuError, Kernel, Task, Workgroups};
 use crate::flatten::Flat;
-use crate::structure::Trees;
+use crate::trees::Trees;
 
 /// The buffers of a scene, beside which kernels have two of their own.
 pub(super) struct SceneBuffers {
