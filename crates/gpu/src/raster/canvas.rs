@@ -21,11 +21,12 @@ impl Canvas {
     pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let uses = drawn | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING;
+        let extent = extent(size, 1);
         Self {
             size,
-            samples: view(&texture(device, "samples", size, 1, [1, SAMPLES], COLOR, drawn)),
-            depth: view(&texture(device, "depth", size, 1, [1, SAMPLES], DEPTH, drawn)),
-            picture: texture(device, "picture", size, 1, [1, 1], COLOR, uses),
+            samples: view(&texture(device, "samples", extent, [1, SAMPLES], COLOR, drawn)),
+            depth: view(&texture(device, "depth", extent, [1, SAMPLES], DEPTH, drawn)),
+            picture: texture(device, "picture", extent, [1, 1], COLOR, uses),
         }
     }
 }
@@ -49,17 +50,16 @@ impl Sheets {
     /// Empty ones.
     pub fn new(device: &wgpu::Device) -> Self {
         let drawn = TextureUsages::RENDER_ATTACHMENT;
-        let size = [SIDE; 2];
+        let size = extent([SIDE; 2], 1);
         let sheet = |format| {
             let uses = drawn | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-            texture(device, "sprites", size, LAYERS, [LEVELS, 1], format, uses)
+            texture(device, "sprites", extent([SIDE; 2], LAYERS), [LEVELS, 1], format, uses)
         };
         Self {
-            samples: SPRITE
-                .map(|format| view(&texture(device, "sprite", size, 1, [1, SAMPLES], format, drawn))),
-            depth: view(&texture(device, "depth of a sprite", size, 1, [1, SAMPLES], DEPTH, drawn)),
+            samples: SPRITE.map(|format| view(&texture(device, "sprite", size, [1, SAMPLES], format, drawn))),
+            depth: view(&texture(device, "depth of a sprite", size, [1, SAMPLES], DEPTH, drawn)),
             sprite: SPRITE.map(|format| {
-                texture(device, "sprite", size, 1, [1, 1], format, drawn | TextureUsages::COPY_SRC)
+                texture(device, "sprite", size, [1, 1], format, drawn | TextureUsages::COPY_SRC)
             }),
             sheets: SPRITE.map(sheet),
         }
@@ -89,19 +89,22 @@ impl Sheets {
     }
 }
 
-/// A texture of some layers, levels and samples.
-pub fn texture(
+fn extent([width, height]: [u32; 2], depth_or_array_layers: u32) -> Extent3d {
+    Extent3d { width, height, depth_or_array_layers }
+}
+
+/// A texture of some levels and samples.
+fn texture(
     device: &wgpu::Device,
     label: &str,
-    [width, height]: [u32; 2],
-    depth_or_array_layers: u32,
+    size: Extent3d,
     [mip_level_count, sample_count]: [u32; 2],
     format: TextureFormat,
     usage: TextureUsages,
 ) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: Extent3d { width, height, depth_or_array_layers },
+        size,
         mip_level_count,
         sample_count,
         dimension: TextureDimension::D2,

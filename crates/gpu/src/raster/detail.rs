@@ -1,5 +1,6 @@
 //! What is drawn for each instance: nothing, its triangles, or a sprite.
 
+use super::eye::Eye;
 use super::lens::Lens;
 use super::models::Model;
 use super::placements::Placement;
@@ -14,6 +15,8 @@ const FEWEST: u64 = 64;
 /// What a picture draws.
 #[derive(Default)]
 pub struct Drawn {
+    /// What it is seen by.
+    pub eye: Eye,
     /// The groups that are drawn as triangles, with their first instance and the number of them.
     pub groups: Vec<(u32, std::ops::Range<u32>)>,
     /// The rows of the matrices of instances.

@@ -36,6 +36,7 @@ use scene::{Scene, View};
 use crate::device::{Device, GpuError};
 use crate::flatten::Refusal;
 use colors::Colors;
+use detail::Drawn;
 pub(crate) use eye::Eye;
 use fog::Fog;
 use lens::Lens;
@@ -147,17 +148,16 @@ impl Rasterizer {
             eye = eye.with(plane, pond);
             let lens = lens.mirrored(plane);
             let drawn = detail::drawn(&lens, &self.models, &self.placements, &mut self.album, budget / 2);
-            mirrored = Some((self.light.through(&lens, size), drawn));
+            mirrored = Some(Drawn { eye: self.light.through(&lens, size), ..drawn });
         }
         let drawn = detail::drawn(&lens, &self.models, &self.placements, &mut self.album, budget);
+        let drawn = Drawn { eye, ..drawn };
         let missing = self.album.take_missing();
         self.painted.bake(&self.device, &self.light, &self.models, &missing)?;
-        let count =
-            |f: fn(&detail::Drawn) -> u64| f(&drawn) + mirrored.as_ref().map_or(0, |(_, drawn)| f(drawn));
+        let count = |f: fn(&Drawn) -> u64| f(&drawn) + mirrored.as_ref().map_or(0, f);
         let (triangles, sprites) =
             (count(|drawn| drawn.triangles), count(|drawn| drawn.sprites.len() as u64));
-        let pixels =
-            self.painted.draw(&self.device, size, &self.models, mirrored.as_ref(), (&eye, &drawn))?;
+        let pixels = self.painted.draw(&self.device, size, &self.models, mirrored.as_ref(), &drawn)?;
         let pixel = |x: u32, y: u32| pixels[(y * size[0] + x) as usize];
         let image = Image::from_fn(size[0], size[1], ["R", "G", "B"], pixel);
         Ok(Drawing { image, triangles, sprites })

@@ -95,7 +95,7 @@ impl Painted {
             let sheets = self.sheets.get_or_insert_with(|| Sheets::new(gpu));
             let model = &models[sprite.group as usize];
             let eye = light.of_clip(sprite.clip_from_group(model));
-            let eye = bind_eye(gpu, &self.pipelines.eye, &eye, &self.sky, &self.sampler);
+            let eye = bind_eye(gpu, &self.pipelines.layouts.eye, &eye, &self.sky, &self.sampler);
             let mut encoder = gpu.create_command_encoder(&Default::default());
             let [color, normal] =
                 sheets.sprite.each_ref().map(|sprite| sprite.create_view(&Default::default()));
@@ -114,7 +114,7 @@ impl Painted {
             }
             for level in 1..LEVELS {
                 let [from, to] = [sheets.array(*layer, level - 1), sheets.level(*layer, level)];
-                let from = bind(gpu, &self.pipelines.album, &from);
+                let from = bind(gpu, &self.pipelines.layouts.album, &from);
                 let targets = [(&to[0], None), (&to[1], None)];
                 let mut pass = begin(&mut encoder, &targets, None);
                 pass.set_pipeline(&self.pipelines.reduce);
@@ -134,8 +134,8 @@ impl Painted {
         device: &Device,
         size: [u32; 2],
         models: &[Model],
-        mirrored: Option<&(Eye, Drawn)>,
-        (eye, drawn): (&Eye, &Drawn),
+        mirrored: Option<&Drawn>,
+        drawn: &Drawn,
     ) -> Result<Vec<[f32; 3]>, GpuError> {
         let (gpu, queue) = device.wgpu();
         if self.canvases.as_ref().is_none_or(|canvases| canvases[1].size != size) {
@@ -146,12 +146,12 @@ impl Painted {
         let Some([mirror, canvas]) = &self.canvases else { return Ok(Vec::new()) };
         let mut encoder = gpu.create_command_encoder(&Default::default());
         let mut water = None;
-        if let Some((eye, drawn)) = mirrored {
-            self.view(gpu, &mut encoder, mirror, models, (eye, drawn), None);
+        if let Some(drawn) = mirrored {
+            self.view(gpu, &mut encoder, mirror, models, drawn, None);
             let picture = mirror.picture.create_view(&Default::default());
-            water = Some(bind(gpu, &self.pipelines.mirror, &[picture]));
+            water = Some(bind(gpu, &self.pipelines.layouts.mirror, &[picture]));
         }
-        self.view(gpu, &mut encoder, canvas, models, (eye, drawn), water.as_ref());
+        self.view(gpu, &mut encoder, canvas, models, drawn, water.as_ref());
         let [width, height] = size;
         // Rows of copies begin at multiples of 256 bytes.
         let stride = (8 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -190,10 +190,10 @@ impl Painted {
         encoder: &mut CommandEncoder,
         canvas: &Canvas,
         models: &[Model],
-        (eye, drawn): (&Eye, &Drawn),
+        drawn: &Drawn,
         water: Option<&BindGroup>,
     ) {
-        let eye = bind_eye(gpu, &self.pipelines.eye, eye, &self.sky, &self.sampler);
+        let eye = bind_eye(gpu, &self.pipelines.layouts.eye, &drawn.eye, &self.sky, &self.sampler);
         let resolved = canvas.picture.create_view(&Default::default());
         let mut pass = begin(encoder, &[(&canvas.samples, Some(&resolved))], Some(&canvas.depth));
         pass.set_bind_group(0, &eye, &[]);
@@ -216,7 +216,7 @@ impl Painted {
         pass.draw(0..3, 0..1);
         if let (Some(sheets), false) = (&self.sheets, drawn.sprites.is_empty()) {
             let views = sheets.sheets.each_ref().map(|sheet| sheet.create_view(&Default::default()));
-            let album = bind(gpu, &self.pipelines.album, &views);
+            let album = bind(gpu, &self.pipelines.layouts.album, &views);
             let instances = buffer(gpu, bytemuck::cast_slice(&drawn.sprites), BufferUsages::VERTEX);
             pass.set_pipeline(&self.pipelines.sprites);
             pass.set_bind_group(1, &album, &[]);

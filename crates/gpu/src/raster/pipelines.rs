@@ -3,8 +3,8 @@
 use wgpu::{
     BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
     CompareFunction, DepthStencilState, MultisampleState, PrimitiveState, PrimitiveTopology, RenderPipeline,
-    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexAttribute,
-    VertexBufferLayout, VertexFormat, VertexStepMode,
+    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexBufferLayout, VertexStepMode,
+    vertex_attr_array,
 };
 
 use super::models::Vertex;
@@ -24,12 +24,7 @@ pub const SAMPLES: u32 = 4;
 
 /// All pipelines.
 pub struct Pipelines {
-    /// The camera, the sky and a sampler.
-    pub eye: BindGroupLayout,
-    /// The picture of the mirrored view.
-    pub mirror: BindGroupLayout,
-    /// The textures of sprites.
-    pub album: BindGroupLayout,
+    pub layouts: Layouts,
     pub surfaces: RenderPipeline,
     pub sky: RenderPipeline,
     pub water: RenderPipeline,
@@ -39,6 +34,49 @@ pub struct Pipelines {
     /// Makes the next level of a sprite's pyramid.
     pub reduce: RenderPipeline,
 }
+
+/// The layouts of groups.
+pub struct Layouts {
+    /// The camera, the sky and a sampler.
+    pub eye: BindGroupLayout,
+    /// The picture of the mirrored view.
+    pub mirror: BindGroupLayout,
+    /// The textures of sprites.
+    pub album: BindGroupLayout,
+}
+
+/// Vertices, and rows of the matrices of instances.
+const TRIANGLES: &[Option<VertexBufferLayout>] = &[
+    Some(VertexBufferLayout {
+        array_stride: size_of::<Vertex>() as u64,
+        step_mode: VertexStepMode::Vertex,
+        attributes: &vertex_attr_array![
+            0 => Float32x3, 1 => Snorm16x4, 2 => Unorm10_10_10_2, 3 => Unorm10_10_10_2
+        ],
+    }),
+    Some(VertexBufferLayout {
+        array_stride: 48,
+        step_mode: VertexStepMode::Instance,
+        attributes: &vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4],
+    }),
+];
+
+/// The frames of sprites.
+const FRAMES: &[Option<VertexBufferLayout>] = &[Some(VertexBufferLayout {
+    array_stride: 64,
+    step_mode: VertexStepMode::Instance,
+    attributes: &vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4],
+})];
+
+/// What covers a pixel in part is over what is there; the nearness of that stays.
+const OVER: BlendState = BlendState {
+    color: BlendComponent::OVER,
+    alpha: BlendComponent {
+        src_factor: BlendFactor::Zero,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    },
+};
 
 /// What distinguishes a pipeline.
 struct Plan<'a> {
@@ -57,120 +95,101 @@ impl Pipelines {
     pub fn new(device: &wgpu::Device) -> Self {
         let source = wgpu::ShaderSource::Wgsl(shaders::raster().into());
         let module =
-            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("raster"), source });
-        let [eye, mirror, album] = [
-            layout(device, &[None, Some(TextureViewDimension::Cube)], true),
-            layout(device, &[Some(TextureViewDimension::D2)], false),
-            layout(device, &[Some(TextureViewDimension::D2Array); 2], false),
-        ];
-        let vertices = attributes(
-            0,
-            &[
-                VertexFormat::Float32x3,
-                VertexFormat::Snorm16x4,
-                VertexFormat::Unorm10_10_10_2,
-                VertexFormat::Unorm10_10_10_2,
-            ],
-        );
-        let rows = attributes(4, &[VertexFormat::Float32x4; 3]);
-        let frames = attributes(0, &[VertexFormat::Float32x4; 4]);
-        let triangles = [
-            Some(buffer(size_of::<Vertex>(), VertexStepMode::Vertex, &vertices)),
-            Some(buffer(48, VertexStepMode::Instance, &rows)),
-        ];
-        let sprites = [Some(buffer(64, VertexStepMode::Instance, &frames))];
-        let make = |plan: Plan| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: None,
-                bind_group_layouts: plan.groups,
-                immediate_size: 0,
-            });
-            let target = |format: &TextureFormat| {
-                Some(ColorTargetState { format: *format, blend: plan.blend, write_mask: ColorWrites::ALL })
-            };
-            let targets: Vec<_> = plan.targets.iter().map(target).collect();
-            let count = if plan.depth.is_some() { SAMPLES } else { 1 };
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(plan.entries[1]),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(plan.entries[0]),
-                    compilation_options: Default::default(),
-                    buffers: plan.buffers,
-                },
-                primitive: PrimitiveState { topology: plan.topology, ..Default::default() },
-                depth_stencil: plan.depth.map(|(compare, writes)| DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(writes),
-                    depth_compare: Some(compare),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: MultisampleState { count, ..Default::default() },
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(plan.entries[1]),
-                    compilation_options: Default::default(),
-                    targets: &targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+            &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("raster"), source });
+        let layouts = Layouts::new(device);
+        let Layouts { eye, mirror, album } = &layouts;
         let plain = Plan {
             entries: ["surface_vertex", "surface_fragment"],
-            groups: &[Some(&eye)],
-            buffers: &triangles,
+            groups: &[Some(eye)],
+            buffers: TRIANGLES,
             targets: &[COLOR],
             blend: None,
             depth: Some((CompareFunction::Greater, true)),
             topology: PrimitiveTopology::TriangleList,
         };
-        // What covers a pixel in part is over what is there; the nearness of that stays.
-        let over = |src_factor, dst_factor| BlendComponent {
-            src_factor,
-            dst_factor,
-            operation: BlendOperation::Add,
+        let sky = Plan {
+            entries: ["sky_vertex", "sky_fragment"],
+            buffers: &[],
+            depth: Some((CompareFunction::GreaterEqual, false)),
+            ..plain
         };
-        let blend = BlendState {
-            color: over(BlendFactor::One, BlendFactor::OneMinusSrcAlpha),
-            alpha: over(BlendFactor::Zero, BlendFactor::One),
+        let water = Plan {
+            entries: ["surface_vertex", "water_fragment"],
+            groups: &[Some(eye), Some(mirror)],
+            ..plain
         };
+        let sprites = Plan {
+            entries: ["sprite_vertex", "sprite_fragment"],
+            groups: &[Some(eye), Some(album)],
+            buffers: FRAMES,
+            blend: Some(OVER),
+            depth: Some((CompareFunction::Greater, false)),
+            topology: PrimitiveTopology::TriangleStrip,
+            ..plain
+        };
+        let bake = Plan { entries: ["surface_vertex", "bake_fragment"], targets: &SPRITE, ..plain };
+        let reduce = Plan {
+            entries: ["reduce_vertex", "reduce_fragment"],
+            groups: &[Some(eye), Some(album)],
+            buffers: &[],
+            targets: &SPRITE,
+            depth: None,
+            ..plain
+        };
+        let [surfaces, sky, water, sprites, bake, reduce] =
+            [plain, sky, water, sprites, bake, reduce].map(|plan| plan.pipeline(device, module));
+        Self { layouts, surfaces, sky, water, sprites, bake, reduce }
+    }
+}
+
+impl Plan<'_> {
+    fn pipeline(&self, device: &wgpu::Device, module: &wgpu::ShaderModule) -> RenderPipeline {
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: self.groups,
+            immediate_size: 0,
+        });
+        let target = |format: &TextureFormat| {
+            Some(ColorTargetState { format: *format, blend: self.blend, write_mask: ColorWrites::ALL })
+        };
+        let targets: Vec<_> = self.targets.iter().map(target).collect();
+        let count = if self.depth.is_some() { SAMPLES } else { 1 };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.entries[1]),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(self.entries[0]),
+                compilation_options: Default::default(),
+                buffers: self.buffers,
+            },
+            primitive: PrimitiveState { topology: self.topology, ..Default::default() },
+            depth_stencil: self.depth.map(|(compare, writes)| DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(writes),
+                depth_compare: Some(compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: MultisampleState { count, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(self.entries[1]),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl Layouts {
+    fn new(device: &wgpu::Device) -> Self {
         Self {
-            sky: make(Plan {
-                entries: ["sky_vertex", "sky_fragment"],
-                buffers: &[],
-                depth: Some((CompareFunction::GreaterEqual, false)),
-                ..plain
-            }),
-            water: make(Plan {
-                entries: ["surface_vertex", "water_fragment"],
-                groups: &[Some(&eye), Some(&mirror)],
-                ..plain
-            }),
-            sprites: make(Plan {
-                entries: ["sprite_vertex", "sprite_fragment"],
-                groups: &[Some(&eye), Some(&album)],
-                buffers: &sprites,
-                blend: Some(blend),
-                depth: Some((CompareFunction::Greater, false)),
-                topology: PrimitiveTopology::TriangleStrip,
-                ..plain
-            }),
-            bake: make(Plan { entries: ["surface_vertex", "bake_fragment"], targets: &SPRITE, ..plain }),
-            reduce: make(Plan {
-                entries: ["reduce_vertex", "reduce_fragment"],
-                groups: &[Some(&eye), Some(&album)],
-                buffers: &[],
-                targets: &SPRITE,
-                depth: None,
-                ..plain
-            }),
-            surfaces: make(plain),
-            eye,
-            mirror,
-            album,
+            eye: layout(device, &[None, Some(TextureViewDimension::Cube)], true),
+            mirror: layout(device, &[Some(TextureViewDimension::D2)], false),
+            album: layout(device, &[Some(TextureViewDimension::D2Array); 2], false),
         }
     }
 }
@@ -200,23 +219,4 @@ fn layout(device: &wgpu::Device, parts: &[Option<TextureViewDimension>], samples
     };
     let entries: Vec<_> = entries.into_iter().map(entry).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
-}
-
-/// Attributes that follow each other, from a location on.
-fn attributes(first: u32, formats: &[VertexFormat]) -> Vec<VertexAttribute> {
-    let mut offset = 0;
-    let attribute = |(format, shader_location): (&VertexFormat, u32)| {
-        let attribute = VertexAttribute { format: *format, offset, shader_location };
-        offset += format.size();
-        attribute
-    };
-    formats.iter().zip(first..).map(attribute).collect()
-}
-
-fn buffer(
-    stride: usize,
-    step_mode: VertexStepMode,
-    attributes: &[VertexAttribute],
-) -> VertexBufferLayout<'_> {
-    VertexBufferLayout { array_stride: stride as u64, step_mode, attributes }
 }
