@@ -7,6 +7,7 @@
 //! What kernels do not draw is a [`Refusal`], with its place in the scene's file: the whole scene
 //! is then drawn by the CPU.
 
+mod algorithms;
 pub(crate) mod cameras;
 mod distributions;
 mod filters;
@@ -30,10 +31,7 @@ mod textures;
 
 use std::collections::HashMap;
 
-use description::{
-    AmbientOcclusionDesc, BdptDesc, Diagnostic, LightTracingDesc, MltDesc, PathDesc, RandomWalkDesc,
-    SimplePathDesc, SimpleVolPathDesc, Span, SppmDesc, WhittedDesc,
-};
+use description::{Diagnostic, Span};
 use film::{Film, LayerSet};
 use geometry::{GeometryId, InstanceId, InstancePath, Shape};
 use sampling::Sampler;
@@ -46,7 +44,6 @@ use crate::algorithm::{Algorithm, Traits};
 use crate::bvh::{Bvh, BvhError, Top};
 use crate::parts::Parts;
 use crate::records::record;
-use crate::tags::{SettingBit, bit};
 pub use openpbr::openpbr_table;
 use slab::Slab;
 
@@ -205,73 +202,27 @@ pub fn flatten(subject: Subject, lights: &LightSampler) -> Result<Flat, Vec<Refu
         is_centered: disable_pixel_jitter.into(),
         has_one_wavelength: disable_wavelength_jitter.into(),
         has_footprints: scene.needs_footprints(view).into(),
+        light_count: scene.lights().len() as u32,
+        infinite_count: scene.infinite_lights().len() as u32,
+        random_numbers: flattener.sampler(sampler),
+        camera: flattener.camera(view, algorithm),
+        pixel_filter: flattener.filter(film.filter()),
+        sensor: flattener.sensor(film),
+        geometries: flattener.geometries(),
         ..Head::default()
     };
-    head.random_numbers = flattener.sampler(sampler);
-    head.camera = flattener.camera(view, algorithm);
-    head.pixel_filter = flattener.filter(film.filter());
-    head.sensor = flattener.sensor(film);
-    head.geometries = flattener.geometries();
-    let kinds;
-    (head.materials, kinds) = flattener.materials();
+    let (materials, kinds) = flattener.materials();
     let bvh = flattener.bvh(algorithm, ray_queries);
-    head.top = bvh.top;
-    (head.lights, head.infinite) = flattener.lights();
-    head.light_count = scene.lights().len() as u32;
-    head.infinite_count = scene.infinite_lights().len() as u32;
-    head.choice = flattener.light_choice(lights);
-    (head.max_depth, head.settings) = match *algorithm {
-        Algorithm::RayCasting => (0, 0),
-        // The text of the kernel has `ambient`, and other reflections are refused.
-        Algorithm::Whitted(WhittedDesc {
-            max_depth,
-            ambient: _,
-            reflections: _,
-            reflection_distance: _,
-            reflection_resolution: _,
-        })
-        | Algorithm::SimpleVolPath(SimpleVolPathDesc { max_depth })
-        | Algorithm::RandomWalk(RandomWalkDesc { max_depth })
-        | Algorithm::LightTracing(LightTracingDesc { max_depth })
-        // The pass of photons has the rest.
-        | Algorithm::Sppm(SppmDesc { max_depth, photons_per_iteration: _, radius: _, seed: _ }, _) => {
-            (max_depth, 0)
-        }
-        Algorithm::AmbientOcclusion(AmbientOcclusionDesc { max_distance, cos_sample }, space) => {
-            let white = space.illuminant();
-            head.white = flattener.spectrum(&white);
-            head.white_scale = 1.0 / white.to_photometric();
-            (head.max_distance, head.cos_sample) = (max_distance, cos_sample.into());
-            (0, 0)
-        }
-        // `lights` is of the light sampler.
-        Algorithm::Path(PathDesc { max_depth, regularize, light_sampler: _ })
-        | Algorithm::VolPath(PathDesc { max_depth, regularize, light_sampler: _ }) => {
-            (max_depth, SettingBit::SamplesLights as u32 | bit(regularize, SettingBit::Regularizes))
-        }
-        Algorithm::SimplePath(SimplePathDesc { max_depth, sample_lights, sample_bsdf }) => {
-            let sampled = bit(sample_lights, SettingBit::SamplesLights) | bit(sample_bsdf, SettingBit::SamplesBsdfs);
-            (max_depth, SettingBit::MirrorsDirections as u32 | sampled)
-        }
-        // Pictures of strategies are refused.
-        Algorithm::Bdpt(BdptDesc { max_depth, regularize, visualize_strategies: _, visualize_weights: _ }) => {
-            (max_depth, bit(regularize, SettingBit::Regularizes))
-        }
-        // Other techniques are refused, and what runs the chains has their numbers.
-        Algorithm::Mlt(
-            MltDesc {
-                max_depth,
-                regularize,
-                technique: _,
-                bootstrap_samples: _,
-                chains: _,
-                mutations_per_pixel: _,
-                large_step_probability: _,
-                sigma: _,
-            },
-            _,
-        ) => (max_depth, bit(regularize, SettingBit::Regularizes)),
+    let (all_lights, infinite) = flattener.lights();
+    head = Head {
+        top: bvh.top,
+        materials,
+        lights: all_lights,
+        infinite,
+        choice: flattener.light_choice(lights),
+        ..head
     };
+    flattener.algorithm(algorithm, &mut head);
     if light_paths {
         head.light_paths = flattener.light_paths(algorithm, light_sampler, film);
     }
