@@ -227,7 +227,11 @@ fn sample_far_light(
                 sample_sky(at, u, lambda, allow_incomplete, &sample);
             }
         }
-        case LightTag_PortalInfinite: { sample_portal(at, p, u, lambda, &sample); }
+        case LightTag_PortalInfinite: {
+            if (HAS_PORTALS) {
+                sample_portal(at, p, u, lambda, &sample);
+            }
+        }
         default: {
             sample.wi = sample_uniform_sphere(u);
             sample.pdf = 1 / (4 * 3.1415927);

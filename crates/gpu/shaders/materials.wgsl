@@ -4,20 +4,25 @@
 const MATERIAL_TEXTURES = 12u;
 const COAT_TEXTURES = 5u;
 
-// A BxDF in the frame of a point: `a` and `b` are reflectance and transmittance, or η and k, or
-// extinction and albedo under a surface, whose material has the given record.
+// A BxDF in the frame of a point: what its kind has of the following.
 struct Bsdf {
     kind: u32,
     frame: Frame,
-    a: vec4f,
-    b: vec4f,
+    // Of what is diffuse, coated or not, and of metals.
+    diffuse: Diffuse,
+    translucent: DiffuseTransmission,
+    metal: Conductor,
+    // Of glass and of the boundary of a body, of coats the index alone.
     eta: f32,
     facets: TrowbridgeReitz,
     coat: Coat,
     surface: OpenPbr,
     fibre: Hair,
     measured: Measured,
+    // Of a body the record of its material, and extinction and albedo under its surface.
     record: u32,
+    sigma_t: vec4f,
+    albedo: vec4f,
     // What it carries: radiance, unless it is a vertex of a light path.
     mode: u32,
 }
@@ -57,7 +62,7 @@ fn bsdf_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<funct
     forced.frame = bsdf.frame;
     forced.eta = 1;
     if (sample.valid) {
-        forced.a = sample.f * (abs(dot(sample.wi, (*s).ns)) / sample.pdf);
+        forced.diffuse.reflectance = sample.f * (abs(dot(sample.wi, (*s).ns)) / sample.pdf);
     }
     return forced;
 }
@@ -123,27 +128,29 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
     // The textures of a base come after those of its coat.
     let first = select(0u, COAT_TEXTURES, is_coated);
     switch (bsdf.kind) {
-        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: { bsdf.a = clamp(values[first], vec4f(), vec4f(1)); }
+        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: {
+            bsdf.diffuse.reflectance = clamp(values[first], vec4f(), vec4f(1));
+        }
         case MaterialTag_DiffuseTransmission: {
             let scale = bitcast<f32>(given.x);
-            bsdf.a = clamp(values[0] * scale, vec4f(), vec4f(1));
-            bsdf.b = clamp(values[1] * scale, vec4f(), vec4f(1));
+            bsdf.translucent.reflectance = clamp(values[0] * scale, vec4f(), vec4f(1));
+            bsdf.translucent.transmittance = clamp(values[1] * scale, vec4f(), vec4f(1));
         }
         case MaterialTag_Principled: { bsdf.surface = openpbr_at(given.x, values, context.uv, lambda); }
         default: {}
     }
     if (HAS_FACETS && (bsdf.kind == MaterialTag_Conductor || bsdf.kind == MaterialTag_CoatedConductor)) {
-        bsdf.facets = facets_of(values[first].x, values[first + 1].x, given.x);
-        bsdf.b = values[first + 2];
-        bsdf.a = values[first + 3];
+        bsdf.metal.distribution = facets_of(values[first].x, values[first + 1].x, given.x);
+        bsdf.metal.k = values[first + 2];
+        bsdf.metal.eta = values[first + 3];
         if (given.w == 1) {
-            let r = clamp(bsdf.b, vec4f(), vec4f(0.9999));
-            bsdf.a = vec4f(1);
-            bsdf.b = 2 * sqrt(r) / sqrt(1 - r);
+            let r = clamp(bsdf.metal.k, vec4f(), vec4f(0.9999));
+            bsdf.metal.eta = vec4f(1);
+            bsdf.metal.k = 2 * sqrt(r) / sqrt(1 - r);
         }
         // Seen from within the coat, whose index is that of the BSDF.
-        bsdf.a /= bsdf.eta;
-        bsdf.b /= bsdf.eta;
+        bsdf.metal.eta /= bsdf.eta;
+        bsdf.metal.k /= bsdf.eta;
     }
     if (HAS_FACETS && bsdf.kind == MaterialTag_Dielectric) {
         bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
@@ -159,8 +166,8 @@ fn material_at(s: ptr<function, Surface>, context: TextureContext, lambda: ptr<f
         bsdf.eta = bitcast<f32>(more.y);
         bsdf.facets = facets_of(values[0].x, values[1].x, given.x);
         let medium = medium_under(at, bsdf.facets, values[2], values[3]);
-        bsdf.a = medium[0];
-        bsdf.b = medium[1];
+        bsdf.sigma_t = medium[0];
+        bsdf.albedo = medium[1];
     }
     if (is_coated) {
         let facets = facets_of(values[0].x, values[1].x, more.x);
@@ -183,15 +190,14 @@ fn walk_seed(lambda: f32) -> u32 {
 fn coated_diffuse(bsdf: Bsdf) -> Layered_Diffuse {
     let c = bsdf.coat;
     return Layered_Diffuse(
-        Diffuse(bsdf.a), c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
+        bsdf.diffuse, c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
     );
 }
 
 fn coated_conductor(bsdf: Bsdf) -> Layered_Conductor {
     let c = bsdf.coat;
-    let base = Conductor(bsdf.facets, bsdf.a, bsdf.b);
     return Layered_Conductor(
-        base, c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
+        bsdf.metal, c.surface, c.thickness, c.albedo, c.phase, c.inner, c.max_depth, c.samples, c.seed,
     );
 }
 
@@ -244,6 +250,9 @@ fn regularize(bsdf: ptr<function, Bsdf>) {
     var facets = (*bsdf).facets;
     TrowbridgeReitz_regularize(&facets, true);
     (*bsdf).facets = facets;
+    facets = (*bsdf).metal.distribution;
+    TrowbridgeReitz_regularize(&facets, true);
+    (*bsdf).metal.distribution = facets;
     facets = (*bsdf).coat.surface.distribution;
     TrowbridgeReitz_regularize(&facets, true);
     (*bsdf).coat.surface.distribution = facets;

@@ -72,15 +72,10 @@ fn scatter(path: ptr<function, Path>, s: Surface, context: ShapeSampleContext, s
 
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
-    let probability = camera_path_survival((*path).beta * (*path).eta_scale);
-    if (!plays_roulette((*path).depth, probability)) {
-        return true;
-    }
-    if (!(probability > 0 && get_1d() < probability)) {
-        return false;
-    }
+    let survival = camera_path_survival((*path).beta * (*path).eta_scale);
+    let probability = roulette(survival, (*path).depth);
     (*path).beta /= probability;
-    return true;
+    return probability > 0;
 }
 
 // A path that begins with a camera ray.
@@ -130,11 +125,7 @@ fn shade(
     } else {
         *l += (*path).beta * emitted(*path, s, hit.uv, *lambda);
         if (HAS_MEDIA && is_interface(s.material)) {
-            var near = (*path).near;
-            var ray = (*path).ray;
-            pass_through(&ray, &near, s, hit.t);
-            (*path).near = near;
-            (*path).ray = ray;
+            pass_interface(path, s, hit.t);
             return true;
         }
         bsdf = bsdf_at(&s, textures, lambda);
@@ -142,10 +133,7 @@ fn shade(
             return false;
         }
         (*path).depth++;
-        keep_boundary(&bsdf);
-        if (has_setting(SettingBit_Regularizes) && (*path).rough_before) {
-            regularize(&bsdf);
-        }
+        roughen(&bsdf, (*path).rough_before);
     }
     let flags = bxdf_flags(bsdf);
     let context = light_context(s, flags);
@@ -164,12 +152,7 @@ fn shade(
         return false;
     }
     (*path).near = scattered_differentials(s, textures, (*path).near, sample);
-    // The density of a sample that is a walk is known as that of its direction alone.
-    var pdf = sample.pdf;
-    if (HAS_COATS && sample.pdf_is_proportional) {
-        pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
-    }
-    scatter(path, s, context, sample, pdf);
+    scatter(path, s, context, sample, density_of_sample(bsdf, s.wo, sample));
     if (HAS_SUBSURFACE && enters_body(bsdf, s, sample)) {
         (*path).near = no_differentials();
         return go_under(path, s, bsdf, *lambda);

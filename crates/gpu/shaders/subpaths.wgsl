@@ -368,11 +368,11 @@ fn leave(walk: ptr<function, Subpath>, arrival: Arrival, s: Surface, uc: f32, u:
 
 // Plays Russian roulette.
 fn survive(walk: ptr<function, Subpath>) {
-    let probability = SampledSpectrum_max_component((*walk).share);
-    if (!(*walk).goes_on || !plays_roulette((*walk).depth, probability)) {
+    if (!(*walk).goes_on) {
         return;
     }
-    (*walk).goes_on = probability > 0 && get_1d() < probability;
+    let probability = roulette(SampledSpectrum_max_component((*walk).share), (*walk).depth);
+    (*walk).goes_on = probability > 0;
     (*walk).beta /= probability;
     (*walk).share /= probability;
 }

@@ -258,9 +258,9 @@ fn Exit_sample_f(bsdf: Bsdf, wo: vec3f, uc: f32, u: vec2f, mode: u32, directions
 
 // Leaves of a body the boundary, by samples of which paths enter it.
 fn keep_boundary(bsdf: ptr<function, Bsdf>) {
-    if ((*bsdf).kind == MaterialTag_Subsurface) {
+    if (HAS_SUBSURFACE && (*bsdf).kind == MaterialTag_Subsurface) {
         (*bsdf).kind = MaterialTag_Boundary;
-    } else if ((*bsdf).kind == MaterialTag_Principled) {
+    } else if (HAS_SUBSURFACE && (*bsdf).kind == MaterialTag_Principled) {
         (*bsdf).surface = boundary_part((*bsdf).surface);
     }
 }
@@ -273,7 +273,7 @@ fn effective_albedo(bsdf: Bsdf) -> vec4f {
     let effective = albedos + count + word(table + 2);
     var share: vec4f;
     for (var i = 0; i < 4; i++) {
-        let rows = spline_place(albedos, count, bsdf.b[i]);
+        let rows = spline_place(albedos, count, bsdf.albedo[i]);
         if (rows.valid) {
             share[i] = max(spline_sum(rows, effective, 1), 0);
         }

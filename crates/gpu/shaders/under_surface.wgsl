@@ -65,12 +65,17 @@ var<private> under: Under;
 
 // The length of the next ray of a path.
 fn reach_of_path() -> f32 {
-    return select(infinity(), under.reach, under.state == PROBING || under.state == WALKING);
+    if (HAS_SUBSURFACE && is_under()) {
+        return under.reach;
+    }
+    return infinity();
 }
 
 // Puts a path above all surfaces.
 fn stay_above() {
-    under.state = ABOVE;
+    if (HAS_SUBSURFACE) {
+        under.state = ABOVE;
+    }
 }
 
 fn is_under() -> bool {
@@ -179,8 +184,8 @@ fn go_under(path: ptr<function, Path>, s: Surface, bsdf: Bsdf, lambda: SampledWa
         under.eta = 1;
     } else {
         under.record = bsdf.record;
-        under.sigma_t = bsdf.a;
-        under.albedo = bsdf.b;
+        under.sigma_t = bsdf.sigma_t;
+        under.albedo = bsdf.albedo;
         under.g = asymmetry_under(bsdf.record);
         under.eta = bsdf.eta;
     }

@@ -121,15 +121,175 @@ fn take_way(path: ptr<function, Path>, value: vec4f, density: vec4f, heroes: Her
 
 // Plays Russian roulette; false if the path has ended.
 fn survives(path: ptr<function, Path>) -> bool {
-    let probability = camera_path_survival(carried(*path) * (*path).eta_scale);
-    if (!plays_roulette((*path).depth, probability)) {
-        return true;
+    let survival = camera_path_survival(carried(*path) * (*path).eta_scale);
+    let probability = roulette(survival, (*path).depth);
+    (*path).throughput.beta /= probability;
+    return probability > 0;
+}
+
+// What a shadow ray does at the end of a part of its way; the light that it brings if that was the
+// last one.
+fn follow_shadow(c: ptr<function, Connection>, hit: Hit, s: Surface, flight: Flight, heroes: Heroes) -> vec4f {
+    (*c).t_max -= hit.t;
+    let has_arrived = !hit.found || (*c).t_max <= 0;
+    (*c).is_on_its_way = flight.end != ABSORBED && !has_arrived;
+    if ((*c).is_on_its_way) {
+        (*c).medium = medium_towards(hit.geometry, s.n, (*c).ray.d, (*c).medium);
+        (*c).ray = spawn(s, (*c).ray.d);
+        return vec4f();
     }
-    if (!(probability > 0 && get_1d() < probability)) {
+    return select(arriving(*c, heroes), vec4f(), flight.end == ABSORBED);
+}
+
+// Scatters a path at a point in a medium; false if it has ended.
+fn scatter_in_medium(
+    path: ptr<function, Path>,
+    s: Surface,
+    context: ShapeSampleContext,
+    phase: HenyeyGreenstein,
+    u: vec2f,
+) -> bool {
+    let scattered = HenyeyGreenstein_sample_p(phase, s.wo, u);
+    (*path).near = no_differentials();
+    (*path).is_found_twice = has_setting(SettingBit_SamplesLights);
+    (*path).rough_before = true;
+    leave(path, s, context, scattered.v0, scattered.v1);
+    return survives(path);
+}
+
+// Scatters a path at a surface of a geometry; false if it has ended.
+fn scatter(
+    path: ptr<function, Path>,
+    s: Surface,
+    geometry: u32,
+    context: ShapeSampleContext,
+    bsdf: Bsdf,
+    sample: BsdfSample,
+    lambda: SampledWavelengths,
+) -> bool {
+    (*path).throughput.beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
+    if (HAS_SUBSURFACE && enters_body(bsdf, s, sample)) {
+        (*path).outside = (*path).medium;
+        (*path).medium = 0;
+        (*path).near = no_differentials();
+        (*path).ray = spawn(s, sample.wi);
+        return go_under(path, s, bsdf, lambda);
+    }
+    let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
+    (*path).is_found_twice = !is_specular && has_setting(SettingBit_SamplesLights);
+    (*path).rough_before |= !is_specular;
+    if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
+        (*path).eta_scale *= sample.eta * sample.eta;
+    }
+    (*path).medium = medium_towards(geometry, s.n, sample.wi, (*path).medium);
+    leave(path, s, context, sample.wi, density_of_sample(bsdf, s.wo, sample));
+    return survives(path);
+}
+
+// What a path does at the end of its ray, or where a medium scatters it before: it adds light to
+// `l`, finds the connection of the vertex with a light and the next ray; false if it has ended.
+fn shade(
+    path: ptr<function, Path>,
+    hit: Hit,
+    surface: Surface,
+    flight: Flight,
+    lambda: ptr<function, SampledWavelengths>,
+    shadow: ptr<function, Connection>,
+    l: ptr<function, vec4f>,
+) -> bool {
+    var s = surface;
+    if (HAS_SUBSURFACE && is_under()) {
+        let step = follow_under(path, hit.found, s);
+        if (step != LEAVES) {
+            return step == GOES_ON;
+        }
+    }
+    // Whether the path leaves here the body that it has entered at the vertex before.
+    let is_exit = HAS_SUBSURFACE && emerges();
+    if (is_exit) {
+        (*path).medium = (*path).outside;
+    }
+    *l += flight.emitted;
+    let in_medium = flight.end == SCATTERED;
+    if (flight.end == ABSORBED || (in_medium && (*path).depth == world.max_depth)) {
         return false;
     }
-    (*path).throughput.beta /= probability;
-    return true;
+    var bsdf: Bsdf;
+    var textures: TextureContext;
+    var flags = 0u;
+    if (in_medium) {
+        s.p = Point3Error(flight.p, vec3f());
+        s.n = vec3f();
+        s.ns = vec3f();
+        s.wo = -(*path).ray.d;
+    } else if (is_exit) {
+        if (!hit.found) {
+            return false;
+        }
+        s.wo = s.ns;
+        textures = texture_context(s, (*path).near);
+        bsdf = exit_lobe(s);
+        flags = bxdf_flags(bsdf);
+    } else {
+        if (!hit.found) {
+            *l += carried(*path) * escaped(*path, *lambda);
+            return false;
+        }
+        *l += carried(*path) * emitted(*path, s, hit.uv, *lambda);
+        if (is_interface(s.material)) {
+            (*path).medium = medium_towards(hit.geometry, s.n, (*path).ray.d, (*path).medium);
+            pass_interface(path, s, hit.t);
+            return true;
+        }
+        textures = texture_context(s, (*path).near);
+        bsdf = bsdf_at(&s, textures, lambda);
+        if ((*path).depth == world.max_depth) {
+            return false;
+        }
+        if (SampledWavelengths_secondary_terminated(*lambda)) {
+            keep_first(path);
+        }
+        roughen(&bsdf, (*path).rough_before);
+        flags = bxdf_flags(bsdf);
+    }
+    (*path).depth += select(1u, 0u, is_exit);
+    var context = context_of(s);
+    if (!in_medium) {
+        context = light_context(s, flags);
+    }
+    let phase = HenyeyGreenstein(number(max((*path).medium, 1) + 1));
+    // What chooses the light and its point, the collisions of the shadow ray, and the lobe and its
+    // direction.
+    let samples_light = has_setting(SettingBit_SamplesLights) && (in_medium || is_non_specular(flags));
+    var u: array<vec2f, 6>;
+    for (var i = select(4u, 0u, samples_light); i < 6; i++) {
+        if (!(in_medium && i == 4)) {
+            u[i] = next_numbers(i == 1 || i == 5);
+        }
+    }
+    var choice: Choice;
+    if (samples_light) {
+        choice = choose_light(context, u[0].x);
+    }
+    if (choice.valid) {
+        let light = sample_light(choice.light, context, u[1], *lambda, true);
+        if (light.valid) {
+            begin_collisions(u[2].x, u[3].x);
+            *shadow = connection(s, bsdf, *path, phase, in_medium, choice, light);
+            if (!in_medium) {
+                (*shadow).medium = medium_towards(hit.geometry, s.n, light.wi, (*path).medium);
+            }
+        }
+    }
+    if (in_medium) {
+        return scatter_in_medium(path, s, context, phase, u[5]);
+    }
+    let sample = bsdf_sample(bsdf, s.wo, u[4].x, u[5]);
+    if (!sample.valid) {
+        return false;
+    }
+    (*path).near = scattered_differentials(s, textures, (*path).near, sample);
+    return scatter(path, s, hit.geometry, context, bsdf, sample, *lambda);
 }
 
 fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
@@ -159,9 +319,7 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
             throughput = shadow.passage;
         }
         let hit = traced(part, t_max, false);
-        let geometry = hit.geometry;
-        let is_open = hit.found && is_interface(word(world.geometries + 8 * geometry));
-        if (is_shadow && hit.found && !is_open) {
+        if (is_shadow && hit.found && !is_interface(word(world.geometries + 8 * hit.geometry))) {
             shadow.is_on_its_way = false;
             continue;
         }
@@ -183,146 +341,10 @@ fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWaveleng
         }
         if (is_shadow) {
             shadow.passage = throughput;
-            shadow.t_max -= hit.t;
-            let has_arrived = !hit.found || shadow.t_max <= 0;
-            shadow.is_on_its_way = flight.end != ABSORBED && !has_arrived;
-            if (shadow.is_on_its_way) {
-                shadow.medium = medium_towards(geometry, s.n, part.d, medium);
-                shadow.ray = spawn(s, part.d);
-            } else if (flight.end != ABSORBED) {
-                l += arriving(shadow, path.heroes);
-            }
-            continue;
-        }
-        path.throughput = throughput;
-        if (HAS_SUBSURFACE && is_under()) {
-            let step = follow_under(&path, hit.found, s);
-            if (step != LEAVES) {
-                goes_on = step == GOES_ON;
-                continue;
-            }
-        }
-        // Whether the path leaves here the body that it has entered at the vertex before.
-        let is_exit = HAS_SUBSURFACE && emerges();
-        if (is_exit) {
-            path.medium = path.outside;
-            medium = path.medium;
-        }
-        l += flight.emitted;
-        let in_medium = flight.end == SCATTERED;
-        if (flight.end == ABSORBED || (in_medium && path.depth == world.max_depth)) {
-            break;
-        }
-        var bsdf: Bsdf;
-        var textures: TextureContext;
-        var flags = 0u;
-        if (in_medium) {
-            s.p = Point3Error(flight.p, vec3f());
-            s.n = vec3f();
-            s.ns = vec3f();
-            s.wo = -part.d;
-        } else if (is_exit) {
-            if (!hit.found) {
-                break;
-            }
-            s.wo = s.ns;
-            textures = texture_context(s, path.near);
-            bsdf = exit_lobe(s);
-            flags = bxdf_flags(bsdf);
+            l += follow_shadow(&shadow, hit, s, flight, path.heroes);
         } else {
-            if (!hit.found) {
-                l += carried(path) * escaped(path, *lambda);
-                break;
-            }
-            l += carried(path) * emitted(path, s, hit.uv, *lambda);
-            if (is_open) {
-                path.medium = medium_towards(geometry, s.n, part.d, medium);
-                var near_by = path.near;
-                var beyond = path.ray;
-                pass_through(&beyond, &near_by, s, hit.t);
-                path.near = near_by;
-                path.ray = beyond;
-                continue;
-            }
-            textures = texture_context(s, path.near);
-            bsdf = bsdf_at(&s, textures, lambda);
-            if (path.depth == world.max_depth) {
-                break;
-            }
-            if (SampledWavelengths_secondary_terminated(*lambda)) {
-                keep_first(&path);
-            }
-            keep_boundary(&bsdf);
-            if (has_setting(SettingBit_Regularizes) && path.rough_before) {
-                regularize(&bsdf);
-            }
-            flags = bxdf_flags(bsdf);
-        }
-        path.depth += select(1u, 0u, is_exit);
-        var context = context_of(s);
-        if (!in_medium) {
-            context = light_context(s, flags);
-        }
-        let phase = HenyeyGreenstein(number(max(medium, 1) + 1));
-        // What chooses the light and its point, the collisions of the shadow ray, and the lobe and
-        // its direction.
-        let samples_light = has_setting(SettingBit_SamplesLights) && (in_medium || is_non_specular(flags));
-        var u: array<vec2f, 6>;
-        for (var i = select(4u, 0u, samples_light); i < 6; i++) {
-            if (!(in_medium && i == 4)) {
-                u[i] = next_numbers(i == 1 || i == 5);
-            }
-        }
-        var choice: Choice;
-        if (samples_light) {
-            choice = choose_light(context, u[0].x);
-        }
-        if (choice.valid) {
-            let light = sample_light(choice.light, context, u[1], *lambda, true);
-            if (light.valid) {
-                begin_collisions(u[2].x, u[3].x);
-                shadow = connection(s, bsdf, path, phase, in_medium, choice, light);
-                if (!in_medium) {
-                    shadow.medium = medium_towards(geometry, s.n, light.wi, medium);
-                }
-            }
-        }
-        if (in_medium) {
-            let scattered = HenyeyGreenstein_sample_p(phase, s.wo, u[5]);
-            path.near = no_differentials();
-            path.is_found_twice = has_setting(SettingBit_SamplesLights);
-            path.rough_before = true;
-            leave(&path, s, context, scattered.v0, scattered.v1);
-            goes_on = survives(&path);
-            continue;
-        }
-        let sample = bsdf_sample(bsdf, s.wo, u[4].x, u[5]);
-        goes_on = sample.valid;
-        if (goes_on) {
-            path.near = scattered_differentials(s, textures, path.near, sample);
-            path.throughput.beta *= sample.f * (abs(dot(sample.wi, s.ns)) / sample.pdf);
-            if (HAS_SUBSURFACE && enters_body(bsdf, s, sample)) {
-                path.outside = medium;
-                path.medium = 0;
-                path.near = no_differentials();
-                path.ray = spawn(s, sample.wi);
-                goes_on = go_under(&path, s, bsdf, *lambda);
-                continue;
-            }
-            // The density of a sample that is a walk is known as that of its direction alone.
-            var pdf = sample.pdf;
-            if (HAS_COATS && sample.pdf_is_proportional) {
-                pdf = bsdf_pdf(bsdf, s.wo, sample.wi);
-            }
-            let is_specular = (sample.flags & BxdfFlags_SPECULAR) != 0;
-            path.is_found_twice = !is_specular && has_setting(SettingBit_SamplesLights);
-            path.rough_before |= !is_specular;
-            if ((sample.flags & BxdfFlags_TRANSMISSION) != 0) {
-                path.eta_scale *= sample.eta * sample.eta;
-            }
-            path.medium = medium_towards(geometry, s.n, sample.wi, medium);
-            leave(&path, s, context, sample.wi, pdf);
-            goes_on = survives(&path);
+            path.throughput = throughput;
+            goes_on = shade(&path, hit, s, flight, lambda, &shadow, &l);
         }
     }
     return l;

@@ -8,11 +8,9 @@ use crate::tags::MaterialTag;
 fn bxdf(tag: MaterialTag, parts: Parts) -> Option<(bool, &'static str, &'static str)> {
     let Parts { facets, coats, principled, hair, measured, subsurface, .. } = parts;
     Some(match tag {
-        MaterialTag::Diffuse => (true, "Diffuse", "Diffuse(bsdf.a)"),
-        MaterialTag::DiffuseTransmission => {
-            (true, "DiffuseTransmission", "DiffuseTransmission(bsdf.a, bsdf.b)")
-        }
-        MaterialTag::Conductor => (facets, "Conductor", "Conductor(bsdf.facets, bsdf.a, bsdf.b)"),
+        MaterialTag::Diffuse => (true, "Diffuse", "bsdf.diffuse"),
+        MaterialTag::DiffuseTransmission => (true, "DiffuseTransmission", "bsdf.translucent"),
+        MaterialTag::Conductor => (facets, "Conductor", "bsdf.metal"),
         // One function, because drivers inline all calls.
         MaterialTag::Dielectric | MaterialTag::Boundary => (facets, "Boundary", "bsdf"),
         MaterialTag::ThinDielectric => (facets, "ThinDielectric", "ThinDielectric(bsdf.eta)"),

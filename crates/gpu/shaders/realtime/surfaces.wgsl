@@ -20,8 +20,10 @@ fn guide_of_sky(o: vec3f, d: vec3f, lambda: SampledWavelengths) -> vec3f {
 
 fn reflectance(bsdf: Bsdf) -> vec3f {
     switch (bsdf.kind) {
-        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: { return bsdf.a.xyz; }
-        case MaterialTag_DiffuseTransmission: { return bsdf.a.xyz + bsdf.b.xyz; }
+        case MaterialTag_Diffuse, MaterialTag_CoatedDiffuse: { return bsdf.diffuse.reflectance.xyz; }
+        case MaterialTag_DiffuseTransmission: {
+            return bsdf.translucent.reflectance.xyz + bsdf.translucent.transmittance.xyz;
+        }
         default: { return vec3f(1); }
     }
 }
