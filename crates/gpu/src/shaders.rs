@@ -6,11 +6,12 @@ use std::borrow::Cow;
 use crate::Algorithm;
 use crate::bvh::Top;
 use crate::bxdfs;
-use crate::dynamic::Plan;
+use crate::dynamic::{Placement, Plan};
 use crate::flatten::Head;
 pub use crate::parts::Parts;
 pub use crate::pruning::parsed;
 use crate::raster::Eye;
+use crate::realtime::frame::{self, FrameParameters, Level, Reuse};
 use crate::records::pixels::{Batch, PixelSample, Splat};
 use crate::records::{chains, photons, wavefront};
 use crate::tags;
@@ -73,9 +74,10 @@ macro_rules! plumbing {
     ($($name:literal)*) => { [$(include_str!(concat!("../shaders/", $name, ".wgsl"))),*] };
 }
 
-const PLUMBING: [&str; 19] = plumbing! {
+const PLUMBING: [&str; 23] = plumbing! {
     "tables" "scene" "motion" "distributions" "spectra" "images" "textures" "surfaces" "footprints"
-    "bumps" "materials" "interfaces" "hair_material" "emission_images" "lights" "surface_lights" "placed_lights" "light_choices" "cameras"
+    "bumps" "materials" "interfaces" "hair_material" "subsurface_material" "emission_images" "lights"
+    "surface_lights" "placed_lights" "portals" "light_choices" "direct" "cameras" "lens"
 };
 
 /// How `tables` are read, for kernels that declare them.
@@ -90,7 +92,8 @@ pub const MEASURED: &str = concat!(
 );
 
 /// What kernels of real-time frames share.
-const FRAME: &str = include_str!("../shaders/realtime/frame.wgsl");
+const FRAME: [&str; 3] =
+    [frame::Eye::TEXT, FrameParameters::TEXT, include_str!("../shaders/realtime/frame.wgsl")];
 
 /// What is found of camera rays once, by the kernel of surfaces for that of light.
 const CAMERA_HIT: &str = include_str!("../shaders/realtime/camera_hit.wgsl");
@@ -104,29 +107,12 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
-/// A path through media, and one in empty space.
-const PATH_IN_MEDIA: &str = concat!(
-    include_str!("../shaders/media.wgsl"),
-    include_str!("../shaders/path_hits.wgsl"),
-    include_str!("../shaders/vol_path.wgsl")
-);
-const PATH_IN_VACUUM: &str = concat!(
-    include_str!("../shaders/path_hits.wgsl"),
-    include_str!("../shaders/path.wgsl"),
-    include_str!("../shaders/path_loop.wgsl")
-);
-
-/// What a path does under surfaces.
-const UNDER: &str =
-    concat!(include_str!("../shaders/generator.wgsl"), include_str!("../shaders/under_surface.wgsl"));
-
-/// What a path does at its vertices, of scenes without bodies under whose surface it goes on.
-const PATH: &str = concat!(
-    include_str!("../shaders/heroes.wgsl"),
-    include_str!("../shaders/under_none.wgsl"),
-    include_str!("../shaders/path_hits.wgsl"),
-    include_str!("../shaders/path.wgsl")
-);
+/// What paths do under surfaces and of lights that they hit; at the vertices of one in empty space;
+/// and the whole of that, or of one through media.
+const PATH: [&str; 4] = plumbing! { "heroes" "generator" "under_surface" "path_hits" };
+const VERTICES: &str = include_str!("../shaders/path.wgsl");
+const IN_VACUUM: [&str; 2] = [VERTICES, include_str!("../shaders/path_loop.wgsl")];
+const IN_MEDIA: [&str; 2] = plumbing! { "media" "vol_path" };
 
 /// A path finds all light itself.
 const NO_RESERVOIRS: &str = "const HAS_RESERVOIRS = false;\n";
@@ -179,7 +165,8 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
 pub fn wavefront(parts: Parts) -> [String; 5] {
     let queues = [wavefront::Batch::TEXT, include_str!("../shaders/wavefront/queues.wgsl")].concat();
     let paths = include_str!("../shaders/wavefront/paths.wgsl");
-    let stage = |stage| traced(parts, &[RANDOM_NUMBERS, NO_RESERVOIRS, PATH, &queues, paths, stage]);
+    let own = [RANDOM_NUMBERS, NO_RESERVOIRS, VERTICES, &queues, paths];
+    let stage = |stage| traced(parts, &[&PATH[..], &own, &[stage]].concat());
     [
         stage(include_str!("../shaders/wavefront/begin.wgsl")),
         stage(include_str!("../shaders/wavefront/extend.wgsl")),
@@ -212,7 +199,8 @@ pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> Strin
     let reservoirs = if has_reservoirs { "const HAS_RESERVOIRS = true;\n" } else { NO_RESERVOIRS };
     let light = include_str!("../shaders/realtime/light.wgsl");
     let radiance = radiance(algorithm, parts);
-    traced(parts, &[RANDOM_NUMBERS, reservoirs, &radiance, FRAME, CAMERA_HIT, SENSOR, light])
+    let own = [RANDOM_NUMBERS, reservoirs, &radiance, CAMERA_HIT, SENSOR, light];
+    traced(parts, &[&FRAME[..], &own].concat())
 }
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
@@ -225,7 +213,8 @@ pub fn reservoirs(parts: Parts) -> [String; 2] {
         ),
     ];
     let shared = include_str!("../shaders/realtime/reservoirs.wgsl");
-    texts.map(|text| traced(parts, &[RANDOM_NUMBERS, FRAME, SENSOR, shared, text]))
+    let own = [RANDOM_NUMBERS, SENSOR, Reuse::TEXT, shared];
+    texts.map(|text| traced(parts, &[&FRAME[..], &own, &[text]].concat()))
 }
 
 /// The kernel that finds what is seen in a real-time frame by an algorithm.
@@ -237,7 +226,7 @@ pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
         "const IS_REFLECTED = true;\n"
     };
     let surfaces = include_str!("../shaders/realtime/surfaces.wgsl");
-    traced(parts, &[RANDOM_NUMBERS, is_reflected, FRAME, CAMERA_HIT, surfaces])
+    traced(parts, &[&FRAME[..], &[RANDOM_NUMBERS, is_reflected, CAMERA_HIT, surfaces]].concat())
 }
 
 /// The kernels that make a picture of the light of a real-time frame, in the order in which they
@@ -252,7 +241,7 @@ pub fn filters() -> [String; 4] {
         include_str!("../shaders/realtime/wavelet.wgsl"),
         include_str!("../shaders/realtime/develop.wgsl"),
     ];
-    texts.map(|text| [FRAME, text].concat())
+    texts.map(|text| [&FRAME[..], &[Level::TEXT, text]].concat().concat())
 }
 
 /// The function `radiance` of an algorithm, or the whole of one whose paths begin at lights, which
@@ -271,10 +260,8 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),
         Algorithm::SimplePath(_) | Algorithm::RandomWalk(_) => include_str!("../shaders/simple_path.wgsl"),
         Algorithm::Path(_) | Algorithm::VolPath(_) | Algorithm::SimpleVolPath(_) => {
-            let under = if parts.subsurface { UNDER } else { include_str!("../shaders/under_none.wgsl") };
             let in_media = parts.media && !matches!(algorithm, Algorithm::Path(_));
-            let path = if in_media { PATH_IN_MEDIA } else { PATH_IN_VACUUM };
-            return [include_str!("../shaders/heroes.wgsl"), under, path].concat().into();
+            return [&PATH[..], if in_media { &IN_MEDIA } else { &IN_VACUUM }].concat().concat().into();
         }
         Algorithm::LightTracing(_) | Algorithm::Bdpt(_) => include_str!("../shaders/bidirectional.wgsl"),
         Algorithm::Mlt(..) => include_str!("../shaders/seen.wgsl"),
@@ -285,32 +272,15 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
 
 /// A kernel that traces rays through a scene.
 fn traced(parts: Parts, texts: &[&str]) -> String {
-    let direct = include_str!("../shaders/direct.wgsl");
     let surfaces = if parts.principled {
         self::principled() + include_str!("../shaders/openpbr_material.wgsl")
     } else {
         include_str!("../shaders/openpbr_none.wgsl").to_owned()
     };
-    let bodies = if parts.subsurface {
-        include_str!("../shaders/subsurface_material.wgsl")
-    } else {
-        include_str!("../shaders/subsurface_none.wgsl")
-    };
-    let camera = if parts.lenses {
-        include_str!("../shaders/lens.wgsl")
-    } else {
-        include_str!("../shaders/lens_none.wgsl")
-    };
-    let skies = if parts.portals {
-        include_str!("../shaders/portals.wgsl")
-    } else {
-        include_str!("../shaders/portals_none.wgsl")
-    };
     let (head, rays) =
         if parts.ray_queries { (ENABLE_RAY_QUERIES, [STRUCTURE, RAY_QUERY]) } else { ("", [NODES, TRACE]) };
-    let of_scene = [direct, MEASURED, &surfaces, bodies, camera, skies];
     let declared = tags() + Head::TEXT + PixelSample::TEXT + &parts.text() + &bxdfs::text(parts);
-    head.to_owned() + &with_laws(&[&[&*declared], &PLUMBING[..], &rays, &of_scene, texts].concat())
+    head.to_owned() + &with_laws(&[&[&*declared, MEASURED, &surfaces], &PLUMBING[..], &rays, texts].concat())
 }
 
 /// The text of files of `shaders/dynamic/`, after the plan that they share.
@@ -342,7 +312,7 @@ pub fn place_triangles() -> String {
 
 /// The kernel that moves instances.
 pub fn place_instances() -> String {
-    dynamic! { "box" "place_instances" }
+    Placement::TEXT.to_owned() + &dynamic! { "box" "place_instances" }
 }
 
 /// The kernels that build a tree, but for the sort after the first, with their names.

@@ -1,13 +1,5 @@
 // Takes instances to where they are: the matrices of their items, and their boxes.
 
-struct Placement {
-    rows: array<vec4u, 3>,
-    low: vec3f,
-    // The item, from the first on.
-    item: u32,
-    high: vec3f,
-}
-
 @group(0) @binding(1) var<storage, read_write> items: array<vec4u>;
 @group(0) @binding(2) var<storage, read_write> placements: array<Placement>;
 @group(0) @binding(3) var<storage, read_write> boxes: array<Box>;

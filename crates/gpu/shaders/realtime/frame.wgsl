@@ -1,28 +1,5 @@
 // A frame: what all kernels of it share.
 
-struct FrameParameters {
-    // The first pixel, and how many there are.
-    low: vec2u,
-    size: vec2u,
-    // The index of the first sample of each pixel, how many there are of each, and how many there
-    // were before of the picture at rest.
-    index: u32,
-    samples: u32,
-    before: u32,
-    // Which half of the buffers is of this frame, and whether the other is of the one before.
-    half: u32,
-    has_history: u32,
-    // Whether the camera moves, and the number of samples for which the filtered picture counts
-    // while one at rest begins.
-    is_moving: u32,
-    prior: f32,
-    // The camera of the frame before: whether it is orthographic, its screen (top left and pixel),
-    // and the rows of the matrix from render space.
-    is_orthographic: u32,
-    screen: vec4f,
-    rows: array<vec4f, 3>,
-}
-
 // The light of a pixel: colours times weights, and weights, of this frame, and of the picture at
 // rest so far; and the filtered colour of the last frame in motion.
 struct Light {

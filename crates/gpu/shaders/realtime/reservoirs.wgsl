@@ -29,17 +29,6 @@ struct Reservoir {
 const SHAPE_RECEIVER = 1u;
 const TRIANGLE_RECEIVER = 2u;
 
-struct Reuse {
-    // The parts of the buffer to read samples from, and to write them to.
-    source: u32,
-    target_part: u32,
-    // Pixels around to take samples from; with none, it is the frame before.
-    neighbours: u32,
-    // 1 if weights leave out what receivers could have chosen a sample with, and 2 if there are
-    // samples of the frame before.
-    flags: u32,
-}
-
 @group(0) @binding(5) var<uniform> frame: FrameParameters;
 @group(0) @binding(6) var<storage, read_write> film: Film;
 @group(0) @binding(8) var<storage, read_write> reservoirs: array<Reservoir>;

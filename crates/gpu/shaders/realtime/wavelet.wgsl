@@ -1,14 +1,6 @@
 // A level of the à-trous wavelet filter, which stops at edges of surfaces, and at those of light as
 // far as its variance tells them from noise.
 
-struct Level {
-    // Pixels from one point of the filter to the next.
-    step: i32,
-    // Whether what it gives goes into the history.
-    is_kept: u32,
-    unused: vec2u,
-}
-
 @group(0) @binding(0) var<uniform> frame: FrameParameters;
 @group(0) @binding(1) var<storage, read_write> seen: array<Seen>;
 @group(0) @binding(2) var<storage, read_write> history: array<History>;

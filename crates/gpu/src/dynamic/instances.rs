@@ -7,22 +7,11 @@ use math::{Bounds3, Transform};
 use scene::MoveError;
 
 use super::points::MOST;
-use super::{Plan, Start, THREADS};
+use super::{Placement, Plan, Start, THREADS};
 use crate::bvh::{Placed, Words};
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::renderer::Kernels;
 use crate::shaders;
-
-/// Where an item is: `Placement` of `shaders/dynamic/place_instances.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::NoUninit)]
-struct Placement {
-    rows: [Words; 3],
-    low: [f32; 3],
-    item: u32,
-    high: [f32; 3],
-    unused: u32,
-}
 
 /// Instances on the device.
 pub struct Instances {
@@ -41,7 +30,8 @@ impl Instances {
         kernels: &Kernels,
         placed: Vec<Placed>,
         transform: impl Fn(InstanceId) -> Transform,
-        (first_item, boxes): (u32, &[Bounds3]),
+        first_item: u32,
+        boxes: &[Bounds3],
     ) -> Result<Self, GpuError> {
         let device = kernels.device();
         let placement = |placed: &Placed| {

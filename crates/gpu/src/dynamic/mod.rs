@@ -48,6 +48,17 @@ pub enum Update {
 const THREADS: u32 = 256;
 
 record! {
+    /// Where an item is, from the first on.
+    pub(crate) struct Placement {
+        rows: [[u32; 4]; 3],
+        low: [f32; 3],
+        item: u32,
+        high: [f32; 3],
+        unused: u32,
+    }
+}
+
+record! {
     /// Arguments of the kernels that build a tree.
     pub(crate) struct Plan {
         /// Primitives, and the leaves of the pyramid: a power of two.

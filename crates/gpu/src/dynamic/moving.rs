@@ -48,7 +48,7 @@ impl Moving {
         } else {
             let transform = |id| *world.render_from_instance(id).start();
             let first_item = bvh.bounded.start as u32;
-            Some(Instances::new(kernels, placed, transform, (first_item, &boxes))?)
+            Some(Instances::new(kernels, placed, transform, first_item, &boxes)?)
         };
         Ok(Self { top: bvh.top, items, instances, triangles, points: points.placed(kernels.device())? })
     }
@@ -166,7 +166,7 @@ fn items(
     let (count, first_item) = (count as u32, first as u32);
     let first_node = if count < 2 { 0 } else { bvh.make_room(most_nodes(count)) };
     let place = Place { count, first_item, first_node, leaf_bits: ITEMS, leaf_stack };
-    let kernel = ("place_spheres", shaders::place_spheres());
+    let kernel = kernels.get("place_spheres", shaders::place_spheres())?;
     Ok((Part::new(kernels, kernel, place, &spheres, &boxes)?, boxes))
 }
 
@@ -200,7 +200,7 @@ fn triangles(
     let is_tree = count > 1;
     let first_node = if is_tree { bvh.add_room(most_nodes(count)) } else { 0 };
     let place = Place { count, first_item, first_node, leaf_bits: TRIANGLES, leaf_stack: 0 };
-    let kernel = ("place_triangles", shaders::place_triangles());
+    let kernel = kernels.get("place_triangles", shaders::place_triangles())?;
     let part = Part::new(kernels, kernel, place, &corners, &boxes)?;
     Ok(Some(Triangles { part, root: if is_tree { first_node } else { bvh.top.roots[0] } }))
 }

@@ -34,7 +34,7 @@ impl Part {
     /// With a kernel that moves them by points, and with boxes.
     pub fn new(
         kernels: &Kernels,
-        (name, source): (&'static str, String),
+        kernel: Arc<Kernel>,
         place: Place,
         points: &[u32],
         boxes: &[Bounds3],
@@ -44,7 +44,7 @@ impl Part {
         let corners = |bounds: &Bounds3| [bounds.min, bounds.max].map(|Vec3 { x, y, z }| [x, y, z, 0.0]);
         let boxes: Vec<_> = boxes.iter().map(corners).collect();
         Ok(Self {
-            kernel: kernels.get(name, source)?,
+            kernel,
             plan: device.parameters(&Plan { count, first_item, ..Plan::default() })?,
             count,
             tree: if count < 2 { None } else { Some(Tree::new(kernels, place)?) },

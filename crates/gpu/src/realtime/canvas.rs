@@ -2,7 +2,7 @@
 
 use math::Bounds2i;
 
-use super::frame::Frame;
+use super::frame::FrameParameters;
 use super::reservoirs::{PARTS, RESERVOIR};
 use crate::commands::Timer;
 use crate::device::{Buffer, Device, GpuError};
@@ -58,8 +58,12 @@ impl Canvas {
     }
 
     /// A frame of it.
-    pub fn frame(&self) -> Frame {
+    pub fn frame(&self) -> FrameParameters {
         let low = self.pixels.min.map(|x| x as u32);
-        Frame { low, size: [self.pixels.width() as u32, self.pixels.height() as u32], ..Frame::default() }
+        FrameParameters {
+            low,
+            size: [self.pixels.width() as u32, self.pixels.height() as u32],
+            ..FrameParameters::default()
+        }
     }
 }

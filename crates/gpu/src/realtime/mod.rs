@@ -16,7 +16,7 @@
 //! filtered one to their mean: frames that share samples have errors in common, which a mean keeps.
 
 mod canvas;
-mod frame;
+pub(crate) mod frame;
 mod reservoirs;
 
 use std::sync::Arc;
@@ -37,10 +37,10 @@ use crate::dynamic::{Moving, MovingError, Update};
 use crate::flatten::{Head, cameras};
 use crate::renderer::Kernels;
 use crate::shaders;
-use crate::trees::Trees;
 use crate::tags::SamplerTag;
+use crate::trees::Trees;
 use canvas::Canvas;
-use frame::{Eye, Frame, Level};
+use frame::{Eye, FrameParameters, Level};
 use reservoirs::Reservoirs;
 
 pub use reservoirs::Weights;
@@ -155,7 +155,7 @@ impl Realtime {
             device.buffer("texels of the scene", &flat.texels)?,
         ];
         let trees = Trees::new(device, &flat.bvh, &scene[1])?;
-        let parameters = device.parameters(&Frame::default())?;
+        let parameters = device.parameters(&FrameParameters::default())?;
         // Drivers take seconds to compile each of these.
         let ((light, surfaces), reservoirs) = rayon::join(
             || {
@@ -174,7 +174,8 @@ impl Realtime {
             kernels.get("wavelet", wavelet)?,
             kernels.get("develop", develop)?,
         ];
-        let level = |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), unused: [0; 2] };
+        let level =
+            |level: u32| Level { step: 1 << level, is_kept: u32::from(level == 0), ..Level::default() };
         let levels = (0..LEVELS).map(|i| device.parameters(&level(i))).collect::<Result<_, _>>()?;
         Ok(Self {
             reservoirs,
@@ -294,7 +295,7 @@ impl Realtime {
         let Some(canvas) = &self.canvas else { return Ok(None) };
         let head = Head { random_numbers: self.restless, is_centered: 1, ..self.head };
         self.half = 1 - self.half;
-        let frame = Frame {
+        let frame = FrameParameters {
             index: self.moved,
             samples,
             half: self.half,
@@ -341,7 +342,7 @@ impl Realtime {
         let worth = if self.last == Some(self.eye) { WORTH } else { 0.0 };
         let prior = worth * (1.0 - self.rested as f32 / TRANSITION).max(0.0);
         let (half, eye) = (self.half, self.eye);
-        let frame = Frame { index: before, before, samples, half, prior, eye, ..canvas.frame() };
+        let frame = FrameParameters { index: before, before, samples, half, prior, eye, ..canvas.frame() };
         let groups = groups(&frame);
         let mut commands = self.begin(canvas, self.head, frame)?;
         self.trace(&mut commands, canvas, groups, None);
@@ -372,7 +373,12 @@ impl Realtime {
         Ok(pixels.map(mean).collect())
     }
 
-    fn begin<'a>(&'a self, canvas: &'a Canvas, head: Head, frame: Frame) -> Result<Commands<'a>, GpuError> {
+    fn begin<'a>(
+        &'a self,
+        canvas: &'a Canvas,
+        head: Head,
+        frame: FrameParameters,
+    ) -> Result<Commands<'a>, GpuError> {
         let device = self.kernels.device();
         device.write(&self.scene[0], &[head])?;
         device.write(&self.parameters, &[frame])?;
@@ -429,6 +435,6 @@ impl Realtime {
 }
 
 /// The workgroups of a frame.
-fn groups(frame: &Frame) -> [u32; 2] {
+fn groups(frame: &FrameParameters) -> [u32; 2] {
     frame.size.map(|side| side.div_ceil(WORKGROUP))
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::frame::Eye;
+use super::frame::{Eye, Reuse};
 use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::renderer::Kernels;
@@ -28,16 +28,6 @@ pub enum Weights {
     Unbiased,
     /// By their number: faster, and too dark where surfaces and shadows differ.
     Biased,
-}
-
-/// `Reuse` of `shaders/realtime/reservoirs.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::NoUninit)]
-struct Reuse {
-    source: u32,
-    target: u32,
-    neighbours: u32,
-    flags: u32,
 }
 
 /// The kernels, and what is known of the frame before.
@@ -67,7 +57,7 @@ impl Reservoirs {
             || kernels.get("light", shaders::light(algorithm, parts, true)),
             || rayon::join(|| kernels.get("candidates", candidates), || kernels.get("reuse", reuse)),
         );
-        let step = || kernels.device().parameters(&Reuse { source: 0, target: 0, neighbours: 0, flags: 0 });
+        let step = || kernels.device().parameters(&Reuse::default());
         Ok(Self {
             weights,
             light: light?,
@@ -91,9 +81,9 @@ impl Reservoirs {
         let before = bit(self.before == Some(projected), ReuseBit::HasBefore);
         let (now, then, flags) = (self.half, 1 - self.half, biased | before);
         let steps = [
-            Reuse { source: 0, target: FIRST, neighbours: 0, flags },
-            Reuse { source: then, target: SECOND, neighbours: 0, flags },
-            Reuse { source: SECOND, target: now, neighbours: NEIGHBOURS, flags },
+            Reuse { source: 0, target_part: FIRST, neighbours: 0, flags },
+            Reuse { source: then, target_part: SECOND, neighbours: 0, flags },
+            Reuse { source: SECOND, target_part: now, neighbours: NEIGHBOURS, flags },
         ];
         for (buffer, step) in self.steps.iter().zip(steps) {
             device.write(buffer, &[step])?;

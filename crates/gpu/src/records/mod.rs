@@ -19,6 +19,12 @@ macro_rules! wgsl_type {
     (Top) => {
         "Top"
     };
+    (i32) => {
+        "i32"
+    };
+    (Eye) => {
+        "Eye"
+    };
     ([u32; 2]) => {
         "vec2u"
     };
@@ -27,6 +33,15 @@ macro_rules! wgsl_type {
     };
     ([f32; 4]) => {
         "vec4f"
+    };
+    ([f32; 3]) => {
+        "vec3f"
+    };
+    ([[u32; 4]; 3]) => {
+        "array<vec4u, 3>"
+    };
+    ([[f32; 4]; 3]) => {
+        "array<vec4f, 3>"
     };
     ([[f32; 4]; 4]) => {
         "mat4x4f"
