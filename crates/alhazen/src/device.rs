@@ -3,16 +3,16 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use description::{Diagnostic, SceneDesc, Span};
+use description::{Diagnostic, SceneDesc, Schedule, Span};
 use film::Film;
 use geometry::RayStats;
-use gpu::{Algorithm, Flat, Renderer, Subject, flatten};
+use gpu::{Algorithm, Flat, Renderer, Subject, flatten, lacking_stages};
 use integrators::{Cancelled, Control, FirstHits, Integrator, PassError, Session};
 use sampling::Sampler;
 use scene::texture::color_space;
 use scene::{Scene, View};
 
-pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal, Schedule};
+pub use gpu::{Device, DrawError, Drawing, GpuError, Kernels, Rasterizer, Refusal};
 
 /// An algorithm on a device.
 struct OnDevice {
@@ -22,22 +22,29 @@ struct OnDevice {
     name: String,
 }
 
-/// The algorithm that a scene describes, on a device, for the scene, view and film of a session.
-/// The error says what kernels do not draw.
-pub(crate) fn integrator(
+/// Goes on with a session by the algorithm that a scene describes, on a device. Warnings are of what
+/// is done otherwise than described. The error says what kernels do not draw, and leaves the session
+/// as it was.
+pub fn move_to(
+    session: &mut Session,
     desc: &SceneDesc,
-    session: &Session,
     kernels: &Arc<Kernels>,
-    schedule: Schedule,
-) -> Result<Box<dyn Integrator>, Vec<Diagnostic>> {
+) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let film = &session.state().film;
     let Flattened { flat, algorithm, sampler } =
         flattened(desc, session.scene(), session.view(), film, kernels, Rays::OfDevice)?;
+    let schedule = desc.options.schedule;
+    let lacking = lacking_stages(&algorithm, flat.parts()).filter(|_| schedule == Schedule::Wavefront);
     let name = name(kernels.device(), &flat);
-    match Renderer::new(kernels.clone(), &flat, &algorithm, film, schedule) {
-        Ok(renderer) => Ok(Box::new(OnDevice { renderer, algorithm, sampler, name })),
-        Err(error) => Err(vec![failed(&error)]),
-    }
+    let renderer = Renderer::new(kernels.clone(), &flat, &algorithm, film, schedule)
+        .map_err(|error| vec![failed(&error)])?;
+    session.set_integrator(Box::new(OnDevice { renderer, algorithm, sampler, name }));
+    let warning = lacking.map(|what| {
+        let message =
+            format!("the schedule `wavefront` has no stages for {what}: there is one kernel instead");
+        Diagnostic::warning("no-wavefront", message, desc.options.origin.parameter("schedule"))
+    });
+    Ok(warning.into_iter().collect())
 }
 
 /// A scene for a device, and how it is rendered there.
@@ -149,6 +156,11 @@ impl Integrator for OnDevice {
 
     fn summary(&self) -> Vec<(&'static str, String)> {
         let megabytes = self.renderer.bytes() as f64 / f64::from(1 << 20);
-        vec![("device", self.name.clone()), ("device memory", format!("{megabytes:.1} MiB"))]
+        let occupancy = self.renderer.occupancy();
+        let occupancy = occupancy.map(|share| ("occupancy", format!("{:.1} % of the places", 100.0 * share)));
+        [("device", self.name.clone()), ("device memory", format!("{megabytes:.1} MiB"))]
+            .into_iter()
+            .chain(occupancy)
+            .collect()
     }
 }

@@ -111,17 +111,13 @@ impl Job {
         Ok(CompiledJob { job, warnings })
     }
 
-    /// Goes on with the engine for GPUs. The error says what that does not draw, and leaves the job
-    /// as it was.
+    /// Goes on with the engine for GPUs, as [`move_to`](crate::device::move_to).
     #[cfg(feature = "gpu")]
     pub fn move_to(
         &mut self,
         kernels: &Arc<crate::device::Kernels>,
-        schedule: crate::device::Schedule,
-    ) -> Result<(), Vec<Diagnostic>> {
-        let integrator = crate::device::integrator(&self.settings, &self.session, kernels, schedule)?;
-        self.session.set_integrator(integrator);
-        Ok(())
+    ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        crate::device::move_to(&mut self.session, &self.settings, kernels)
     }
 
     /// A preview of the picture before it is rendered: in a resolution so low that a render takes

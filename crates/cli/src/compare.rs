@@ -54,6 +54,8 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         reference,
         overrides: arguments.changes.overrides(),
         threads: rayon::current_num_threads(),
+        #[cfg(feature = "gpu")]
+        kernels: crate::device::kernels(arguments.device, &mut imported.diagnostics),
     };
     let laboratory = match Laboratory::new(&imported.desc, plan) {
         Ok((laboratory, warnings)) => {

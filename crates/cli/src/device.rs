@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use alhazen::Job;
 use alhazen::description::{Diagnostic, Span};
-use alhazen::device::{Device, Kernels, Schedule};
+use alhazen::device::{Device, Kernels};
 use alhazen::realtime::Weights;
 use clap::ValueEnum;
 
@@ -57,9 +57,12 @@ pub fn silence_layers() {
 /// cannot be, the job is as before, and the warnings say why.
 pub fn choose(choice: DeviceChoice, job: &mut Job, warnings: &mut Vec<Diagnostic>) -> Option<String> {
     let kernels = kernels(choice, warnings)?;
-    if let Err(refusals) = job.move_to(&kernels, Schedule::default()) {
-        warnings.extend(refusals);
-        return None;
+    match job.move_to(&kernels) {
+        Ok(of_move) => warnings.extend(of_move),
+        Err(refusals) => {
+            warnings.extend(refusals);
+            return None;
+        }
     }
     let notes = job.session.integrator().summary();
     Some(notes.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))

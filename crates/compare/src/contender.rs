@@ -4,8 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use alhazen::Overrides;
-use alhazen::description::SceneDesc;
 use alhazen::description::schema::Settings;
+use alhazen::description::{OptionsDesc, SceneDesc};
 
 /// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in
 /// `path:maxdepth=8`.
@@ -25,8 +25,8 @@ impl Contender {
     }
 
     /// The description that this contender renders, with its [`overrides`](Self::overrides)
-    /// applied. Its own settings may concern integrator and sampler only, as all contenders share
-    /// one scene and film.
+    /// applied. Its own settings may concern integrator, sampler and what runs them only, as all
+    /// contenders share one scene and film.
     pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, String> {
         let error = |problem: &dyn fmt::Display| format!("{self}: {problem}");
         let with_settings = |settings: &[(String, String)]| {
@@ -40,15 +40,18 @@ impl Contender {
             return Err(error(&"a comparison writes no files but its report"));
         }
         if !self.settings.is_empty() {
-            let shared =
+            let mut shared =
                 with_settings(&overrides.settings[..overrides.settings.len() - self.settings.len()])?;
+            let OptionsDesc { engine, schedule, .. } = desc.options.value;
+            (shared.options.engine, shared.options.schedule) = (engine, schedule);
             let differs = desc.options.value != shared.options.value
                 || desc.film.value != shared.film.value
                 || desc.filter.value != shared.filter.value
                 || desc.accelerator.value != shared.accelerator.value;
             if differs {
                 return Err(error(
-                    &"scene and film are shared by all; only settings of integrator and sampler may differ",
+                    &"scene and film are shared by all; only settings of integrator and sampler, `engine` and \
+                      `schedule` may differ",
                 ));
             }
         }
@@ -147,6 +150,8 @@ mod tests {
         assert!(
             scene("path:filter=box").unwrap_err().starts_with("path:filter=box: scene and film are shared")
         );
-        assert!(scene("path:sampler=halton").is_ok());
+        for right in ["path:sampler=halton", "path:schedule=wavefront", "path:engine=scalar"] {
+            assert!(scene(right).is_ok(), "{right}");
+        }
     }
 }

@@ -6,11 +6,11 @@ use alhazen::description::{Diagnostic, SceneDesc};
 use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use alhazen::image::{Image, Window};
 use alhazen::integrators::{Control, PassError, Progress};
-use alhazen::scene::{self, Scene, View};
+use alhazen::scene::{self, View};
 use alhazen::{Overrides, film};
 
 use super::measure::{measure, reference_noise};
-use super::paired_renders::PairedRenders;
+use super::paired_renders::{PairedRenders, Subject};
 use super::{
     Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
     settings,
@@ -23,8 +23,7 @@ const REFERENCE_FACTOR: u32 = 16;
 /// A valid plan, with its scene compiled.
 pub struct Laboratory {
     setup: Setup,
-    scene: Arc<Scene>,
-    view: View,
+    subject: Subject,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
     /// Warnings about what is rendered differently than described.
@@ -111,8 +110,13 @@ impl Laboratory {
             }
         };
         let warned = Vec::new();
-        let (scene, view) = (Arc::new(compiled.scene), view.view);
-        let mut laboratory = Self { setup, scene, view, contenders, reference, warnings: warned };
+        let subject = Subject {
+            scene: Arc::new(compiled.scene),
+            view: view.view,
+            #[cfg(feature = "gpu")]
+            kernels: plan.kernels,
+        };
+        let mut laboratory = Self { setup, subject, contenders, reference, warnings: warned };
         for (name, value) in &plan.overrides.settings {
             let takes = |entry: &Entry| entry.overrides.settings.iter().any(|(taken, _)| taken == name);
             if !laboratory.entries().any(takes) {
@@ -121,8 +125,7 @@ impl Laboratory {
             }
         }
         for entry in laboratory.entries() {
-            let pair =
-                PairedRenders::new(&entry.desc, &laboratory.scene, &laboratory.view, laboratory.setup.seed);
+            let pair = PairedRenders::new(&entry.desc, &laboratory.subject, laboratory.setup.seed);
             let (_, more) = pair.map_err(|errors| entry.error(errors))?;
             warnings.extend(more.into_iter().filter(|more| !warnings.contains(more)).collect::<Vec<_>>());
         }
@@ -149,13 +152,13 @@ impl Laboratory {
         control: &Control,
         progress: &mut dyn FnMut(&str, &Progress),
     ) -> Result<Comparison, PassError> {
-        let Self { setup, scene, view, contenders, reference, warnings } = self;
+        let Self { setup, subject, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
                 // Different seeds: errors against a reference with the same samples would be too
                 // small.
-                let pair = paired_renders(&entry, &scene, &view, setup.seed.wrapping_add(2))?;
+                let pair = paired_renders(&entry, &subject, setup.seed.wrapping_add(2))?;
                 render_reference(&entry, half, pair, control, progress)?
             }
         };
@@ -163,7 +166,7 @@ impl Laboratory {
         let mut interrupted = false;
         for entry in &contenders {
             let mut run = || {
-                let pair = paired_renders(entry, &scene, &view, setup.seed)?;
+                let pair = paired_renders(entry, &subject, setup.seed)?;
                 run(entry, &setup, pair, &reference, control, progress)
             };
             let run = if interrupted { None } else { run()? };
@@ -296,13 +299,8 @@ fn run(
 }
 
 /// Pairs that were built before with another seed: only memory can be lacking now.
-fn paired_renders(
-    entry: &Entry,
-    scene: &Arc<Scene>,
-    view: &View,
-    seed: i32,
-) -> Result<PairedRenders, PassError> {
-    let pair = PairedRenders::new(&entry.desc, scene, view, seed);
+fn paired_renders(entry: &Entry, subject: &Subject, seed: i32) -> Result<PairedRenders, PassError> {
+    let pair = PairedRenders::new(&entry.desc, subject, seed);
     pair.map(|(pair, _)| pair).map_err(|errors| {
         let problems: Vec<String> = errors.into_iter().map(|error| error.message).collect();
         PassError::OutOfMemory(problems.join("; "))

@@ -23,10 +23,14 @@ mod paired_renders;
 mod settings;
 
 use std::fmt;
+#[cfg(feature = "gpu")]
+use std::sync::Arc;
 use std::time::Duration;
 
 use alhazen::Overrides;
 use alhazen::description::Diagnostic;
+#[cfg(feature = "gpu")]
+use alhazen::device::Kernels;
 use alhazen::image::Image;
 
 pub use contender::Contender;
@@ -108,6 +112,9 @@ pub struct Plan {
     pub overrides: Overrides,
     /// Number of threads, for the report.
     pub threads: usize,
+    /// The GPU that renders what it draws; the CPU renders the rest, and warnings say what.
+    #[cfg(feature = "gpu")]
+    pub kernels: Option<Arc<Kernels>>,
 }
 
 /// Why a plan cannot be carried out.

@@ -8,6 +8,8 @@
 use std::sync::Arc;
 
 use alhazen::description::{Diagnostic, SceneDesc};
+#[cfg(feature = "gpu")]
+use alhazen::device::{Kernels, move_to};
 use alhazen::geometry::RayStats;
 use alhazen::image::{Image, ImageError};
 use alhazen::integrators::{self, Control, Limits, PassError, Progress, Session, SessionState};
@@ -27,6 +29,27 @@ pub(super) struct Effort {
     pub rays: f64,
 }
 
+/// What all contenders render, and by what.
+pub(super) struct Subject {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The view of it.
+    pub view: View,
+    /// The GPU, if one is to render.
+    #[cfg(feature = "gpu")]
+    pub kernels: Option<Arc<Kernels>>,
+}
+
+impl Subject {
+    /// Has the GPU render a session, if there is one and it draws that; else the warnings say why
+    /// not.
+    #[cfg(feature = "gpu")]
+    fn move_to_device(&self, session: &mut Session, desc: &SceneDesc) -> Vec<Diagnostic> {
+        let moved = self.kernels.as_ref().map(|kernels| move_to(session, desc, kernels));
+        moved.map_or_else(Vec::new, |moved| moved.unwrap_or_else(|refusals| refusals))
+    }
+}
+
 /// Two renders of one scene with one integrator that differ only in their seeds.
 pub(super) struct PairedRenders {
     pair: [Session; 2],
@@ -36,8 +59,7 @@ impl PairedRenders {
     /// Two sessions of a view of the scene, with seeds `first_seed` and the next one.
     pub fn new(
         desc: &SceneDesc,
-        scene: &Arc<Scene>,
-        view: &View,
+        subject: &Subject,
         first_seed: i32,
     ) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
         let mut desc = desc.clone();
@@ -48,9 +70,17 @@ impl PairedRenders {
                 .expect("invariant: any seed is valid");
             let built = integrators::build(&desc)?;
             let film = film::compile(&desc)?;
+            let Subject { scene, view, .. } = subject;
             warnings = [built.warnings, built.integrator.warnings(scene), film.warnings].concat();
             let state = SessionState::new(film.film);
-            Ok(Session::new(Arc::clone(scene), view.clone(), built.integrator, state))
+            #[cfg_attr(
+                not(feature = "gpu"),
+                expect(unused_mut, reason = "only a session that moves changes")
+            )]
+            let mut session = Session::new(Arc::clone(scene), view.clone(), built.integrator, state);
+            #[cfg(feature = "gpu")]
+            warnings.extend(subject.move_to_device(&mut session, &desc));
+            Ok(session)
         };
         let pair = [session(first_seed)?, session(first_seed.wrapping_add(1))?];
         Ok((Self { pair }, warnings))

@@ -67,7 +67,7 @@ pub use medium::{
 };
 pub use microsurface::{ConductorDesc, ConductorReflectance, RoughnessDesc};
 pub use open_pbr::{OpenPbrDesc, OpenPbrNumber};
-pub use options::{Engine, OptionsDesc, RenderSpace};
+pub use options::{Engine, OptionsDesc, RenderSpace, Schedule};
 pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{

@@ -26,6 +26,18 @@ choices! {
     }
 }
 
+choices! {
+    /// How a GPU's work on paths is cut into kernels. Schedules give the same picture within
+    /// rounding.
+    pub enum Schedule {
+        /// A thread follows a whole path.
+        #[default]
+        Megakernel = "megakernel",
+        /// Paths go through each stage together, and new ones take the places of those that end.
+        Wavefront = "wavefront",
+    }
+}
+
 settings! {
     /// The values of the `Option` directives.
     #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +67,8 @@ settings! {
         pixel_stats: bool = false => ["pixelstats"];
         /// The coordinate system in which rays are traced.
         render_space: RenderSpace = RenderSpace::CameraWorld => ["rendercoordsys"];
+        /// How a GPU, which `--device` chooses, follows the paths of `path` and `vol-path`.
+        schedule: Schedule = Schedule::Megakernel => ["schedule"];
         /// Default seed of samplers.
         seed: i32 = 0 => ["seed"];
         /// Select the wavefront renderer.

@@ -24,7 +24,6 @@ mod realtime;
 mod records;
 mod renderer;
 pub mod shaders;
-
 mod tags;
 mod trees;
 
@@ -35,5 +34,5 @@ pub use dynamic::{Moving, MovingError, Sorter, Start, Update};
 pub use flatten::{Flat, Refusal, Subject, flatten, openpbr_table};
 pub use raster::{DrawError, Drawing, Rasterizer};
 pub use realtime::{AimError, Picture, Realtime, Stages, Weights};
-pub use renderer::{FindFirstHit, Kernels, PassError, Renderer, Schedule};
+pub use renderer::{FindFirstHit, Kernels, PassError, Renderer, lacking_stages};
 pub use trees::Trees;

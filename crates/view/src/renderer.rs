@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use alhazen::Job;
 use alhazen::description::Diagnostic;
 #[cfg(feature = "gpu")]
-use alhazen::device::{Kernels, Schedule};
+use alhazen::device::Kernels;
 use alhazen::image::{DisplaySettings, ImageError};
 use alhazen::integrators::{Control, Limits};
 #[cfg(feature = "gpu")]
@@ -298,8 +298,7 @@ impl Renderer {
         let invalid = |problem: String| ImageError::Invalid(problem);
         let mut job = self.world.job(&self.shot).map_err(invalid)?;
         if let Some(device) = &self.device {
-            job.move_to(device.kernels(), Schedule::default())
-                .map_err(|refusals| invalid(messages(&refusals)))?;
+            job.move_to(device.kernels()).map_err(|refusals| invalid(messages(&refusals)))?;
         }
         let done = job.session.run(0..samples, &Limits::default(), &Control::default(), &mut |_| ());
         done.map_err(|error| invalid(format!("{error:?}")))?;

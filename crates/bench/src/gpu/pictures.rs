@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use alhazen::Job;
 use alhazen::assets::MemoryAssets;
-use alhazen::device::{Kernels, Schedule};
+use alhazen::description::Schedule;
+use alhazen::device::Kernels;
 use alhazen::integrators::{Control, Limits};
 use serde_json::{Map, Value, json};
 
@@ -26,10 +27,11 @@ pub fn measure(kernels: &Arc<Kernels>, size: &Size) -> Result<Value, String> {
             // Samples that are not asked for are not made with the others.
             let mut desc = desc.clone();
             desc.sampler.value.kind.set_samples_per_pixel(passes);
+            desc.options.schedule = on_device.unwrap_or_default();
             let job = Job::of_scene(scene.clone(), &desc).map_err(|errors| messages(&errors))?;
             let mut job = job.job;
-            if let Some(schedule) = on_device {
-                job.move_to(kernels, schedule).map_err(|errors| messages(&errors))?;
+            if on_device.is_some() {
+                job.move_to(kernels).map_err(|errors| messages(&errors))?;
             }
             let mut run =
                 |passes| job.session.run(passes, &Limits::default(), &Control::default(), &mut |_| ());

@@ -165,6 +165,11 @@ pub struct Compare {
     /// picture]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub reference_spp: Option<u32>,
+    /// Device that renders: cpu; gpu or ray-query, as in `alhazen render`; or auto, the GPU unless
+    /// it is a software one.
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME", value_enum, default_value = "cpu", hide_possible_values = true)]
+    pub device: DeviceChoice,
     /// Report: a self-contained HTML page, and the same figures as .json beside it. [default: the
     /// scene's name with .html, in the current folder]
     #[arg(short, long, value_name = "FILE")]

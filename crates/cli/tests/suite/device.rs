@@ -2,6 +2,7 @@
 
 use crate::common::{Finished, Folder};
 use crate::render::LAYERED;
+use serde_json::Value;
 
 /// Whether or not there is a GPU, the CPU takes what the GPU cannot, and says why and where.
 #[test]
@@ -40,4 +41,37 @@ fn no_driver_writes_to_the_terminal() {
     ] {
         assert_eq!(run(arguments).err, "", "{arguments:?}");
     }
+}
+
+/// A GPU's schedule changes neither the picture nor what the CPU does; where there are no stages,
+/// that is said.
+#[test]
+fn pictures_do_not_depend_on_the_schedule() {
+    let folder = Folder::with_scene("schedule");
+    let render = |output: &str, more: &[&str]| -> Value {
+        let arguments = ["render", "scene.pbrt", "--device", "gpu", "--json", "-o", output];
+        folder.alhazen(&[&arguments[..], more].concat()).expect(0).json()
+    };
+    let by_stages = ["--set", "schedule=wavefront"];
+    let told = render("wavefront.exr", &by_stages);
+    if told["notes"]["device"] == "CPU" {
+        println!("skipped, for there is no GPU: {told}");
+        return;
+    }
+    assert!(told["notes"]["occupancy"].is_string() && told["warnings"] == Value::Array(vec![]), "{told}");
+    assert!(render("megakernel.exr", &[])["notes"]["occupancy"].is_null());
+    let [wavefront, megakernel] = ["wavefront.exr", "megakernel.exr"].map(|name| folder.image(name));
+    for (a, b) in wavefront.values().zip(megakernel.values()) {
+        assert!((a - b).abs() <= 1e-4 * b.max(0.01), "{a} instead of {b}");
+    }
+    let whitted = render("whitted.exr", &[&by_stages[..], &["--integrator", "whitted"]].concat());
+    let warning = whitted["warnings"][0]["message"].as_str().unwrap_or_default();
+    assert!(warning.contains("no stages for this algorithm"), "{whitted}");
+
+    let contenders = ["compare", "scene.pbrt", "--integrators", "path,path:schedule=wavefront"];
+    let options = ["--device", "gpu", "--spp", "2", "--json"];
+    let compared = folder.alhazen(&[&contenders[..], &options].concat()).expect(0).json();
+    let [first, second] = [0, 1].map(|index| &compared["integrators"][index]);
+    assert!(first["notes"]["occupancy"].is_null(), "{compared}");
+    assert!(second["notes"]["occupancy"].is_string(), "{compared}");
 }

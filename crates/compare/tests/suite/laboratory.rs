@@ -49,6 +49,8 @@ fn plan(contenders: &[&str], budget: Budget) -> Plan {
         reference: ReferenceSource::Render { by: None, samples_per_pixel: None },
         overrides: Overrides::default(),
         threads: 1,
+        #[cfg(feature = "gpu")]
+        kernels: None,
     }
 }
 

@@ -12,6 +12,9 @@ fn main() {
     batch.first += batch.beginning;
     batch.beginning = min(atomicLoad(&batch.lengths[ENDED]), batch.samples - batch.first);
     batch.going_on = atomicLoad(&batch.lengths[PATHS]);
+    let paths = batch.going_on + batch.beginning;
+    batch.turns += u32(paths > 0);
+    batch.paths += paths;
     batch.shadows = atomicLoad(&batch.lengths[SHADOWS]);
     for (var queue = 0u; queue < QUEUES; queue++) {
         atomicStore(&batch.lengths[queue], 0u);

@@ -24,6 +24,9 @@ record! {
         beginning: u32,
         going_on: u32,
         shadows: u32,
+        /// The turns so far that had paths, and the paths of all of them.
+        turns: u32,
+        paths: u32,
         lengths: [u32; MAX_QUEUES] as "array<atomic<u32>, QUEUES>",
     }
     "queues: array<u32>"

@@ -74,7 +74,8 @@ impl Chains {
         kernels: &Kernels,
         scene: &SceneBuffers,
         flat: &Flat,
-        (settings, seed): (MltDesc, u32),
+        settings: MltDesc,
+        seed: u32,
         mutations: usize,
     ) -> Result<Self, GpuError> {
         let kernel = kernels.get("chains", shaders::chains(flat.parts))?;

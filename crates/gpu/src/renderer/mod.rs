@@ -16,8 +16,8 @@ mod wavefront;
 
 use std::sync::Arc;
 
-use film::{Film, FilmTile, Splatter, TILE_SIZE};
-use lanes::InstructionSet;
+use description::{BdptDesc, LightTracingDesc, MltDesc, Schedule};
+use film::{Film, Splatter, TILE_SIZE};
 use math::{Bounds2i, Vec2};
 use rayon::prelude::*;
 use scene::View;
@@ -27,14 +27,15 @@ use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Device, GpuError, Kernel};
 use crate::flatten::Flat;
 use crate::records::pixels::{Batch, PixelSample, Splat};
-use crate::shaders::{self, Parts};
+use crate::shaders;
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
 use scene_buffers::SceneBuffers;
 pub use strip::FindFirstHit;
-use strip::{AddToTile, Started};
+use strip::{Exposure, Started};
 use wavefront::Wavefront;
+pub use wavefront::lacking_stages;
 
 /// The most pixels of a strip: enough to keep a GPU busy, and by a GPU in software fewer, so that
 /// it can be cancelled soon. The most splats of its light paths. A row of tiles may have more.
@@ -48,40 +49,39 @@ const SPLATS_OF_A_THREAD: usize = 1 << 12;
 /// Pixels of a side of a kernel's workgroups.
 const WORKGROUP: u32 = 8;
 
-/// How the work of `path` is cut into kernels. Other algorithms, and `vol-path` in media, have
-/// a megakernel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Schedule {
-    /// A thread follows a whole path.
-    #[default]
-    Megakernel,
-    /// Paths go through each stage together, and new ones take the places of those that end.
-    Wavefront,
-}
-
 /// What makes the samples of a strip.
 enum Maker {
     Megakernel(Arc<Kernel>),
     Wavefront(Wavefront),
 }
 
+/// Paths that begin at lights.
+enum LightPaths {
+    None,
+    /// One for each pixel, which has so many splats at most.
+    Splatting(u32),
+    /// Those that chains propose, beside the samples of pixels.
+    Chains(Chains),
+    /// Those whose photons the samples of pixels gather.
+    Photons(Photons),
+}
+
 /// A scene on a device, ready to be rendered.
 pub struct Renderer {
     scene: SceneBuffers,
     maker: Maker,
+    light_paths: LightPaths,
     /// What the kernel is to render, and what it finds, of a strip.
     batch: Buffer,
     samples: Buffer,
-    /// The most splats of a light path, and of a strip.
-    splats: Option<u32>,
+    /// The most splats of a strip.
     most: usize,
-    chains: Option<Chains>,
-    photons: Option<Photons>,
     bytes: usize,
 }
 
 impl Renderer {
-    /// Takes a scene to the device, for pictures of the pixels of `film`.
+    /// Takes a scene to the device, for pictures of the pixels of `film`. Where [`lacking_stages`]
+    /// gives a reason, it has a megakernel.
     pub fn new(
         kernels: Arc<Kernels>,
         flat: &Flat,
@@ -90,9 +90,9 @@ impl Renderer {
         schedule: Schedule,
     ) -> Result<Self, GpuError> {
         let scene = SceneBuffers::new(kernels.clone(), flat)?;
+        let kernel = || kernels.get("pixels", shaders::pixels(algorithm, flat.parts));
         let pixels = film.pixel_bounds().area();
-        let (mut splats, mut chains, mut photons) = (None, None, None);
-        match algorithm {
+        let light_paths = match algorithm {
             Algorithm::RayCasting
             | Algorithm::Whitted(_)
             | Algorithm::AmbientOcclusion(..)
@@ -100,50 +100,50 @@ impl Renderer {
             | Algorithm::VolPath(_)
             | Algorithm::SimpleVolPath(_)
             | Algorithm::SimplePath(_)
-            | Algorithm::RandomWalk(_) => {}
-            Algorithm::LightTracing(desc) => splats = Some(desc.max_depth),
-            Algorithm::Bdpt(desc) => splats = Some(desc.max_depth),
-            Algorithm::Mlt(desc, seed) if desc.max_depth > 0 => {
-                chains = Some(Chains::new(&kernels, &scene, flat, (*desc, *seed), pixels)?);
+            | Algorithm::RandomWalk(_) => LightPaths::None,
+            Algorithm::LightTracing(LightTracingDesc { max_depth, .. })
+            | Algorithm::Bdpt(BdptDesc { max_depth, .. }) => LightPaths::Splatting(*max_depth),
+            Algorithm::Mlt(MltDesc { max_depth: 0, .. }, _) => LightPaths::None,
+            Algorithm::Mlt(desc, seed) => {
+                LightPaths::Chains(Chains::new(&kernels, &scene, flat, *desc, *seed, pixels)?)
             }
-            Algorithm::Mlt(..) => {}
             Algorithm::Sppm(desc, seed) => {
-                photons = Some(Photons::new(&scene, (desc, *seed), pixels, flat.radius)?);
+                LightPaths::Photons(Photons::new(&scene, kernel()?, desc, *seed, pixels, flat.radius)?)
             }
-        }
-        let most_pixels = most_pixels(scene.device());
+        };
+        let (splats, most_pixels) = (light_paths.splats(), most_pixels(scene.device()));
         let areas: Vec<usize> =
             strips(film.pixel_bounds(), splats, most_pixels).map(|strip| strip.area()).collect();
         let count = areas.iter().copied().max().unwrap_or(0);
-        let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
-        // Its stages do not have what few scenes have.
-        let Parts { media, subsurface, lenses, .. } = flat.parts;
-        let maker = if schedule == Schedule::Wavefront && is_path && !(media || subsurface || lenses) {
+        let maker = if schedule == Schedule::Wavefront && lacking_stages(algorithm, flat.parts).is_none() {
             // A small picture has several samples of each pixel together.
             let samples = if areas.len() == 1 { (most_pixels / count.max(1)).max(1) } else { 1 };
             let size = wavefront::Size { pixels: count, samples: samples as u32 };
             Maker::Wavefront(Wavefront::new(&kernels, flat, size)?)
         } else {
-            Maker::Megakernel(kernels.get("pixels", shaders::pixels(algorithm, flat.parts))?)
+            Maker::Megakernel(kernel()?)
         };
-        let most = count.saturating_mul(splats.unwrap_or(0) as usize);
+        let most = count.saturating_mul(splats as usize);
         let batch_bytes = size_of::<Splat>().saturating_mul(most.max(1)).saturating_add(size_of::<Batch>());
-        let device = scene.device();
-        let batch = device.zeros("splats of a strip", batch_bytes as u64)?;
-        let samples = device.zeros("samples of a strip", (count.max(1) * size_of::<PixelSample>()) as u64)?;
-        let of_paths = match &maker {
-            Maker::Megakernel(_) => 0,
-            Maker::Wavefront(wavefront) => wavefront.bytes(),
-        };
-        let own =
-            chains.as_ref().map_or(of_paths, Chains::bytes) + photons.as_ref().map_or(0, Photons::bytes);
-        let bytes = flat.bytes() + count * size_of::<PixelSample>() + batch_bytes + own;
-        Ok(Self { scene, maker, batch, samples, splats, most, chains, photons, bytes })
+        let samples_bytes = count.max(1) * size_of::<PixelSample>();
+        let batch = scene.device().zeros("splats of a strip", batch_bytes as u64)?;
+        let samples = scene.device().zeros("samples of a strip", samples_bytes as u64)?;
+        let bytes = flat.bytes() + samples_bytes + batch_bytes + maker.bytes() + light_paths.bytes();
+        Ok(Self { scene, maker, light_paths, batch, samples, most, bytes })
     }
 
     /// The bytes of its buffers.
     pub fn bytes(&self) -> usize {
         self.bytes
+    }
+
+    /// The paths of a step of the wavefront, relative to the places for paths, in the mean of the
+    /// passes so far; `None` of a megakernel, and before the first pass.
+    pub fn occupancy(&self) -> Option<f64> {
+        match &self.maker {
+            Maker::Megakernel(_) => None,
+            Maker::Wavefront(wavefront) => wavefront.occupancy(),
+        }
     }
 
     /// The device that renders.
@@ -166,79 +166,69 @@ impl Renderer {
         first_hit: &FindFirstHit,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<u64>, PassError> {
-        let lanes = InstructionSet::detect();
         let bounds = film.pixel_bounds();
-        let opened = if self.splats.is_none() && self.chains.is_none() {
-            film.tiles_mut().map(|tiles| (tiles, None))
-        } else {
-            film.tiles_and_splatter().map(|(tiles, splatter)| (tiles, Some(splatter)))
-        };
-        let (mut tiles, splatter) = opened.map_err(|error| PassError::OutOfMemory(error.to_string()))?;
-        let mut rays = 0;
-        let mut grid = None;
-        if let (Some(photons), Maker::Megakernel(kernel)) = (&self.photons, &self.maker) {
-            let Self { scene, samples, .. } = self;
-            grid = photons.shoot(index, scene, kernel, samples, view, &is_cancelled)?;
-            let Some(grid) = &grid else { return Ok(None) };
-            rays += grid.rays;
-        }
-        let mut add = |strip: Bounds2i, samples: &[PixelSample]| {
-            if let (Some(_), Some(splatter)) = (self.splats, &splatter) {
-                self.add_splats(&strip, samples, view, splatter)?;
+        let opened = match self.light_paths {
+            LightPaths::None | LightPaths::Photons(_) => film.tiles_mut().map(|tiles| (tiles, None)),
+            LightPaths::Splatting(_) | LightPaths::Chains(_) => {
+                film.tiles_and_splatter().map(|(tiles, splatter)| (tiles, Some(splatter)))
             }
-            rays += samples.iter().map(|sample| u64::from(sample.rays)).sum::<u64>();
-            let is_in_strip = |tile: &FilmTile| tile.bounds().min[1] < strip.max[1];
-            let count = tiles.iter().take_while(|tile| is_in_strip(tile)).count();
-            let rest = tiles.split_off(count);
-            let lambda = grid.as_ref().map(|grid| &grid.shutter.lambda);
-            std::mem::replace(&mut tiles, rest).into_par_iter().for_each(|mut tile| {
-                let tile = &mut tile;
-                lanes.dispatch_large(AddToTile { view, strip, samples, lambda, first_hit, tile });
-            });
-            Ok::<_, GpuError>(())
         };
-        let mut finish = |Started { strip, samples }: Started| {
-            self.device().contents(&samples, |bytes| add(strip, bytemuck::cast_slice(bytes)))?
-        };
-        let mut before = None;
-        for strip in strips(bounds, self.splats, most_pixels(self.device())) {
+        let (tiles, splatter) = opened.map_err(|error| PassError::OutOfMemory(error.to_string()))?;
+        let mut grid = None;
+        if let LightPaths::Photons(photons) = &self.light_paths {
+            grid = photons.shoot(index, &self.scene, &self.samples, view, &is_cancelled)?;
+            if grid.is_none() {
+                return Ok(None);
+            }
+        }
+        let lambda = grid.as_ref().map(|grid| &grid.shutter.lambda);
+        let rays = grid.as_ref().map_or(0, |grid| grid.rays);
+        let mut exposure = Exposure { view, lambda, first_hit, tiles, rays };
+        let mut before: Option<Started> = None;
+        for strip in strips(bounds, self.light_paths.splats(), most_pixels(self.device())) {
             if is_cancelled() {
                 return Ok(None);
             }
             let started = self.start(index, strip, grid.as_ref())?;
-            // While the device makes a strip, the one before is added, unless it has splats, which
-            // the device would write over.
-            let done = if self.splats.is_some() { Some(started) } else { before.replace(started) };
-            done.map_or(Ok(()), &mut finish)?;
+            if let (LightPaths::Splatting(_), Some(splatter)) = (&self.light_paths, &splatter) {
+                // The next strip's splats would be written over these.
+                started.finish(self.device(), &mut exposure, |samples| {
+                    self.add_splats(&strip, samples, view, splatter)
+                })?;
+            } else if let Some(before) = before.replace(started) {
+                // Meanwhile the device makes the next strip.
+                before.finish(self.device(), &mut exposure, |_| Ok(()))?;
+            }
         }
-        before.map_or(Ok(()), finish)?;
-        if let (Some(chains), Some(splatter)) = (&self.chains, &splatter) {
-            let Some(more) = chains.run(index, &self.scene, view, splatter, &is_cancelled)? else {
-                return Ok(None);
-            };
-            rays += more;
+        if let Some(last) = before {
+            last.finish(self.device(), &mut exposure, |_| Ok(()))?;
         }
-        Ok(Some(rays))
+        let rays = exposure.rays;
+        match (&self.light_paths, &splatter) {
+            (LightPaths::Chains(chains), Some(splatter)) => {
+                let of_chains = chains.run(index, &self.scene, view, splatter, &is_cancelled)?;
+                Ok(of_chains.map(|more| rays + more))
+            }
+            _ => Ok(Some(rays)),
+        }
     }
 
     /// Starts the samples of a strip, row by row; `grid` has the photons of the pass, if there are
     /// any.
     fn start(&self, index: u32, strip: Bounds2i, grid: Option<&PhotonGrid>) -> Result<Started, GpuError> {
         let Self { scene, maker, batch, samples, .. } = self;
-        let kernel = match maker {
-            Maker::Megakernel(kernel) => kernel,
-            Maker::Wavefront(wavefront) => {
+        match (maker, grid) {
+            (_, Some(grid)) => grid.gather(scene, samples, &strip)?,
+            (Maker::Wavefront(wavefront), None) => {
                 return Ok(Started { strip, samples: wavefront.run(index, &strip, scene)? });
             }
-        };
-        if let Some(grid) = grid {
-            grid.gather(scene, kernel, samples, &strip)?;
-        } else {
-            let size = [strip.width() as u32, strip.height() as u32];
-            let low = strip.min.map(|x| x as u32);
-            let head = Batch { low, size, index, most: self.most as u32, ..Batch::default() };
-            self.device().write(batch, &[head])?;
-            scene.run(kernel, [batch, samples], workgroups(size))?;
+            (Maker::Megakernel(kernel), None) => {
+                let size = [strip.width() as u32, strip.height() as u32];
+                let low = strip.min.map(|x| x as u32);
+                let head = Batch { low, size, index, most: self.most as u32, ..Batch::default() };
+                self.device().write(batch, &[head])?;
+                scene.run(kernel, [batch, samples], workgroups(size))?;
+            }
         }
         let bytes = (strip.area() * size_of::<PixelSample>()) as u64;
         Ok(Started { strip, samples: self.device().copy(samples, 0, bytes)? })
@@ -268,6 +258,32 @@ impl Renderer {
     }
 }
 
+impl Maker {
+    /// The bytes of what it has of its own.
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Megakernel(_) => 0,
+            Self::Wavefront(wavefront) => wavefront.bytes(),
+        }
+    }
+}
+
+impl LightPaths {
+    /// The most splats of the path of a pixel.
+    fn splats(&self) -> u32 {
+        if let Self::Splatting(splats) = self { *splats } else { 0 }
+    }
+
+    /// The bytes of what they have of their own.
+    fn bytes(&self) -> usize {
+        match self {
+            Self::None | Self::Splatting(_) => 0,
+            Self::Chains(chains) => chains.bytes(),
+            Self::Photons(photons) => photons.bytes(),
+        }
+    }
+}
+
 /// Why a pass is not complete.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PassError {
@@ -288,11 +304,11 @@ fn most_pixels(device: &Device) -> usize {
     if device.is_software() { MAX_PIXELS_OF_SOFTWARE } else { MAX_PIXELS }
 }
 
-/// The pixels in strips of whole tiles, given the most splats of a light path and the most pixels
-/// of a strip.
-fn strips(bounds: Bounds2i, splats: Option<u32>, pixels: usize) -> impl Iterator<Item = Bounds2i> {
+/// The pixels in strips of whole tiles, given the most splats of a pixel's light path and the most
+/// pixels of a strip.
+fn strips(bounds: Bounds2i, splats: u32, pixels: usize) -> impl Iterator<Item = Bounds2i> {
     let row_of_tiles = bounds.width() as usize * TILE_SIZE as usize;
-    let most = pixels.min(MAX_SPLATS / splats.unwrap_or(1).max(1) as usize);
+    let most = pixels.min(MAX_SPLATS / splats.max(1) as usize);
     let height = TILE_SIZE * (most / row_of_tiles).max(1) as i32;
     (bounds.min[1]..bounds.max[1])
         .step_by(height as usize)

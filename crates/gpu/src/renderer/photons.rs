@@ -6,6 +6,8 @@
 //! hashed cells in the order of their paths, so that nothing depends on the order of threads, and
 //! are taken back to the device, where camera paths gather them.
 
+use std::sync::Arc;
+
 use description::{SppmDesc, merging_radius};
 use math::Bounds2i;
 use rayon::prelude::*;
@@ -27,6 +29,7 @@ type Photon = [[u32; 4]; 3];
 
 /// Light paths, and the places of their photons.
 pub(super) struct Photons {
+    kernel: Arc<Kernel>,
     seed: u32,
     /// The light paths of a pass, and how many are made at a time.
     paths: usize,
@@ -41,6 +44,7 @@ pub(super) struct Photons {
 
 /// The photons of a pass on the device, sorted.
 pub(super) struct PhotonGrid {
+    kernel: Arc<Kernel>,
     batch: Batch,
     buffer: Buffer,
     /// The wavelengths of the pass.
@@ -53,7 +57,9 @@ impl Photons {
     /// Photons for a picture of so many pixels, of a scene whose sphere has this radius.
     pub fn new(
         scene: &SceneBuffers,
-        (settings, seed): (&SppmDesc, u32),
+        kernel: Arc<Kernel>,
+        settings: &SppmDesc,
+        seed: u32,
         pixels: usize,
         scene_radius: f32,
     ) -> Result<Self, GpuError> {
@@ -65,7 +71,7 @@ impl Photons {
         let bytes = photons.saturating_add(size_of::<Batch>());
         let places = scene.device().zeros("photons", bytes as u64)?;
         let radius = settings.first_radius(paths, scene_radius);
-        Ok(Self { seed, paths, paths_at_a_time, most, radius, places, bytes })
+        Ok(Self { kernel, seed, paths, paths_at_a_time, most, radius, places, bytes })
     }
 
     /// The bytes of their buffer.
@@ -79,7 +85,6 @@ impl Photons {
         &self,
         pass: u32,
         scene: &SceneBuffers,
-        kernel: &Kernel,
         samples: &Buffer,
         view: &View,
         is_cancelled: impl Fn() -> bool,
@@ -111,7 +116,7 @@ impl Photons {
                 ..shared
             };
             device.write(&self.places, &[batch])?;
-            scene.run(kernel, [&self.places, samples], workgroups(batch.size))?;
+            scene.run(&self.kernel, [&self.places, samples], workgroups(batch.size))?;
             let head: Vec<Batch> = device.read_part(&self.places, 0, 1)?;
             rays += head.iter().map(|batch| u64::from(batch.rays)).sum::<u64>();
             let places: Vec<Photon> =
@@ -120,7 +125,7 @@ impl Photons {
         }
         let (batch, words) = sorted(&photons, shared);
         let buffer = device.buffer("photons of a pass", &words)?;
-        Ok(Some(PhotonGrid { batch, buffer, shutter, rays }))
+        Ok(Some(PhotonGrid { kernel: self.kernel.clone(), batch, buffer, shutter, rays }))
     }
 }
 
@@ -129,17 +134,11 @@ const WIDTH: usize = 16 * WORKGROUP as usize;
 
 impl PhotonGrid {
     /// Starts the kernel for a strip of pixels.
-    pub fn gather(
-        &self,
-        scene: &SceneBuffers,
-        kernel: &Kernel,
-        samples: &Buffer,
-        strip: &Bounds2i,
-    ) -> Result<(), GpuError> {
+    pub fn gather(&self, scene: &SceneBuffers, samples: &Buffer, strip: &Bounds2i) -> Result<(), GpuError> {
         let size = [strip.width() as u32, strip.height() as u32];
         let batch = Batch { low: strip.min.map(|x| x as u32), size, ..self.batch };
         scene.device().write(&self.buffer, &[batch])?;
-        scene.run(kernel, [&self.buffer, samples], workgroups(size))
+        scene.run(&self.kernel, [&self.buffer, samples], workgroups(size))
     }
 }
 

@@ -1,12 +1,13 @@
 //! The samples of a strip of pixels, which the device makes and the host adds to the film.
 
 use film::{FilmTile, FirstHit, Sample};
-use lanes::{Kernel, MAX_LANES, Real};
+use lanes::{InstructionSet, Kernel, MAX_LANES, Real};
 use math::Bounds2i;
+use rayon::prelude::*;
 use scene::{ShutterSample, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::device::Copied;
+use crate::device::{Copied, Device, GpuError};
 use crate::records::pixels::PixelSample;
 
 impl PixelSample {
@@ -30,15 +31,58 @@ pub(super) struct Started {
     pub samples: Copied,
 }
 
-/// Adds the samples of a strip to the pixels of a tile in it.
-pub(super) struct AddToTile<'a, 'film> {
+impl Started {
+    /// Waits for the samples, and adds them to the film after something else is done with them.
+    pub fn finish(
+        self,
+        device: &Device,
+        exposure: &mut Exposure,
+        with_samples: impl FnOnce(&[PixelSample]) -> Result<(), GpuError>,
+    ) -> Result<(), GpuError> {
+        device.contents(&self.samples, |bytes| {
+            let samples = bytemuck::cast_slice(bytes);
+            with_samples(samples)?;
+            exposure.add(self.strip, samples);
+            Ok(())
+        })?
+    }
+}
+
+/// A film during a pass.
+pub(super) struct Exposure<'a, 'film> {
     pub view: &'a View,
-    pub strip: Bounds2i,
-    pub samples: &'a [PixelSample],
     /// The wavelengths of all samples, where they share them.
     pub lambda: Option<&'a SampledWavelengths>,
     pub first_hit: &'a FindFirstHit<'a>,
-    pub tile: &'a mut FilmTile<'film>,
+    /// The tiles that have no samples yet, row by row.
+    pub tiles: Vec<FilmTile<'film>>,
+    /// The rays so far.
+    pub rays: u64,
+}
+
+impl Exposure<'_, '_> {
+    /// Adds the samples of the next strip.
+    fn add(&mut self, strip: Bounds2i, samples: &[PixelSample]) {
+        let &mut Self { view, lambda, first_hit, ref mut tiles, ref mut rays } = self;
+        *rays += samples.iter().map(|sample| u64::from(sample.rays)).sum::<u64>();
+        let count = tiles.iter().take_while(|tile| tile.bounds().min[1] < strip.max[1]).count();
+        let rest = tiles.split_off(count);
+        let lanes = InstructionSet::detect();
+        std::mem::replace(tiles, rest).into_par_iter().for_each(|mut tile| {
+            let tile = &mut tile;
+            lanes.dispatch_large(AddToTile { view, strip, samples, lambda, first_hit, tile });
+        });
+    }
+}
+
+/// Adds the samples of a strip to the pixels of a tile in it.
+struct AddToTile<'a, 'film> {
+    view: &'a View,
+    strip: Bounds2i,
+    samples: &'a [PixelSample],
+    lambda: Option<&'a SampledWavelengths>,
+    first_hit: &'a FindFirstHit<'a>,
+    tile: &'a mut FilmTile<'film>,
 }
 
 impl Kernel for AddToTile<'_, '_> {

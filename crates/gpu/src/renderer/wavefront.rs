@@ -12,17 +12,18 @@
 //! is left.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use math::Bounds2i;
 
 use super::kernels::Kernels;
 use super::scene_buffers::SceneBuffers;
+use crate::algorithm::Algorithm;
 use crate::device::{Buffer, Copied, GpuError, Kernel, Workgroups};
 use crate::flatten::Flat;
 use crate::records::pixels::PixelSample;
 use crate::records::wavefront::Batch;
-use crate::shaders;
+use crate::shaders::{self, Parts};
 
 /// Rows of the table of paths, of four words.
 const ROWS: usize = 18;
@@ -66,9 +67,31 @@ pub(super) struct Wavefront {
     /// The number of samples of a pixel that are planned, and made together.
     planned: u32,
     together: u32,
-    /// The indices of the samples that are in the table.
-    made: Mutex<Range<u32>>,
+    made: Mutex<Made>,
     bytes: usize,
+}
+
+/// Samples that are made.
+#[derive(Default)]
+struct Made {
+    /// The indices of those that are in the table.
+    indices: Range<u32>,
+    /// The paths of all steps so far, and the places that there were for them.
+    paths: u64,
+    places: u64,
+}
+
+/// What the stages lack for a scene and an algorithm, if anything: few scenes have it.
+pub fn lacking_stages(algorithm: &Algorithm, parts: Parts) -> Option<&'static str> {
+    let Parts { media, subsurface, lenses, .. } = parts;
+    let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));
+    let lacking = [
+        (!is_path, "this algorithm"),
+        (media, "media and interfaces"),
+        (subsurface, "paths under surfaces"),
+        (lenses, "realistic cameras"),
+    ];
+    lacking.into_iter().find_map(|(is, what)| is.then_some(what))
 }
 
 impl Wavefront {
@@ -112,23 +135,35 @@ impl Wavefront {
         self.bytes
     }
 
+    /// The paths of a step, relative to the places, in the mean of the steps so far.
+    pub fn occupancy(&self) -> Option<f64> {
+        let Made { paths, places, .. } = *self.made();
+        (places > 0).then(|| paths as f64 / places as f64)
+    }
+
+    fn made(&self) -> MutexGuard<'_, Made> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Makes the samples of an index of a strip, row by row, and starts to copy them. Those of the
     /// next indices may be made with them, for later calls.
     pub fn run(&self, index: u32, strip: &Bounds2i, scene: &SceneBuffers) -> Result<Copied, GpuError> {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut made = self.made();
         // Strips are made one index at a time where there are several.
-        if self.together == 1 || !made.contains(&index) {
+        if self.together == 1 || !made.indices.contains(&index) {
             let end = index.saturating_add(self.together).min(self.planned.max(index.saturating_add(1)));
-            *made = 0..0;
-            self.make(index..end, strip, scene)?;
-            *made = index..end;
+            made.indices = 0..0;
+            let batch = self.make(index..end, strip, scene)?;
+            made.indices = index..end;
+            made.paths += u64::from(batch.paths);
+            made.places += u64::from(batch.turns) * u64::from(batch.places);
         }
         let bytes = strip.area() as u64 * size_of::<PixelSample>() as u64;
-        scene.device().copy(&self.table, u64::from(index - made.start) * bytes, bytes)
+        scene.device().copy(&self.table, u64::from(index - made.indices.start) * bytes, bytes)
     }
 
-    /// Makes the samples of these indices.
-    fn make(&self, indices: Range<u32>, strip: &Bounds2i, scene: &SceneBuffers) -> Result<(), GpuError> {
+    /// Makes the samples of these indices; the batch after the last turn.
+    fn make(&self, indices: Range<u32>, strip: &Bounds2i, scene: &SceneBuffers) -> Result<Batch, GpuError> {
         let device = scene.device();
         let samples = strip.area() as u32 * indices.len() as u32;
         // Paths at one kind are not sorted.
@@ -164,12 +199,9 @@ impl Wavefront {
             let head = device.copy(&self.batch, 0, size_of::<Batch>() as u64)?;
             // While the host reads this, the device does the next turns.
             let Some(head) = before.replace(head) else { continue };
-            let left = device.contents(&head, |bytes| {
-                let head: &Batch = bytemuck::from_bytes(bytes);
-                head.going_on + head.beginning
-            })?;
-            if left == 0 {
-                return Ok(());
+            let head: Batch = device.contents(&head, |bytes| *bytemuck::from_bytes(bytes))?;
+            if head.going_on + head.beginning == 0 {
+                return Ok(head);
             }
         }
     }

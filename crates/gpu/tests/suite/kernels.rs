@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use alhazen_gpu::shaders::{self, Parts};
-use alhazen_gpu::{Algorithm, Flat, Kernels, Schedule};
+use alhazen_gpu::{Algorithm, Flat, Kernels};
+use description::Schedule;
 
 /// The kernels of whole pictures, which tests share, so that each is compiled once. A driver in
 /// software compiles the kernels of a device one after another, so that each has a device.

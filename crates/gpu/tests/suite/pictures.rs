@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use alhazen_gpu::{Algorithm, FindFirstHit, Flat, Refusal, Renderer, Schedule, Subject, flatten};
+use alhazen_gpu::{Algorithm, FindFirstHit, Flat, Refusal, Renderer, Subject, flatten, lacking_stages};
 use assets::{AssetSource, Files, MemoryAssets};
 use description::{
     AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, PathDesc, SceneDesc,
-    SimplePathDesc, WhittedDesc,
+    Schedule, SimplePathDesc, WhittedDesc,
 };
 use film::Film;
 use image::Image;
@@ -169,6 +169,9 @@ impl Case {
     ) -> Option<Renderer> {
         let mut flat = flat.as_ref().unwrap_or_else(|refusals| panic!("{refusals:?}")).clone();
         flat.set_parts(shared(algorithm, schedule, flat.parts()));
+        if schedule == Schedule::Wavefront {
+            assert_eq!(lacking_stages(algorithm, flat.parts()), None);
+        }
         let kernels = kernels(algorithm, &flat)?;
         Some(Renderer::new(kernels, &flat, algorithm, &self.film(), schedule).expect("a renderer"))
     }

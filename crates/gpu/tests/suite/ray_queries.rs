@@ -1,7 +1,7 @@
 //! Pictures by the ray queries of a GPU's hardware, where it has any.
 
-use alhazen_gpu::{Algorithm, Schedule};
-use description::PathDesc;
+use alhazen_gpu::Algorithm;
+use description::{PathDesc, Schedule};
 
 use crate::motion::TURNING;
 use crate::pictures::{Case, DRAWN};

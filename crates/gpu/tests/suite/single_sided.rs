@@ -1,7 +1,7 @@
 //! Backs of single-sided surfaces, which the camera does not see, by both engines.
 
-use alhazen_gpu::{Algorithm, Schedule};
-use description::{BdptDesc, LightTracingDesc, PathDesc, SimplePathDesc, SppmDesc, WhittedDesc};
+use alhazen_gpu::Algorithm;
+use description::{BdptDesc, LightTracingDesc, PathDesc, Schedule, SimplePathDesc, SppmDesc, WhittedDesc};
 use spectrum::RgbColorSpace;
 
 use crate::pictures::Case;

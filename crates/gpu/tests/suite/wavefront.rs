@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
-use alhazen_gpu::{Algorithm, FindFirstHit, Renderer, Schedule};
+use alhazen_gpu::{Algorithm, FindFirstHit, Renderer};
 use assets::MemoryAssets;
+use description::Schedule;
 use image::Image;
 use sampling::Sampler;
 use sampling::sampler::Independent;

@@ -27,7 +27,7 @@ const INTEGRATORS: [&str; 11] = [
 ];
 
 /// Settings that pbrt-v4 does not know, where they are not those of an algorithm of ours.
-const OWN_SETTINGS: [&str; 3] = ["engine", "quality", "technique"];
+const OWN_SETTINGS: [&str; 4] = ["engine", "quality", "schedule", "technique"];
 
 /// A member of a set of settings as a statement; nothing if it is the default of the set.
 pub(crate) fn member<T: Settings + Clone + Default>(
