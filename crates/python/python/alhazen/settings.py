@@ -762,6 +762,7 @@ def options(
     msereferenceout: str | None = None,
     pixelstats: bool | None = None,
     rendercoordsys: Literal["camera", "cameraworld", "world"] | None = None,
+    schedule: Literal["megakernel", "wavefront"] | None = None,
     seed: int | None = None,
     wavefront: bool | None = None,
 ) -> Settings:
@@ -797,6 +798,9 @@ def options(
 
     rendercoordsys: one of camera, cameraworld, world, by default cameraworld. The coordinate system
     in which rays are traced.
+
+    schedule: one of megakernel, wavefront, by default megakernel. How a GPU, which `--device`
+    chooses, follows the paths of `path` and `vol-path`.
 
     seed: a whole number, by default 0. Default seed of samplers.
 
