@@ -23,7 +23,9 @@ fn assert_same(name: &str, case: &Case) {
     let [Some(mega), Some(wave)] = both.map(|schedule| case.scheduled(&algorithm, schedule)) else {
         return;
     };
-    let [mega, wave] = [mega, wave].map(|renderer| case.drawn(&renderer));
+    let pictures = [&mega, &wave].map(|renderer| case.drawn(renderer));
+    assert!(mega.occupancy().is_none() && wave.occupancy().is_some_and(|share| share > 0.0 && share <= 1.0));
+    let [mega, wave] = pictures;
     let apart = mega.values().zip(wave.values()).filter(|(a, b)| (a - b).abs() > 1e-4 * a.max(0.01));
     let share = apart.count() as f64 / mega.values().count() as f64;
     println!("{name}: {share:.1e} apart");
