@@ -107,11 +107,9 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
-/// What paths do under surfaces and of lights that they hit; at the vertices of one in empty space;
-/// and the whole of that, or of one through media.
+/// What all paths do, and those in empty space, or those through media.
 const PATH: [&str; 4] = plumbing! { "heroes" "generator" "under_surface" "path_hits" };
-const VERTICES: &str = include_str!("../shaders/path.wgsl");
-const IN_VACUUM: [&str; 2] = [VERTICES, include_str!("../shaders/path_loop.wgsl")];
+const IN_VACUUM: [&str; 2] = plumbing! { "path" "path_loop" };
 const IN_MEDIA: [&str; 2] = plumbing! { "media" "vol_path" };
 
 /// A path finds all light itself.
@@ -163,17 +161,14 @@ pub fn pixels(algorithm: &Algorithm, parts: Parts) -> String {
 /// The kernels of the stages of path tracing by a wavefront: paths begin, are extended and shaded,
 /// the next turn is planned, and paths are connected to lights.
 pub fn wavefront(parts: Parts) -> [String; 5] {
-    let queues = [wavefront::Batch::TEXT, include_str!("../shaders/wavefront/queues.wgsl")].concat();
-    let paths = include_str!("../shaders/wavefront/paths.wgsl");
-    let own = [RANDOM_NUMBERS, NO_RESERVOIRS, VERTICES, &queues, paths];
-    let stage = |stage| traced(parts, &[&PATH[..], &own, &[stage]].concat());
-    [
-        stage(include_str!("../shaders/wavefront/begin.wgsl")),
-        stage(include_str!("../shaders/wavefront/extend.wgsl")),
-        stage(include_str!("../shaders/wavefront/shade.wgsl")),
-        [&*queues, include_str!("../shaders/wavefront/plan.wgsl")].concat(),
-        stage(include_str!("../shaders/wavefront/connect.wgsl")),
-    ]
+    let [queues, plan, vertices, paths] =
+        plumbing! { "wavefront/queues" "wavefront/plan" "path" "wavefront/paths" };
+    let batch = wavefront::Batch::TEXT;
+    let own = [RANDOM_NUMBERS, NO_RESERVOIRS, batch, queues, vertices, paths];
+    let stages = plumbing! { "wavefront/begin" "wavefront/extend" "wavefront/shade" "wavefront/connect" };
+    let [begin, extend, shade, connect] =
+        stages.map(|stage| traced(parts, &[&PATH[..], &own, &[stage]].concat()));
+    [begin, extend, shade, [batch, queues, plan].concat(), connect]
 }
 
 /// The kernel of the chains of Metropolis light transport.
@@ -205,42 +200,25 @@ pub fn light(algorithm: &Algorithm, parts: Parts, has_reservoirs: bool) -> Strin
 
 /// The kernels of reservoirs: the first samples of a frame, and their reuse.
 pub fn reservoirs(parts: Parts) -> [String; 2] {
-    let texts = [
-        include_str!("../shaders/realtime/candidates.wgsl"),
-        concat!(
-            include_str!("../shaders/realtime/projection.wgsl"),
-            include_str!("../shaders/realtime/reuse.wgsl")
-        ),
-    ];
-    let shared = include_str!("../shaders/realtime/reservoirs.wgsl");
-    let own = [RANDOM_NUMBERS, SENSOR, Reuse::TEXT, shared];
+    let own = [RANDOM_NUMBERS, SENSOR, Reuse::TEXT, include_str!("../shaders/realtime/reservoirs.wgsl")];
+    let texts = plumbing! { "realtime/candidates" "realtime/reuse" };
     texts.map(|text| traced(parts, &[&FRAME[..], &own, &[text]].concat()))
 }
 
 /// The kernel that finds what is seen in a real-time frame by an algorithm.
 pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
     // Of ambient occlusion light does not depend on the reflectance.
-    let is_reflected = if matches!(algorithm, Algorithm::AmbientOcclusion(..)) {
-        "const IS_REFLECTED = false;\n"
-    } else {
-        "const IS_REFLECTED = true;\n"
-    };
+    let is_reflected = !matches!(algorithm, Algorithm::AmbientOcclusion(..));
+    let constant = format!("const IS_REFLECTED = {is_reflected};\n");
     let surfaces = include_str!("../shaders/realtime/surfaces.wgsl");
-    traced(parts, &[&FRAME[..], &[RANDOM_NUMBERS, is_reflected, CAMERA_HIT, surfaces]].concat())
+    traced(parts, &[&FRAME[..], &[RANDOM_NUMBERS, &constant, CAMERA_HIT, surfaces]].concat())
 }
 
 /// The kernels that make a picture of the light of a real-time frame, in the order in which they
 /// run: they reproject the frames before, find variances, filter, and develop.
 pub fn filters() -> [String; 4] {
-    let texts = [
-        concat!(
-            include_str!("../shaders/realtime/projection.wgsl"),
-            include_str!("../shaders/realtime/temporal.wgsl")
-        ),
-        include_str!("../shaders/realtime/variance.wgsl"),
-        include_str!("../shaders/realtime/wavelet.wgsl"),
-        include_str!("../shaders/realtime/develop.wgsl"),
-    ];
+    let texts =
+        plumbing! { "realtime/temporal" "realtime/variance" "realtime/wavelet" "realtime/develop" };
     texts.map(|text| [&FRAME[..], &[Level::TEXT, text]].concat().concat())
 }
 
@@ -250,11 +228,8 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
     let text = match algorithm {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(desc) => {
-            let constants = format!(
-                "const MOST_RAYS = {}u;\nconst HAS_AMBIENT = {};\n",
-                desc.max_depth + 1,
-                desc.ambient
-            );
+            let (rays, has_ambient) = (desc.max_depth + 1, desc.ambient);
+            let constants = format!("const MOST_RAYS = {rays}u;\nconst HAS_AMBIENT = {has_ambient};\n");
             return (constants + include_str!("../shaders/whitted.wgsl")).into();
         }
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),

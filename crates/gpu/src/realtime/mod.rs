@@ -35,7 +35,7 @@ use crate::commands::Commands;
 use crate::device::{Binding, Buffer, Device, GpuError, Kernel};
 use crate::dynamic::{Moving, MovingError, Update};
 use crate::flatten::{Head, cameras};
-use crate::renderer::Kernels;
+use crate::renderer::{Kernels, SceneBuffers};
 use crate::shaders;
 use crate::tags::SamplerTag;
 use crate::trees::Trees;
@@ -65,7 +65,6 @@ const TRANSITION: f32 = 64.0;
 
 /// A scene on a device, of which pictures are made at once.
 pub struct Realtime {
-    kernels: Arc<Kernels>,
     surfaces: Arc<Kernel>,
     light: Arc<Kernel>,
     filters: [Arc<Kernel>; 4],
@@ -74,9 +73,7 @@ pub struct Realtime {
     head: Head,
     /// Where the random numbers of frames in motion are among the tables.
     restless: u32,
-    /// What rays are traced through: trees; and heads, triangles, items, tables and texels.
-    trees: Trees,
-    scene: [Buffer; 5],
+    scene: SceneBuffers,
     parameters: Buffer,
     canvas: Option<Canvas>,
     /// What moves.
@@ -147,14 +144,7 @@ impl Realtime {
         let key = Independent::new(1, 0).key();
         let tables: Vec<u32> =
             flat.tables.iter().copied().chain([SamplerTag::Independent as u32, key, 0, 0]).collect();
-        let scene = [
-            device.buffer("heads of the scene", &[flat.head])?,
-            device.buffer("triangles of the scene", &flat.bvh.triangles)?,
-            device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
-            device.buffer("tables of the scene", &tables)?,
-            device.buffer("texels of the scene", &flat.texels)?,
-        ];
-        let trees = Trees::new(device, &flat.bvh, &scene[1])?;
+        let scene = SceneBuffers::new(kernels.clone(), flat, &tables)?;
         let parameters = device.parameters(&FrameParameters::default())?;
         // Drivers take seconds to compile each of these.
         let ((light, surfaces), reservoirs) = rayon::join(
@@ -185,7 +175,6 @@ impl Realtime {
             levels,
             head: flat.head,
             restless,
-            trees,
             scene,
             parameters,
             canvas: None,
@@ -195,7 +184,6 @@ impl Realtime {
             half: 0,
             rested: 0,
             moved: 0,
-            kernels,
         })
     }
 
@@ -246,7 +234,7 @@ impl Realtime {
         place: impl FnOnce(&mut Moving, &Device) -> Result<(), MovingError>,
     ) -> Result<(), MovingError> {
         let moving = self.moving.as_mut().ok_or(MovingError::Refused("a scene at rest"))?;
-        let placed = place(moving, self.kernels.device());
+        let placed = place(moving, self.scene.device());
         self.head.top = moving.top();
         self.rested = 0;
         placed
@@ -254,7 +242,7 @@ impl Realtime {
 
     /// The device.
     pub fn device(&self) -> &Device {
-        self.kernels.device()
+        self.scene.device()
     }
 
     /// Looks from somewhere, at these pixels of the film; a picture at rest begins again.
@@ -269,9 +257,9 @@ impl Realtime {
             return Err(AimError::Refused("frames of moving cameras"));
         }
         let camera = cameras::words(view, 0);
-        let device = self.kernels.device();
+        let device = self.scene.device();
         let at = u64::from(self.head.camera) * size_of::<u32>() as u64;
-        device.write_at(&self.scene[3], at, &camera)?;
+        device.write_at(&self.scene.tables, at, &camera)?;
         if self.canvas.as_ref().is_none_or(|canvas| canvas.pixels != pixels) {
             self.canvas = Some(Canvas::new(device, pixels, self.reservoirs.is_some())?);
             self.last = None;
@@ -306,15 +294,13 @@ impl Realtime {
         };
         let groups = groups(&frame);
         if let Some(reservoirs) = &mut self.reservoirs {
-            reservoirs.begin(self.kernels.device(), self.eye, frame.eye)?;
+            reservoirs.begin(self.scene.device(), self.eye, frame.eye)?;
         }
         let mut commands = self.begin(canvas, head, frame)?;
-        let [world, triangles, items, tables, texels] = &self.scene;
         let Canvas { film, seen, history, estimates: [even, odd], .. } = canvas;
         let parameters = &self.parameters;
         let [temporal, variance, wavelet, _] = &self.filters;
-        let looked: [&dyn Binding; 9] =
-            [world, &self.trees, triangles, items, tables, parameters, seen, texels, film];
+        let looked = [&self.scene.with([parameters, seen])[..], &[film as &dyn Binding]].concat();
         commands.run(TRACE, &self.surfaces, &looked, groups);
         self.trace(&mut commands, canvas, groups, self.reservoirs.as_ref());
         commands.run(FILTER, temporal, &[parameters, seen, film, history], groups);
@@ -367,7 +353,7 @@ impl Realtime {
     /// colours as those of a [`Picture`]. Empty before the camera is aimed.
     pub fn unfiltered(&self) -> Result<Vec<[f32; 3]>, GpuError> {
         let Some(canvas) = &self.canvas else { return Ok(Vec::new()) };
-        let words = self.kernels.device().read::<f32>(&canvas.film)?;
+        let words = self.scene.device().read::<f32>(&canvas.film)?;
         let pixels = words[canvas::HEAD as usize / 4..].chunks_exact(canvas::LIGHT as usize / 4);
         let mean = |light: &[f32]| [0, 1, 2].map(|i| if light[3] == 0.0 { 0.0 } else { light[i] / light[3] });
         Ok(pixels.map(mean).collect())
@@ -379,12 +365,12 @@ impl Realtime {
         head: Head,
         frame: FrameParameters,
     ) -> Result<Commands<'a>, GpuError> {
-        let device = self.kernels.device();
-        device.write(&self.scene[0], &[head])?;
+        let device = self.scene.device();
+        device.write(&self.scene.head, &[head])?;
         device.write(&self.parameters, &[frame])?;
         let mut commands = Commands::new(device, &canvas.timer, 3);
-        if let (Some(moving), Trees::Nodes(nodes)) = (&self.moving, &self.trees) {
-            let [_, triangles, items, ..] = &self.scene;
+        let SceneBuffers { trees, triangles, items, .. } = &self.scene;
+        if let (Some(moving), Trees::Nodes(nodes)) = (&self.moving, trees) {
             let mut start = |kernel: &Kernel, buffers: &[&Buffer], groups: u32| {
                 commands.run(BUILD, kernel, buffers, [groups, 1]);
             };
@@ -395,9 +381,7 @@ impl Realtime {
 
     /// Finds the light of the frame, direct light by shared samples if there are any.
     fn trace(&self, commands: &mut Commands, canvas: &Canvas, groups: [u32; 2], shared: Option<&Reservoirs>) {
-        let [world, triangles, items, tables, texels] = &self.scene;
-        let traced: [&dyn Binding; 8] =
-            [world, &self.trees, triangles, items, tables, &self.parameters, &canvas.film, texels];
+        let traced = self.scene.with([&self.parameters, &canvas.film]);
         commands.run(TRACE, shared.map_or(&self.light, |shared| &shared.light), &traced, groups);
         if let (Some(Reservoirs { candidates, reuse, steps, .. }), Some(buffer)) =
             (shared, &canvas.reservoirs)

@@ -6,49 +6,22 @@ pub mod pixels;
 pub mod wavefront;
 
 /// The type in WGSL of a field, or the one that is given.
+#[rustfmt::skip]
 macro_rules! wgsl_type {
-    ($type:tt $wgsl:literal) => {
-        $wgsl
-    };
-    (u32) => {
-        "u32"
-    };
-    (f32) => {
-        "f32"
-    };
-    (Top) => {
-        "Top"
-    };
-    (i32) => {
-        "i32"
-    };
-    (Eye) => {
-        "Eye"
-    };
-    ([u32; 2]) => {
-        "vec2u"
-    };
-    ([f32; 2]) => {
-        "vec2f"
-    };
-    ([f32; 4]) => {
-        "vec4f"
-    };
-    ([f32; 3]) => {
-        "vec3f"
-    };
-    ([[u32; 4]; 3]) => {
-        "array<vec4u, 3>"
-    };
-    ([[f32; 4]; 3]) => {
-        "array<vec4f, 3>"
-    };
-    ([[f32; 4]; 4]) => {
-        "mat4x4f"
-    };
-    ([[f32; 4]; 9]) => {
-        "array<vec4f, 9>"
-    };
+    ($type:tt $wgsl:literal) => { $wgsl };
+    (u32) => { "u32" };
+    (f32) => { "f32" };
+    (Top) => { "Top" };
+    (i32) => { "i32" };
+    (Eye) => { "Eye" };
+    ([u32; 2]) => { "vec2u" };
+    ([f32; 2]) => { "vec2f" };
+    ([f32; 4]) => { "vec4f" };
+    ([f32; 3]) => { "vec3f" };
+    ([[u32; 4]; 3]) => { "array<vec4u, 3>" };
+    ([[f32; 4]; 3]) => { "array<vec4f, 3>" };
+    ([[f32; 4]; 4]) => { "mat4x4f" };
+    ([[f32; 4]; 9]) => { "array<vec4f, 9>" };
 }
 pub(crate) use wgsl_type;
 

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::device::{Device, GpuError, Kernel};
 
 /// The kernels of a device, each compiled when it is first used.
+#[derive(Debug)]
 pub struct Kernels {
     device: Device,
     /// By their sources. What compiles one holds up those alone that want the same.

@@ -31,7 +31,7 @@ use crate::shaders;
 use chains::Chains;
 pub use kernels::Kernels;
 use photons::{PhotonGrid, Photons};
-use scene_buffers::SceneBuffers;
+pub(crate) use scene_buffers::SceneBuffers;
 pub use strip::FindFirstHit;
 use strip::{Exposure, Started};
 use wavefront::Wavefront;
@@ -89,7 +89,7 @@ impl Renderer {
         film: &Film,
         schedule: Schedule,
     ) -> Result<Self, GpuError> {
-        let scene = SceneBuffers::new(kernels.clone(), flat)?;
+        let scene = SceneBuffers::new(kernels.clone(), flat, &flat.tables)?;
         let kernel = || kernels.get("pixels", shaders::pixels(algorithm, flat.parts));
         let pixels = film.pixel_bounds().area();
         let light_paths = match algorithm {

@@ -8,25 +8,37 @@ use crate::flatten::Flat;
 use crate::trees::Trees;
 
 /// The buffers of a scene, beside which kernels have two of their own.
-pub(super) struct SceneBuffers {
+pub(crate) struct SceneBuffers {
     kernels: Arc<Kernels>,
-    trees: Trees,
-    buffers: [Buffer; 5],
+    pub trees: Trees,
+    pub head: Buffer,
+    pub triangles: Buffer,
+    pub items: Buffer,
+    pub tables: Buffer,
+    texels: Buffer,
 }
 
 impl SceneBuffers {
-    /// Takes a scene to the device.
-    pub fn new(kernels: Arc<Kernels>, flat: &Flat) -> Result<Self, GpuError> {
+    /// Takes a scene to the device, with its tables.
+    pub fn new(kernels: Arc<Kernels>, flat: &Flat, tables: &[u32]) -> Result<Self, GpuError> {
         let device = kernels.device();
-        let buffers = [
-            device.buffer("heads of the scene", &[flat.head])?,
-            device.buffer("triangles of the scene", &flat.bvh.triangles)?,
-            device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
-            device.buffer("tables of the scene", &flat.tables)?,
-            device.buffer("texels of the scene", &flat.texels)?,
-        ];
-        let trees = Trees::new(device, &flat.bvh, &buffers[1])?;
-        Ok(Self { kernels, trees, buffers })
+        let triangles = device.buffer("triangles of the scene", &flat.bvh.triangles)?;
+        Ok(Self {
+            trees: Trees::new(device, &flat.bvh, &triangles)?,
+            head: device.buffer("heads of the scene", &[flat.head])?,
+            triangles,
+            items: device.buffer("shapes and instances of the scene", &flat.bvh.items)?,
+            tables: device.buffer("tables of the scene", tables)?,
+            texels: device.buffer("texels of the scene", &flat.texels)?,
+            kernels,
+        })
+    }
+
+    /// All of them and two others, in the order of bindings.
+    pub fn with<'a>(&'a self, own: [&'a Buffer; 2]) -> [&'a dyn Binding; 8] {
+        let Self { kernels: _, trees, head, triangles, items, tables, texels } = self;
+        let [batch, results] = own;
+        [head, trees, triangles, items, tables, batch, results, texels]
     }
 
     /// The device.
@@ -50,11 +62,9 @@ impl SceneBuffers {
     pub fn task<'a>(
         &self,
         kernel: &'a Kernel,
-        [batch, results]: [&Buffer; 2],
+        own: [&Buffer; 2],
         workgroups: Workgroups<'a>,
     ) -> Task<'a> {
-        let [head, triangles, items, tables, texels] = self.buffers.each_ref();
-        let all: [&dyn Binding; 8] = [head, &self.trees, triangles, items, tables, batch, results, texels];
-        self.device().task(kernel, &all, workgroups)
+        self.device().task(kernel, &self.with(own), workgroups)
     }
 }
