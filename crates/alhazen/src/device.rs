@@ -22,9 +22,9 @@ struct OnDevice {
     name: String,
 }
 
-/// Goes on with a session by the algorithm that a scene describes, on a device. Warnings are of what
-/// is done otherwise than described. The error says what kernels do not draw, and leaves the session
-/// as it was.
+/// Goes on with a session by the algorithm that a scene describes, on a device. Warnings are of
+/// what is done otherwise than described. The error says what kernels do not draw, and leaves the
+/// session as it was.
 pub fn move_to(
     session: &mut Session,
     desc: &SceneDesc,

@@ -19,8 +19,8 @@ record! {
         /// Which half of the buffers is of this frame, and whether the other is of the one before.
         half: u32,
         has_history: u32,
-        /// Whether the camera moves, and the number of samples for which the filtered picture counts
-        /// while one at rest begins.
+        /// Whether the camera moves, and the number of samples for which the filtered picture
+        /// counts while one at rest begins.
         is_moving: u32,
         prior: f32,
         /// The camera of the frame before, after a word for nothing.
