@@ -217,8 +217,7 @@ pub fn surfaces(algorithm: &Algorithm, parts: Parts) -> String {
 /// The kernels that make a picture of the light of a real-time frame, in the order in which they
 /// run: they reproject the frames before, find variances, filter, and develop.
 pub fn filters() -> [String; 4] {
-    let texts =
-        plumbing! { "realtime/temporal" "realtime/variance" "realtime/wavelet" "realtime/develop" };
+    let texts = plumbing! { "realtime/temporal" "realtime/variance" "realtime/wavelet" "realtime/develop" };
     texts.map(|text| [&FRAME[..], &[Level::TEXT, text]].concat().concat())
 }
 

@@ -59,12 +59,7 @@ impl SceneBuffers {
     }
 
     /// The same, not yet started.
-    pub fn task<'a>(
-        &self,
-        kernel: &'a Kernel,
-        own: [&Buffer; 2],
-        workgroups: Workgroups<'a>,
-    ) -> Task<'a> {
+    pub fn task<'a>(&self, kernel: &'a Kernel, own: [&Buffer; 2], workgroups: Workgroups<'a>) -> Task<'a> {
         self.device().task(kernel, &self.with(own), workgroups)
     }
 }

@@ -8,7 +8,7 @@ use super::{Finding, rust};
 const MOST: usize = 6;
 
 /// Crates whose functions still take tuples.
-const EXEMPT: [&str; 4] = ["crates/description/", "crates/gpu/", "crates/import/", "crates/pbrt/"];
+const EXEMPT: [&str; 3] = ["crates/description/", "crates/import/", "crates/pbrt/"];
 
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let of_libraries = |path: &str| path.contains("/src/") && !path.ends_with("tests.rs");
