@@ -2,18 +2,22 @@
 
 use std::sync::Arc;
 
-/// An RGB colour space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ColorSpaceDesc {
-    /// Rec. 709 primaries, D65 white.
-    #[default]
-    Srgb,
-    /// DCI-P3 primaries, D65 white.
-    DciP3,
-    /// Rec. 2020 primaries, D65 white.
-    Rec2020,
-    /// ACES 2065-1 (AP0) primaries, ACES (about D60) white.
-    Aces2065_1,
+use crate::schema::choices;
+
+choices! {
+    /// An RGB colour space.
+    #[derive(Hash)]
+    pub enum ColorSpaceDesc {
+        /// Rec. 709 primaries, D65 white.
+        #[default]
+        Srgb = "srgb",
+        /// DCI-P3 primaries, D65 white.
+        DciP3 = "dci-p3",
+        /// Rec. 2020 primaries, D65 white.
+        Rec2020 = "rec2020",
+        /// ACES 2065-1 (AP0) primaries, ACES (about D60) white.
+        Aces2065_1 = "aces2065-1",
+    }
 }
 
 /// A function of wavelength.

@@ -2,7 +2,7 @@
 
 use scattering::SubsurfaceMethod;
 
-use crate::schema::{Field, Kind, SettingType, Settings, Value, Visitor};
+use crate::schema::{Field, Kind, SHARE, SettingType, Settings, Value, Visitor};
 use crate::{FloatParameter, Parameter, SpectrumDesc, SpectrumParameter};
 
 /// The absorption in a fibre.
@@ -32,7 +32,7 @@ impl Settings for HairColor {
     fn visit(&mut self, visitor: Visitor) {
         const FIELDS: &[Field; 4] = &[
             Field::new("sigma_a", "Absorption within the fibre, per radius of it."),
-            Field::new("reflectance", "The colour of a mass of such hair."),
+            Field::new("reflectance", "The colour of a mass of such hair.").within(SHARE),
             Field::new("eumelanin", "Concentration of the brown pigment. If no colour is given, 1.3."),
             Field::new("pheomelanin", "Concentration of the red pigment. If absent, 0."),
         ];
@@ -102,7 +102,8 @@ impl Settings for SubsurfaceScattering {
             Field::new(
                 "reflectance",
                 "Diffuse reflectance of the substance, if neither `name` nor `sigma_a` is given.",
-            ),
+            )
+            .within(SHARE),
             Field::new("mfp", "Mean free path, mm, with `reflectance`. If absent, 1."),
         ];
         let (mut name, mut coefficients, mut effective) = (None, [None, None], [None, None]);

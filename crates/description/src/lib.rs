@@ -24,7 +24,6 @@ mod light;
 mod material;
 mod medium;
 mod microsurface;
-mod names;
 mod open_pbr;
 mod options;
 mod sampler;
@@ -79,7 +78,8 @@ pub use substance::Substance;
 pub use suggest::{closest, did_you_mean};
 pub use texture::{
     EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
-    SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, UvImageDesc, WrapMode,
+    SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, TextureType,
+    TextureValue, UvImageDesc, WrapMode,
 };
 pub use transform::TransformDesc;
 pub use voxels::VoxelsDesc;

@@ -5,24 +5,26 @@ use math::{Point3, Vec3};
 use crate::schema::{Domain, Field, Settings, Visitor, above, at_least, from as from_to, members, settings};
 use crate::{ColorSpaceDesc, Handle, ImageDesc, MediumDesc, SpectrumDesc, TransformDesc, UvImageDesc};
 
-/// A light that is not a surface.
-#[derive(Clone, Debug)]
-pub struct LightDesc {
-    /// Which one.
-    pub kind: LightKind,
-    /// From the light's space to the world.
-    pub world_from_light: TransformDesc,
-    /// Factor on its emission.
-    pub scale: f32,
-    /// The medium around it.
-    pub medium: Option<Handle<MediumDesc>>,
-    /// Its group, whose light may have a layer of its own in the picture.
-    pub group: Option<String>,
+settings! {
+    /// A light that is not a surface.
+    #[derive(Clone, Debug)]
+    pub struct LightDesc {
+        /// Which one.
+        kind: LightKind = LightKind::default() => ..;
+        /// From the light's space to the world.
+        world_from_light: TransformDesc = TransformDesc::default();
+        /// Factor on the brightness.
+        scale: f32 = 1.0 => ["scale": at_least(0.0)];
+        /// The medium around it.
+        medium: Option<Handle<MediumDesc>> = None;
+        /// Its group, whose light may have a layer of its own in the picture.
+        group: Option<String> = None => ["lightgroup"];
+    }
 }
 
 impl From<LightKind> for LightDesc {
     fn from(kind: LightKind) -> Self {
-        Self { kind, world_from_light: TransformDesc::default(), scale: 1.0, medium: None, group: None }
+        Self { kind, ..Self::default() }
     }
 }
 

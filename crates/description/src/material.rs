@@ -5,7 +5,9 @@ use std::sync::Arc;
 use scattering::{MeasuredTable, SubsurfaceMethod};
 
 use crate::microsurface::{REMAP, conductor_fields, roughness_fields};
-use crate::schema::{Field, Settings, Visitor, at_least, index_of_refraction, members, settings};
+use crate::schema::{
+    Field, MEAN_COSINE, SHARE, Settings, Visitor, at_least, index_of_refraction, members, settings,
+};
 use crate::{
     ConductorDesc, FloatParameter, HairColor, Handle, OpenPbrDesc, RoughnessDesc, SpectrumDesc,
     SpectrumParameter, SubsurfaceScattering, UvImageDesc,
@@ -44,7 +46,7 @@ members! {
         /// Lambertian reflection.
         Diffuse = "diffuse" {
             /// Reflected share, 0 to 1.
-            reflectance: SpectrumParameter = 0.5.into() => ["reflectance"];
+            reflectance: SpectrumParameter = 0.5.into() => ["reflectance": SHARE];
         },
         /// A diffuse surface under a dielectric coat.
         CoatedDiffuse(CoatedDiffuseDesc) = "coateddiffuse",
@@ -67,9 +69,9 @@ members! {
         /// Lambertian reflection and transmission.
         DiffuseTransmission = "diffusetransmission" {
             /// Reflected share, 0 to 1.
-            reflectance: SpectrumParameter = 0.25.into() => ["reflectance"];
+            reflectance: SpectrumParameter = 0.25.into() => ["reflectance": SHARE];
             /// Transmitted share, 0 to 1.
-            transmittance: SpectrumParameter = 0.25.into() => ["transmittance"];
+            transmittance: SpectrumParameter = 0.25.into() => ["transmittance": SHARE];
             /// Factor on both.
             scale: f32 = 1.0 => ["scale"];
         },
@@ -80,9 +82,9 @@ members! {
             /// Index of refraction.
             eta: FloatParameter = 1.55.into() => ["eta"];
             /// Longitudinal roughness, 0 to 1.
-            beta_m: FloatParameter = 0.3.into() => ["beta_m"];
+            beta_m: FloatParameter = 0.3.into() => ["beta_m": SHARE];
             /// Azimuthal roughness, 0 to 1.
-            beta_n: FloatParameter = 0.3.into() => ["beta_n"];
+            beta_n: FloatParameter = 0.3.into() => ["beta_n": SHARE];
             /// Tilt of the scales, degrees.
             alpha: FloatParameter = 2.0.into() => ["alpha"];
         },
@@ -95,7 +97,7 @@ members! {
             /// Index of refraction.
             eta: f32 = 1.33 => ["eta"];
             /// Henyey–Greenstein asymmetry, −1 to 1.
-            g: f32 = 0.0 => ["g"];
+            g: f32 = 0.0 => ["g": MEAN_COSINE];
             /// Roughness of the interface.
             roughness: RoughnessDesc = RoughnessDesc::default() => ..;
             /// How light is followed under the surface: by a diffusion profile, which holds for
@@ -108,13 +110,13 @@ members! {
             table: Arc<MeasuredTable>;
         },
         /// A principled surface after OpenPBR Surface 1.1, with its names of parameters.
-        OpenPbr(Box<OpenPbrDesc>) = "openpbr",
+        OpenPbr(Box<OpenPbrDesc>) = "openpbr" [extension],
         /// One of two materials at each point, chosen at random.
-        Mix = "mix" by hand {
-            /// The two materials.
-            materials: [Handle<MaterialDesc>; 2];
+        Mix = "mix" {
+            /// The two materials; the first one of the scene, if they are not set.
+            materials: [Handle<MaterialDesc>; 2] = [Handle::new(0); 2];
             /// Probability of the second.
-            amount: FloatParameter;
+            amount: FloatParameter = 0.5.into() => ["amount": SHARE];
         },
         /// No surface at all: a border of media.
         Interface = "interface",
@@ -149,9 +151,9 @@ settings! {
         /// Optical thickness of the coat, 0 or more.
         thickness: FloatParameter = 0.01.into() => ["thickness"];
         /// Single-scattering albedo of the medium in the coat; with 0 it only absorbs.
-        albedo: SpectrumParameter = 0.0.into() => ["albedo"];
+        albedo: SpectrumParameter = 0.0.into() => ["albedo": SHARE];
         /// Henyey–Greenstein asymmetry of that medium, −1 to 1.
-        g: FloatParameter = 0.0.into() => ["g"];
+        g: FloatParameter = 0.0.into() => ["g": MEAN_COSINE];
         /// Maximum number of events of a random walk in the coat.
         max_depth: i32 = 10 => ["maxdepth": at_least(1.0)];
         /// Random walks averaged for each value.
@@ -164,7 +166,7 @@ settings! {
     #[derive(Clone, Debug, PartialEq)]
     pub struct CoatedDiffuseDesc {
         /// Reflected share of the surface, 0 to 1.
-        reflectance: SpectrumParameter = 0.5.into() => ["reflectance"];
+        reflectance: SpectrumParameter = 0.5.into() => ["reflectance": SHARE];
         /// Index of refraction of the coat.
         eta: SpectrumDesc = 1.5.into() => ["eta": index_of_refraction()];
         /// Roughness of the coat.
@@ -204,10 +206,8 @@ impl Settings for CoatedConductorDesc {
         const METAL: &[Field; 3] = &conductor_fields!("conductor.");
         const ROUGHNESS: &[Field; 3] = &roughness_fields!("conductor.", " of the metal");
         const COAT: &[Field; 3] = &roughness_fields!("interface.", " of the coat");
-        const ETA: &Field = &Field {
-            domain: index_of_refraction(),
-            ..Field::new("interface.eta", "Index of refraction of the coat.")
-        };
+        const ETA: &Field =
+            &Field::new("interface.eta", "Index of refraction of the coat.").within(index_of_refraction());
         let Self { conductor, eta, roughness, layers } = self;
         conductor.reflectance.visit_as(METAL, visitor);
         conductor.roughness.visit_axes(ROUGHNESS, visitor);

@@ -4,20 +4,22 @@ use std::sync::Arc;
 
 use math::{Point3, Vec3};
 
-use crate::schema::{Field, Settings, Visitor, members, settings};
+use crate::schema::{Field, MEAN_COSINE, Settings, Visitor, members, settings};
 use crate::{ColorSpaceDesc, Handle, SpectrumDesc, TransformDesc, VoxelsDesc};
 
-/// A medium.
-#[derive(Clone, Debug)]
-pub struct MediumDesc {
-    /// Its name.
-    pub name: String,
-    /// Which one.
-    pub kind: MediumKind,
-    /// From the medium's space to the world.
-    pub world_from_medium: TransformDesc,
-    /// Henyey–Greenstein asymmetry, −1 to 1.
-    pub g: f32,
+settings! {
+    /// A medium.
+    #[derive(Clone, Debug)]
+    pub struct MediumDesc {
+        /// Its name.
+        name: String = String::new();
+        /// Which one.
+        kind: MediumKind = MediumKind::default() => ..;
+        /// From the medium's space to the world.
+        world_from_medium: TransformDesc = TransformDesc::default();
+        /// Henyey–Greenstein asymmetry, −1 to 1.
+        g: f32 = 0.0 => ["g": MEAN_COSINE];
+    }
 }
 
 /// The media on the two sides of a surface; `None` is empty space.

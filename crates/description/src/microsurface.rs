@@ -10,15 +10,18 @@ macro_rules! roughness_fields {
             $crate::schema::Field::new(
                 concat!($prefix, "roughness"),
                 concat!("Roughness", $what, ", 0 (smooth) to 1."),
-            ),
+            )
+            .within($crate::schema::SHARE),
             $crate::schema::Field::new(
                 concat!($prefix, "uroughness"),
                 concat!("Roughness", $what, " along u. If absent, `", $prefix, "roughness`."),
-            ),
+            )
+            .within($crate::schema::SHARE),
             $crate::schema::Field::new(
                 concat!($prefix, "vroughness"),
                 concat!("Roughness", $what, " along v. If absent, `", $prefix, "roughness`."),
-            ),
+            )
+            .within($crate::schema::SHARE),
         ]
     };
 }
@@ -30,11 +33,13 @@ macro_rules! conductor_fields {
             $crate::schema::Field::new(
                 concat!($prefix, "eta"),
                 "Real part of the metal's index of refraction.",
-            ),
+            )
+            .within($crate::schema::index_of_refraction()),
             $crate::schema::Field::new(
                 concat!($prefix, "k"),
                 "Imaginary part of the metal's index of refraction.",
-            ),
+            )
+            .within($crate::schema::index_of_refraction()),
             $crate::schema::Field::new(
                 "reflectance",
                 concat!(
@@ -44,7 +49,8 @@ macro_rules! conductor_fields {
                     $prefix,
                     "k`."
                 ),
-            ),
+            )
+            .within($crate::schema::SHARE),
         ]
     };
 }
@@ -102,7 +108,7 @@ impl Settings for RoughnessDesc {
     }
 }
 
-/// The roughness of both axes; its default where they differ.
+/// The roughness of both axes, where they do not differ.
 struct Axes<'a>(&'a mut FloatParameter, &'a mut FloatParameter);
 
 impl Slot for Axes<'_> {
@@ -111,7 +117,7 @@ impl Slot for Axes<'_> {
     }
 
     fn get(&self) -> Value {
-        if self.0 == self.1 { self.0.to_value() } else { Value::Number(0.0) }
+        if self.0 == self.1 { self.0.to_value() } else { Value::Automatic }
     }
 
     fn set(&mut self, value: &Value) -> bool {

@@ -1,6 +1,6 @@
 //! The principled surface: its parameters have the names of OpenPBR Surface.
 
-use crate::schema::{Field, Settings, Visitor};
+use crate::schema::{self, Domain, Field, Settings, Visitor};
 use crate::{FloatParameter, SpectrumDesc, SpectrumParameter, UvImageDesc};
 
 /// A number of [`OpenPbrDesc`].
@@ -15,7 +15,12 @@ pub struct OpenPbrNumber {
 }
 
 const fn number(name: &'static str, default: f32, range: [f32; 2], help: &'static str) -> OpenPbrNumber {
-    OpenPbrNumber { field: Field::new(name, help), default, range }
+    let field = Field::new(name, help).within(Domain::ANY.usually(range[0], range[1]));
+    OpenPbrNumber { field, default, range }
+}
+
+const fn color(name: &'static str, default: f32, help: &'static str) -> (Field, f32) {
+    (Field::new(name, help).within(schema::SHARE), default)
 }
 
 const SHARE: [f32; 2] = [0.0, 1.0];
@@ -117,30 +122,20 @@ impl OpenPbrDesc {
 
     /// All colours but that of emission, with what they are if they are not given.
     pub const COLORS: [(Field, f32); 6] = [
-        (Field::new("base_color", "Albedo of the diffuse base; reflectance of metal along the normal."), 0.8),
-        (
-            Field::new(
-                "specular_color",
-                "Tint of the reflection by the base's boundary; of metal, near grazing angles.",
-            ),
+        color("base_color", 0.8, "Albedo of the diffuse base; reflectance of metal along the normal."),
+        color(
+            "specular_color",
             1.0,
+            "Tint of the reflection by the base's boundary; of metal, near grazing angles.",
         ),
-        (
-            Field::new(
-                "transmission_color",
-                "Factor on transmitted light at each boundary, unless `transmission_depth` is above 0; with `geometry_thin_walled`, of a crossing of the sheet.",
-            ),
+        color(
+            "transmission_color",
             1.0,
+            "Factor on transmitted light at each boundary, unless `transmission_depth` is above 0; with `geometry_thin_walled`, of a crossing of the sheet.",
         ),
-        (
-            Field::new(
-                "subsurface_color",
-                "Albedo, under uniform light, of what scatters under its surface.",
-            ),
-            0.8,
-        ),
-        (Field::new("coat_color", "Factor on light that crosses the coat twice along the normal."), 1.0),
-        (Field::new("fuzz_color", "Albedo of its fibres."), 1.0),
+        color("subsurface_color", 0.8, "Albedo, under uniform light, of what scatters under its surface."),
+        color("coat_color", 1.0, "Factor on light that crosses the coat twice along the normal."),
+        color("fuzz_color", 1.0, "Albedo of its fibres."),
     ];
 
     /// The index of a number by its name.
@@ -180,7 +175,7 @@ impl Settings for OpenPbrDesc {
         const NUMBERS: &[OpenPbrNumber] = &OpenPbrDesc::NUMBERS;
         const COLORS: &[(Field, f32)] = &OpenPbrDesc::COLORS;
         const FIELDS: &[Field; 3] = &[
-            Field::new("subsurface_radius_scale", "Factors on `subsurface_radius`."),
+            Field::new("subsurface_radius_scale", "Factors on `subsurface_radius`.").within(schema::SHARE),
             Field::new("geometry_thin_walled", "Whether the surface is a sheet without an inside."),
             Field::new(
                 "emission_luminance",

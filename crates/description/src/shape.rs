@@ -2,181 +2,159 @@
 
 use std::sync::Arc;
 
-use math::{Normal3, Point2, Point3, Vector3};
+use math::{Normal3, Point2, Point3, Vec3, Vector3};
 
-use crate::names::names;
+use crate::schema::{Domain, above, choices, from, members, settings};
 use crate::{
-    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Spanned,
+    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Span, Spanned,
     TransformDesc,
 };
 
-/// A shape with its transform, material, emission and media.
-#[derive(Clone, Debug)]
-pub struct ShapeDesc {
-    /// Which one.
-    pub kind: ShapeKind,
-    /// From the shape's space to the world (for a shape of an object: to the object's space).
-    pub world_from_object: TransformDesc,
-    /// Flip its normals.
-    pub reverse_orientation: bool,
-    /// Whether the camera sees its front alone, and all behind it through its back. Other rays meet
-    /// both sides.
-    pub single_sided: bool,
-    /// Its material; the format's default (grey, diffuse) if absent.
-    pub material: Option<Handle<MaterialDesc>>,
-    /// Its emission.
-    pub area_light: Option<Handle<AreaLightDesc>>,
-    /// Alpha: 0 cuts the surface out, 1 is opaque.
-    pub alpha: Option<FloatParameter>,
-    /// The media on its two sides; the camera's side if absent.
-    pub medium_interface: Option<MediumInterface>,
+settings! {
+    /// A shape with its transform, material, emission and media.
+    #[derive(Clone, Debug)]
+    pub struct ShapeDesc {
+        /// Which one.
+        kind: ShapeKind = ShapeKind::default() => ..;
+        /// From the shape's space to the world (for a shape of an object: to the object's space).
+        world_from_object: TransformDesc = TransformDesc::default();
+        /// Flip its normals.
+        reverse_orientation: bool = false;
+        /// Whether the camera sees the front alone, and through the back what is behind. Other rays
+        /// meet both sides.
+        single_sided: bool = false => ["singlesided"];
+        /// Its material; the format's default (grey, diffuse) if absent.
+        material: Option<Handle<MaterialDesc>> = None;
+        /// Its emission.
+        area_light: Option<Handle<AreaLightDesc>> = None;
+        /// Opacity, 0 to 1. If absent, 1. Where it is less, random points are cut out.
+        alpha: Option<FloatParameter> = None => ["alpha"];
+        /// The media on its two sides; the camera's side if absent.
+        medium_interface: Option<MediumInterface> = None;
+    }
 }
 
 impl From<ShapeKind> for ShapeDesc {
     fn from(kind: ShapeKind) -> Self {
-        Self {
-            kind,
-            world_from_object: TransformDesc::default(),
-            reverse_orientation: false,
-            single_sided: false,
-            material: None,
-            area_light: None,
-            alpha: None,
-            medium_interface: None,
-        }
+        Self { kind, ..Self::default() }
     }
 }
 
-/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are
-/// in degrees.
-#[derive(Clone, Debug)]
-pub enum ShapeKind {
-    /// About the origin.
-    Sphere {
-        /// Radius.
-        radius: f32,
-        /// Lowest z.
-        z_min: f32,
-        /// Highest z.
-        z_max: f32,
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// About the z axis.
-    Cylinder {
-        /// Radius.
-        radius: f32,
-        /// Lowest z.
-        z_min: f32,
-        /// Highest z.
-        z_max: f32,
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// From a circle around the z axis in z = 0 to a point on it.
-    Cone {
-        /// Radius of the circle.
-        radius: f32,
-        /// z of the point.
-        height: f32,
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// A bowl with its lowest point at the origin, open along z.
-    Paraboloid {
-        /// Radius at the highest z.
-        radius: f32,
-        /// Lowest z.
-        z_min: f32,
-        /// Highest z.
-        z_max: f32,
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// The surface of revolution of a line about the z axis.
-    Hyperboloid {
-        /// The ends of the line, of different z.
-        ends: [Point3; 2],
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// Across the z axis.
-    Disk {
-        /// Its z.
-        height: f32,
-        /// Radius.
-        radius: f32,
-        /// Radius of the hole.
-        inner_radius: f32,
-        /// Sweep about z.
-        phi_max: f32,
-    },
-    /// The plane z = 0.
-    Plane,
-    /// Many whole spheres.
-    Spheres(SpheresDesc),
-    /// Where a formula is zero.
-    Implicit {
-        /// The formula, of x, y and z.
-        formula: Spanned<String>,
-        /// Two corners of the box to which the surface is clipped.
-        bounds: [Point3; 2],
-    },
-    /// Constructive solid geometry. Every shape of an operand is a body, closed where it is
-    /// clipped; several shapes are their union.
-    Solid {
-        /// How they are combined.
-        operation: SolidOperation,
-        /// The bodies. A solid in an object refers only to earlier objects, so that no solid is a
-        /// part of itself.
-        operands: Vec<Spanned<Handle<ObjectDesc>>>,
-    },
-    /// Triangles.
-    Triangles(MeshDesc),
-    /// Bilinear patches.
-    Patches(PatchMeshDesc),
-    /// The contents of a mesh file: triangles and quadrilaterals (rendered as bilinear patches),
-    /// which share vertices. One of the two may be empty.
-    PlyMesh {
-        /// Its triangles (and triangulated larger polygons).
-        triangles: MeshDesc,
-        /// Its quadrilaterals.
-        patches: PatchMeshDesc,
-        /// Displacement along the normal.
-        displacement: Option<FloatParameter>,
-        /// Before displacement, the surface is tessellated until its edges are shorter than this,
-        /// in world space.
-        edge_length: f32,
-    },
-    /// A curve.
-    Curve(CurveDesc),
-    /// The limit surface of a triangle mesh.
-    LoopSubdivision {
-        /// The coarse mesh.
-        mesh: MeshDesc,
-        /// Number of subdivisions.
-        levels: i32,
-    },
-}
+/// Radii, and the angle of sweeps.
+const RADIUS: Domain = above(0.0).unit("scene units");
+const SWEEP: Domain = above(0.0).unit("degrees");
+/// Places along z, and lengths.
+const LENGTH: Domain = Domain::ANY.unit("scene units");
 
-names! {
-    /// The names of shapes. Triangles are also called `polygon`.
-    ShapeType of ShapeKind {
-        Sphere = "sphere",
-        Spheres = "spheres",
-        Cylinder = "cylinder",
-        Cone = "cone",
-        Paraboloid = "paraboloid",
-        Hyperboloid = "hyperboloid",
-        Disk = "disk",
-        Plane = "plane",
-        Triangles = "trianglemesh",
-        Patches = "bilinearmesh",
-        PlyMesh = "plymesh",
-        Curve = "curve",
-        LoopSubdivision = "loopsubdiv",
-        Implicit = "implicit",
-        Solid = "csg",
+members! {
+    /// The shapes of the format, the quadrics of its third version, and an infinite plane.
+    #[derive(Clone, Debug)]
+    pub enum ShapeKind: ShapeType = Sphere {
+        /// A sphere about the origin, cut at two z and swept about z.
+        Sphere = "sphere" {
+            /// Radius.
+            radius: f32 = 1.0 => ["radius": RADIUS];
+            /// Lowest z.
+            z_min: f32 = -1.0;
+            /// Highest z.
+            z_max: f32 = 1.0;
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// Many whole spheres, which take less memory than as many shapes.
+        Spheres(SpheresDesc) = "spheres" [extension],
+        /// A cylinder about z, open at its ends.
+        Cylinder = "cylinder" {
+            /// Radius.
+            radius: f32 = 1.0 => ["radius": RADIUS];
+            /// Lowest z.
+            z_min: f32 = -1.0 => ["zmin": LENGTH];
+            /// Highest z.
+            z_max: f32 = 1.0 => ["zmax": LENGTH];
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// A cone, as in pbrt-v3, with its base at z = 0, open there.
+        Cone = "cone" [extension] {
+            /// Radius of the base.
+            radius: f32 = 1.0 => ["radius": RADIUS];
+            /// The z of the apex.
+            height: f32 = 1.0 => ["height": RADIUS];
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// A paraboloid of revolution about z, as in pbrt-v3, with its apex at the origin.
+        Paraboloid = "paraboloid" [extension] {
+            /// Radius at z = `zmax`.
+            radius: f32 = 1.0 => ["radius": RADIUS];
+            /// Lowest z.
+            z_min: f32 = 0.0 => ["zmin": LENGTH];
+            /// Highest z.
+            z_max: f32 = 1.0 => ["zmax": LENGTH];
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// The surface that a segment sweeps about z, as in pbrt-v3.
+        Hyperboloid = "hyperboloid" [extension] {
+            /// The ends of the segment, of different z.
+            ends: [Point3; 2] = [Vec3::ZERO, Vec3::ONE] => ["p1"[0], "p2"[1]];
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// A disk across z.
+        Disk = "disk" {
+            /// Its z.
+            height: f32 = 0.0 => ["height": LENGTH];
+            /// Radius.
+            radius: f32 = 1.0 => ["radius": RADIUS];
+            /// Radius of the hole, below `radius`.
+            inner_radius: f32 = 0.0 => ["innerradius": LENGTH];
+            /// The angle by which it is swept.
+            phi_max: f32 = 360.0 => ["phimax": SWEEP];
+        },
+        /// The infinite plane z = 0.
+        Plane = "plane" [extension],
+        /// Triangles.
+        Triangles(MeshDesc) = "trianglemesh",
+        /// Bilinear patches.
+        Patches(PatchMeshDesc) = "bilinearmesh",
+        /// The triangles and quadrilaterals of a mesh file. Quadrilaterals are bilinear patches, and
+        /// share vertices with the triangles.
+        PlyMesh = "plymesh" {
+            /// Its triangles (and triangulated larger polygons).
+            triangles: MeshDesc = MeshDesc::default();
+            /// Its quadrilaterals.
+            patches: PatchMeshDesc = PatchMeshDesc::default();
+            /// Distance along the normal by which the surface is displaced, scene units.
+            displacement: Option<FloatParameter> = None => ["displacement"];
+            /// Longest edges of the tessellation of a displaced surface, in world space.
+            edge_length: f32 = 1.0 => ["displacement.edgelength": RADIUS];
+        },
+        /// A curve of a width.
+        Curve(CurveDesc) = "curve",
+        /// The limit surface of a mesh of triangles by Loop subdivision.
+        LoopSubdivision = "loopsubdiv" {
+            /// The coarse mesh.
+            mesh: MeshDesc = MeshDesc::default();
+            /// Number of subdivisions.
+            levels: i32 = 3 => ["levels": from(0.0, 12.0)];
+        },
+        /// The surface where a formula of x, y and z is zero.
+        Implicit = "implicit" [extension] {
+            /// The formula; the inside is where it is negative.
+            formula: Spanned<String> = Spanned::new(String::new(), Span::NONE);
+            /// Lowest and highest corner of the box that clips the surface.
+            bounds: [Point3; 2] = [Vec3::splat(-2.0), Vec3::splat(2.0)] => ["bounds"];
+        },
+        /// Union, intersection or difference of the bodies of objects. Every shape of an object is a
+        /// body, closed where it is clipped; several shapes are their union.
+        Solid = "csg" [extension] {
+            /// How they are combined.
+            operation: SolidOperation = SolidOperation::Union;
+            /// The bodies. A solid in an object refers only to earlier objects, so that no solid is a
+            /// part of itself.
+            operands: Vec<Spanned<Handle<ObjectDesc>>> = Vec::new();
+        },
     }
 }
 
@@ -211,44 +189,50 @@ impl ShapeKind {
     }
 }
 
-/// Whole spheres, as arrays.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SpheresDesc {
-    /// Centres.
-    pub centers: Arc<[Point3]>,
-    /// One radius for all, or one for each.
-    pub radii: Arc<[f32]>,
+settings! {
+    /// Whole spheres, as arrays.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct SpheresDesc {
+        /// Centres.
+        centers: Arc<[Point3]> = Arc::default();
+        /// One radius for all, or one for each.
+        radii: Arc<[f32]> = Arc::default();
+    }
 }
 
-/// How bodies are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SolidOperation {
-    /// Points in any of the bodies.
-    Union,
-    /// Points in all of the bodies.
-    Intersection,
-    /// Points in the first body and in no other.
-    Difference,
+choices! {
+    /// How bodies are combined.
+    pub enum SolidOperation {
+        /// Points in any of the bodies.
+        #[default]
+        Union = "union",
+        /// Points in all of the bodies.
+        Intersection = "intersection",
+        /// Points in the first body and in no other.
+        Difference = "difference",
+    }
 }
 
-/// Triangles that share vertices. Per-vertex arrays are empty or as long as `positions`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeshDesc {
-    /// Three vertices each.
-    pub indices: Arc<[[u32; 3]]>,
-    /// Vertex positions.
-    pub positions: Arc<[Point3]>,
-    /// Vertex normals.
-    pub normals: Arc<[Normal3]>,
-    /// Vertex tangents.
-    pub tangents: Arc<[Vector3]>,
-    /// Vertex texture coordinates.
-    pub uvs: Arc<[Point2]>,
-    /// A face index per triangle, from the file; or empty.
-    pub face_indices: Arc<[i32]>,
-    /// The vertices at later keys, at uniform intervals from the first to the last time of the
-    /// shape's transform (`positions` are those at the first); empty if no vertex moves.
-    pub later: Vec<MeshKey>,
+settings! {
+    /// Triangles that share vertices. Per-vertex arrays are empty or as long as `positions`.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct MeshDesc {
+        /// Three vertices each.
+        indices: Arc<[[u32; 3]]> = Arc::default();
+        /// Vertex positions.
+        positions: Arc<[Point3]> = Arc::default();
+        /// Vertex normals.
+        normals: Arc<[Normal3]> = Arc::default();
+        /// Vertex tangents.
+        tangents: Arc<[Vector3]> = Arc::default();
+        /// Vertex texture coordinates.
+        uvs: Arc<[Point2]> = Arc::default();
+        /// A face index per triangle, from the file; or empty.
+        face_indices: Arc<[i32]> = Arc::default();
+        /// The vertices at later keys, at uniform intervals from the first to the last time of the
+        /// shape's transform (`positions` are those at the first); empty if no vertex moves.
+        later: Vec<MeshKey> = Vec::new();
+    }
 }
 
 /// The vertices of a mesh at a later key.
@@ -260,62 +244,69 @@ pub struct MeshKey {
     pub normals: Arc<[Normal3]>,
 }
 
-/// Bilinear patches that share vertices. Per-vertex arrays are empty or as long as `positions`.
-#[derive(Clone, Debug, Default)]
-pub struct PatchMeshDesc {
-    /// Vertices at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1).
-    pub indices: Arc<[[u32; 4]]>,
-    /// Vertex positions.
-    pub positions: Arc<[Point3]>,
-    /// Vertex normals.
-    pub normals: Arc<[Normal3]>,
-    /// Vertex texture coordinates.
-    pub uvs: Arc<[Point2]>,
-    /// A face index per patch, from the file; or empty.
-    pub face_indices: Arc<[i32]>,
-    /// An image by whose brightness points of the patch are sampled as a light.
-    pub emission_image: Option<Handle<ImageDesc>>,
+settings! {
+    /// Bilinear patches that share vertices. Per-vertex arrays are empty or as long as `positions`.
+    #[derive(Clone, Debug)]
+    pub struct PatchMeshDesc {
+        /// Vertices at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1).
+        indices: Arc<[[u32; 4]]> = Arc::default();
+        /// Vertex positions.
+        positions: Arc<[Point3]> = Arc::default();
+        /// Vertex normals.
+        normals: Arc<[Normal3]> = Arc::default();
+        /// Vertex texture coordinates.
+        uvs: Arc<[Point2]> = Arc::default();
+        /// A face index per patch, from the file; or empty.
+        face_indices: Arc<[i32]> = Arc::default();
+        /// An image by whose brightness points of the patch are sampled as a light.
+        emission_image: Option<Handle<ImageDesc>> = None;
+    }
 }
 
-/// A curve: cubic or quadratic segments swept by a profile.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CurveDesc {
-    /// Control points.
-    pub control_points: Arc<[Point3]>,
-    /// 2 or 3.
-    pub degree: i32,
-    /// Basis of the control points.
-    pub basis: CurveBasis,
-    /// The profile.
-    pub profile: CurveProfile,
-    /// Normals at the ends of segments, for ribbons; else empty.
-    pub normals: Arc<[Normal3]>,
-    /// Width at the start and at the end.
-    pub width: [f32; 2],
-    /// Each segment is split into 2^depth parts.
-    pub split_depth: i32,
+settings! {
+    /// A curve: cubic or quadratic segments swept by a profile.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct CurveDesc {
+        /// Control points.
+        control_points: Arc<[Point3]> = Arc::default();
+        /// Degree.
+        degree: i32 = 3 => ["degree": from(2.0, 3.0)];
+        /// Basis of the control points.
+        basis: CurveBasis = CurveBasis::Bezier => ["basis"];
+        /// The profile: `flat` faces the ray, `ribbon` has the normals `N`, `cylinder` is shaded as
+        /// one.
+        profile: CurveProfile = CurveProfile::Flat => ["type"];
+        /// Normals at the ends of segments, for ribbons; else empty.
+        normals: Arc<[Normal3]> = Arc::default();
+        /// Width at the start and at the end.
+        width: [f32; 2] = [1.0; 2];
+        /// The curve is split into 2 to this power parts.
+        split_depth: i32 = 3 => ["splitdepth": from(0.0, 20.0)];
+    }
 }
 
-/// Basis of a curve's control points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CurveBasis {
-    /// Bézier.
-    #[default]
-    Bezier,
-    /// Uniform B-spline.
-    BSpline,
+choices! {
+    /// Basis of a curve's control points.
+    pub enum CurveBasis {
+        /// Bézier.
+        #[default]
+        Bezier = "bezier",
+        /// Uniform B-spline.
+        BSpline = "bspline",
+    }
 }
 
-/// The profile of a curve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CurveProfile {
-    /// A line that always faces the ray.
-    #[default]
-    Flat,
-    /// A line shaded as a round fibre.
-    Cylinder,
-    /// A line oriented by normals.
-    Ribbon,
+choices! {
+    /// The profile of a curve.
+    pub enum CurveProfile {
+        /// A line that always faces the ray.
+        #[default]
+        Flat = "flat",
+        /// A line oriented by normals.
+        Ribbon = "ribbon",
+        /// A line shaded as a round fibre.
+        Cylinder = "cylinder",
+    }
 }
 
 /// A named group of shapes, rendered by its instances.

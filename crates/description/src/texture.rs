@@ -4,6 +4,7 @@
 use image::EdgeMode;
 use math::{DMat4, Vec3};
 
+use crate::schema::{Kind, SettingType, Value, above, choices, from, members, settings, vector};
 use crate::{Handle, ImageDesc, SpectrumDesc};
 
 /// A constant value or a texture.
@@ -34,15 +35,9 @@ impl<V> Parameter<V> {
     }
 }
 
-impl From<f32> for FloatParameter {
+impl<V: From<f32>> From<f32> for Parameter<V> {
     fn from(value: f32) -> Self {
-        Self::Value(value)
-    }
-}
-
-impl From<f32> for SpectrumParameter {
-    fn from(value: f32) -> Self {
-        Self::Value(SpectrumDesc::Constant(value))
+        Self::Value(value.into())
     }
 }
 
@@ -77,138 +72,204 @@ impl<V> TextureDesc<V> {
     }
 }
 
-/// The textures of the format.
-#[derive(Clone, Debug)]
-pub enum TextureKind<V> {
-    /// A constant.
-    Constant(V),
-    /// A product.
-    Scale {
-        /// The first factor.
-        texture: Parameter<V>,
-        /// The second factor.
-        scale: FloatParameter,
-    },
-    /// `(1 − amount)·textures[0] + amount·textures[1]`.
-    Mix {
-        /// The two textures.
-        textures: [Parameter<V>; 2],
-        /// Weight of the second.
-        amount: FloatParameter,
-    },
-    /// A mix by the angle between the normal and a direction: the first texture where they agree.
-    DirectionMix {
-        /// The two textures.
-        textures: [Parameter<V>; 2],
-        /// The direction, in texture space.
-        direction: Vec3,
-    },
-    /// Bilinear between four corners.
-    Bilerp {
-        /// Values at (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
-        corners: [V; 4],
-        /// Texture coordinates of a point.
-        mapping: MappingDesc,
-    },
-    /// An image.
-    Image(ImageTextureDesc),
-    /// Squares or cubes in alternation.
-    Checkerboard {
-        /// The two values.
-        textures: [Parameter<V>; 2],
-        /// Squares in two dimensions; absent for cubes in three, in texture space.
-        mapping: Option<MappingDesc>,
-    },
-    /// Random dots.
-    Dots {
-        /// Between the dots: pbrt-v4 exchanges the two.
-        inside: Parameter<V>,
-        /// In a dot.
-        outside: Parameter<V>,
-        /// Texture coordinates of a point.
-        mapping: MappingDesc,
-    },
-    /// Fractional Brownian motion. Numbers only.
-    Fbm {
-        /// Octaves.
-        octaves: i32,
-        /// Weight of an octave against the one before.
-        roughness: f32,
-    },
-    /// Turbulence. Numbers only.
-    Wrinkled {
-        /// Octaves.
-        octaves: i32,
-        /// Weight of an octave against the one before.
-        roughness: f32,
-    },
-    /// Waves in the wind. Numbers only.
-    Windy,
-    /// 1 where a number is at least `edge`, else 0. Numbers only.
-    Step {
-        /// The number.
-        texture: FloatParameter,
-        /// The least number that gives 1.
-        edge: f32,
-    },
-    /// Marble. Spectra only.
-    Marble {
-        /// Octaves.
-        octaves: i32,
-        /// Weight of an octave against the one before.
-        roughness: f32,
-        /// Scale of the pattern.
-        scale: f32,
-        /// Displacement of the veins by noise.
-        variation: f32,
-    },
-    /// A Ptex file: described, never decoded.
-    Ptex {
-        /// Its path.
-        filename: String,
-        /// How stored values are decoded to linear ones.
-        encoding: EncodingDesc,
-        /// Factor on the values.
-        scale: f32,
-    },
+/// What the values of a texture are: numbers or spectra.
+pub trait TextureValue: SettingType + From<f32> + Clone + PartialEq {
+    /// The format's name of their type.
+    const NAME: &'static str;
+    /// The type of a setting that is such a value or a texture of them.
+    const PARAMETER: Kind;
+
+    /// Whether textures of the kind have such values.
+    fn are_of(kind: TextureType) -> bool;
+
+    /// A texture as the value of a setting.
+    fn from_texture(texture: Handle<TextureDesc<Self>>) -> Value;
+
+    /// The texture that is the value of a setting.
+    fn to_texture(value: &Value) -> Option<Handle<TextureDesc<Self>>>;
 }
 
-/// An image as a texture, already decoded.
-#[derive(Clone, Debug)]
-pub struct ImageTextureDesc {
-    /// The image.
-    pub image: Handle<ImageDesc>,
-    /// Texture coordinates of a point.
-    pub mapping: MappingDesc,
-    /// The channel of a texture of numbers. `None`: with the filters `Bilinear` and `Trilinear` the
-    /// opacity, or the mean of red, green and blue where the image is opaque; with `Point` and
-    /// `Ewa` the first channel.
-    pub channel: Option<ImageChannel>,
-    /// How texels are filtered.
-    pub filter: TextureFilter,
-    /// Largest ratio of the axes of the ellipse that `Ewa` filters over; at least 1.
-    pub max_anisotropy: f32,
-    /// Value outside of the image.
-    pub wrap: WrapMode,
-    /// Factor on the values.
-    pub scale: f32,
-    /// Subtract the scaled value from one.
-    pub invert: bool,
+impl TextureValue for f32 {
+    const NAME: &'static str = "float";
+    const PARAMETER: Kind = Kind::FloatParameter;
+
+    fn are_of(kind: TextureType) -> bool {
+        kind != TextureType::Marble
+    }
+
+    fn from_texture(texture: Handle<FloatTextureDesc>) -> Value {
+        Value::FloatTexture(texture)
+    }
+
+    fn to_texture(value: &Value) -> Option<Handle<FloatTextureDesc>> {
+        if let Value::FloatTexture(texture) = value { Some(*texture) } else { None }
+    }
+}
+
+impl TextureValue for SpectrumDesc {
+    const NAME: &'static str = "spectrum";
+    const PARAMETER: Kind = Kind::SpectrumParameter;
+
+    fn are_of(kind: TextureType) -> bool {
+        use TextureType::{Fbm, Step, Windy, Wrinkled};
+        !matches!(kind, Fbm | Wrinkled | Windy | Step)
+    }
+
+    fn from_texture(texture: Handle<SpectrumTextureDesc>) -> Value {
+        Value::SpectrumTexture(texture)
+    }
+
+    fn to_texture(value: &Value) -> Option<Handle<SpectrumTextureDesc>> {
+        if let Value::SpectrumTexture(texture) = value { Some(*texture) } else { None }
+    }
+}
+
+impl<V: TextureValue> SettingType for Parameter<V> {
+    const KIND: Kind = V::PARAMETER;
+
+    fn to_value(&self) -> Value {
+        match self {
+            Self::Value(value) => value.to_value(),
+            Self::Texture(texture) => V::from_texture(*texture),
+        }
+    }
+
+    fn from_value(value: &Value) -> Option<Self> {
+        let texture = V::to_texture(value).map(Self::Texture);
+        texture.or_else(|| V::from_value(value).map(Self::Value))
+    }
+}
+
+members! {
+    /// The textures of the format.
+    #[derive(Clone, Debug)]
+    pub enum TextureKind<V: TextureValue>: TextureType = Constant {
+        /// One value.
+        Constant = "constant" {
+            /// The value.
+            value: V = 1.0.into() => ["value"];
+        },
+        /// A product.
+        Scale = "scale" {
+            /// The first factor.
+            texture: Parameter<V> = 1.0.into() => ["tex"];
+            /// The second factor.
+            scale: FloatParameter = 1.0.into() => ["scale"];
+        },
+        /// `(1 − amount) · tex1 + amount · tex2`.
+        Mix = "mix" {
+            /// The two textures.
+            textures: [Parameter<V>; 2] = [0.0.into(), 1.0.into()] => ["tex1"[0], "tex2"[1]];
+            /// The share of `tex2`.
+            amount: FloatParameter = 0.5.into() => ["amount"];
+        },
+        /// A mix by the angle between the normal and a direction: `tex1` where they agree.
+        DirectionMix = "directionmix" {
+            /// The two textures.
+            textures: [Parameter<V>; 2] = [0.0.into(), 1.0.into()] => ["tex1"[0], "tex2"[1]];
+            /// The direction, in texture space.
+            direction: Vec3 = Vec3::Y => ["dir": vector()];
+        },
+        /// Bilinear between four corners.
+        Bilerp = "bilerp" {
+            /// Values at (u, v) = (0, 0), (0, 1), (1, 0) and (1, 1).
+            corners: [V; 4] = [0.0, 1.0, 0.0, 1.0].map(V::from) => ["v00"[0], "v01"[1], "v10"[2], "v11"[3]];
+            /// Texture coordinates of a point.
+            mapping: MappingDesc = MappingDesc::default();
+        },
+        /// An image.
+        Image(ImageTextureDesc) = "imagemap",
+        /// Squares or cubes in alternation.
+        Checkerboard = "checkerboard" {
+            /// The two textures.
+            textures: [Parameter<V>; 2] = [1.0.into(), 0.0.into()] => ["tex1"[0], "tex2"[1]];
+            /// Squares in two dimensions; absent for cubes in three, in texture space.
+            mapping: Option<MappingDesc> = Some(MappingDesc::default());
+        },
+        /// Round dots at random places. As in pbrt-v4, `inside` and `outside` are exchanged.
+        Dots = "dots" {
+            /// Between the dots.
+            inside: Parameter<V> = 1.0.into() => ["inside"];
+            /// In the dots.
+            outside: Parameter<V> = 0.0.into() => ["outside"];
+            /// Texture coordinates of a point.
+            mapping: MappingDesc = MappingDesc::default();
+        },
+        /// A Ptex file: described, never decoded.
+        Ptex = "ptex" {
+            /// Its path.
+            filename: String = String::new();
+            /// How stored values are decoded to linear ones.
+            encoding: EncodingDesc = EncodingDesc::Gamma(2.2);
+            /// Factor on the values.
+            scale: f32 = 1.0 => ["scale"];
+        },
+        /// Fractional Brownian motion. Textures of `float` only.
+        Fbm = "fbm" {
+            /// Octaves of noise.
+            octaves: i32 = 8 => ["octaves": from(0.0, 64.0)];
+            /// Amplitude of an octave relative to the one before.
+            roughness: f32 = 0.5 => ["roughness"];
+        },
+        /// Turbulence. Textures of `float` only.
+        Wrinkled = "wrinkled" {
+            /// Octaves of noise.
+            octaves: i32 = 8 => ["octaves": from(0.0, 64.0)];
+            /// Amplitude of an octave relative to the one before.
+            roughness: f32 = 0.5 => ["roughness"];
+        },
+        /// Waves in the wind. Textures of `float` only.
+        Windy = "windy",
+        /// 1 where a texture is at least `edge`, else 0. Textures of `float` only.
+        Step = "step" [extension] {
+            /// The texture.
+            texture: FloatParameter = 1.0.into() => ["tex"];
+            /// The least value that gives 1.
+            edge: f32 = 0.5 => ["edge"];
+        },
+        /// Marble. Textures of `spectrum` only.
+        Marble = "marble" {
+            /// Octaves of noise.
+            octaves: i32 = 8 => ["octaves": from(0.0, 64.0)];
+            /// Amplitude of an octave relative to the one before.
+            roughness: f32 = 0.5 => ["roughness"];
+            /// Factor on the noise's frequency.
+            scale: f32 = 1.0 => ["scale"];
+            /// Displacement of the veins by noise.
+            variation: f32 = 0.2 => ["variation"];
+        },
+    }
+}
+
+settings! {
+    /// An image as a texture, already decoded.
+    #[derive(Clone, Debug)]
+    pub struct ImageTextureDesc {
+        /// The image; the first one of the scene, if it is not set.
+        image: Handle<ImageDesc> = Handle::new(0);
+        /// Texture coordinates of a point.
+        mapping: MappingDesc = MappingDesc::default();
+        /// The channel of a texture of numbers. `None`: with the filters `Bilinear` and `Trilinear`
+        /// the opacity, or the mean of red, green and blue where the image is opaque; with `Point`
+        /// and `Ewa` the first channel.
+        channel: Option<ImageChannel> = None;
+        /// How texels are filtered; `EWA` is `ewa`.
+        filter: TextureFilter = TextureFilter::Bilinear => ["filter"];
+        /// Largest ratio of the axes of the ellipse that `ewa` filters over; at least 1.
+        max_anisotropy: f32 = 8.0 => ["maxanisotropy": above(0.0)];
+        /// Value outside of the image.
+        wrap: WrapMode = WrapMode::Repeat;
+        /// Factor on the values.
+        scale: f32 = 1.0 => ["scale"];
+        /// Whether the scaled value is subtracted from one.
+        invert: bool = false => ["invert"];
+    }
 }
 
 impl ImageTextureDesc {
     /// An image with the defaults of the format.
     pub fn new(image: Handle<ImageDesc>) -> Self {
-        Self {
-            image,
-            mapping: MappingDesc::default(),
-            channel: None,
-            filter: TextureFilter::Bilinear,
-            max_anisotropy: 8.0,
-            wrap: WrapMode::Repeat,
-            scale: 1.0,
-            invert: false,
-        }
+        Self { image, ..Self::default() }
     }
 }
 
@@ -236,31 +297,35 @@ impl UvImageDesc {
     }
 }
 
-/// A channel of an image. A grey image has its one value as red, green and blue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ImageChannel {
-    /// Red.
-    Red,
-    /// Green.
-    Green,
-    /// Blue.
-    Blue,
-    /// Opacity.
-    Alpha,
+choices! {
+    /// A channel of an image. A grey image has its one value as red, green and blue.
+    #[derive(Hash)]
+    pub enum ImageChannel {
+        /// Red.
+        #[default]
+        Red = "r",
+        /// Green.
+        Green = "g",
+        /// Blue.
+        Blue = "b",
+        /// Opacity.
+        Alpha = "a",
+    }
 }
 
-/// How texels are filtered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TextureFilter {
-    /// The nearest texel.
-    Point,
-    /// Bilinear interpolation in one level of the pyramid.
-    #[default]
-    Bilinear,
-    /// Bilinear interpolation in two levels, and linear between them.
-    Trilinear,
-    /// Elliptically weighted average: a Gaussian over the footprint.
-    Ewa,
+choices! {
+    /// How texels are filtered.
+    pub enum TextureFilter {
+        /// The nearest texel.
+        Point = "point",
+        /// Bilinear interpolation in one level of the pyramid.
+        #[default]
+        Bilinear = "bilinear",
+        /// Bilinear interpolation in two levels, and linear between them.
+        Trilinear = "trilinear",
+        /// Elliptically weighted average: a Gaussian over the footprint.
+        Ewa = "ewa" | "EWA",
+    }
 }
 
 /// The value of an image outside of its edges.
@@ -322,36 +387,32 @@ pub enum EncodingDesc {
     Gamma(f32),
 }
 
-/// The mapping from surface points to texture coordinates (s, t).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MappingDesc {
-    /// `(scale · uv + delta)` of the surface's own parameters.
-    Uv {
-        /// Factors on u and v.
-        scale: [f32; 2],
-        /// Added to them.
-        delta: [f32; 2],
-    },
-    /// `u · columns[0] + v · columns[1] + columns[2]` of the surface's own parameters.
-    Affine {
-        /// The columns of the matrix.
-        columns: [[f32; 2]; 3],
-    },
-    /// Polar angles about the origin of texture space.
-    Spherical,
-    /// Angle about, and height along, the z axis of texture space.
-    Cylindrical,
-    /// `(p · axes[0] + delta[0], p · axes[1] + delta[1])` in texture space.
-    Planar {
-        /// The two vectors.
-        axes: [Vec3; 2],
-        /// Added.
-        delta: [f32; 2],
-    },
-}
-
-impl Default for MappingDesc {
-    fn default() -> Self {
-        Self::Uv { scale: [1.0, 1.0], delta: [0.0, 0.0] }
+settings! {
+    /// The mapping from surface points to texture coordinates (s, t).
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub enum MappingDesc = Uv {
+        /// `scale · uv + delta` of the surface's own parameters.
+        Uv = "uv" {
+            /// Factors on u and v.
+            scale: [f32; 2] = [1.0; 2] => ["uscale"[0], "vscale"[1]];
+            /// Added to u and v.
+            delta: [f32; 2] = [0.0; 2] => ["udelta"[0], "vdelta"[1]];
+        },
+        /// Polar angles about the origin of texture space.
+        Spherical = "spherical",
+        /// Angle about, and height along, the z axis of texture space.
+        Cylindrical = "cylindrical",
+        /// `(p · axes[0] + delta[0], p · axes[1] + delta[1])` in texture space.
+        Planar = "planar" {
+            /// The vectors along which the coordinates grow.
+            axes: [Vec3; 2] = [Vec3::X, Vec3::Y] => ["v1"[0]: vector(), "v2"[1]: vector()];
+            /// Added to the coordinates.
+            delta: [f32; 2] = [0.0; 2] => ["udelta"[0], "vdelta"[1]];
+        },
+        /// `u · columns[0] + v · columns[1] + columns[2]` of the surface's own parameters.
+        Affine = "affine" {
+            /// u times the first pair, v times the second, plus the third.
+            columns: [[f32; 2]; 3] = UvImageDesc::IDENTITY => ["columns"];
+        },
     }
 }

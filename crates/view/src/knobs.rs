@@ -1,200 +1,145 @@
-//! What can be changed of a scene while it is shown: lights and materials, as far as they are
-//! constants.
+//! What can be changed of a scene while it is shown: numbers and colours of lights and materials, as
+//! far as they are constants. The declarations of their parameters say which there are.
 
-use alhazen::description::{
-    ColorSpaceDesc, ConductorReflectance, FloatParameter, InfiniteRadiance, LightKind, MaterialKind,
-    OpenPbrDesc, Parameter, RoughnessDesc, SceneDesc, Span, SpectrumDesc, SpectrumParameter,
-};
+use alhazen::description::schema::{self, Field, Settings, Slot};
+use alhazen::description::{ColorSpaceDesc, SceneDesc, Span, SpectrumDesc};
 use alhazen::scene::texture::{SpectrumType, compile_spectrum};
 use alhazen::spectrum::{DenselySampled, RgbColorSpace, Spectrum};
 
-/// A thing with what can be changed of it.
+/// A light or a material.
 pub struct Thing<'a> {
     /// Its name, or its kind and number.
     pub name: String,
-    /// What can be changed.
-    pub knobs: Vec<Knob<'a>>,
+    settings: &'a mut dyn Settings,
+    is_light: bool,
+    /// A parameter that has no effect.
+    hidden: &'static str,
 }
 
 /// A value that can be changed.
 pub struct Knob<'a> {
-    /// What it is.
-    pub label: &'static str,
+    /// Its declaration.
+    pub field: &'static Field,
     /// The value.
-    pub value: Value<'a>,
+    pub value: Value,
+    slot: &'a mut dyn Slot,
 }
 
 /// The value of a knob.
-pub enum Value<'a> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
     /// A colour, whose parts are from 0 to 1.
-    Color(ColorKnob<'a>),
-    /// The colour of a light, which has no upper limit.
-    Light(ColorKnob<'a>),
-    /// A factor of 0 or more.
-    Scale(&'a mut f32),
-    /// A number from 0 to 1.
-    Share(&'a mut f32),
-}
-
-/// A spectrum as a colour.
-pub struct ColorKnob<'a> {
-    spectrum: &'a mut SpectrumDesc,
-    is_light: bool,
-}
-
-impl ColorKnob<'_> {
-    /// Linear red, green and blue; of a measured spectrum those of the colour that it looks like,
-    /// in sRGB.
-    pub fn rgb(&self) -> [f32; 3] {
-        match *self.spectrum {
-            SpectrumDesc::Constant(value) if !self.is_light => [value; 3],
-            SpectrumDesc::Rgb { rgb, .. } => rgb,
-            SpectrumDesc::Illuminant(_) => [1.0; 3],
-            _ => self.looks_like(),
-        }
-    }
-
-    /// Replaces the spectrum by a colour, in the colour space that it has.
-    pub fn set(&mut self, rgb: [f32; 3]) {
-        let space = match *self.spectrum {
-            SpectrumDesc::Rgb { space, .. } | SpectrumDesc::Illuminant(space) => space,
-            _ => ColorSpaceDesc::Srgb,
-        };
-        *self.spectrum = SpectrumDesc::Rgb { rgb, space };
-    }
-
-    /// The colour of a light of the luminance 1, or of a surface in white light.
-    fn looks_like(&self) -> [f32; 3] {
-        let (space, kind) = (RgbColorSpace::srgb(), SpectrumType::Unbounded);
-        let spectrum = compile_spectrum(self.spectrum, kind, Span::NONE, &mut Vec::new());
-        let white = space.illuminant();
-        let (xyz, luminance) = if self.is_light {
-            let xyz = spectrum.to_xyz();
-            (xyz, xyz.y)
-        } else {
-            let reflected = DenselySampled::from_fn(|lambda| spectrum.at(lambda) * white.at(lambda));
-            (Spectrum::from(reflected).to_xyz(), white.to_xyz().y)
-        };
-        let rgb = space.to_rgb(xyz).to_array();
-        rgb.map(|part| (part / luminance.max(f32::MIN_POSITIVE)).max(0.0))
-    }
+    Color([f32; 3]),
+    /// A colour that has no upper limit.
+    Light([f32; 3]),
+    /// A number.
+    Number(f32),
 }
 
 /// The lights, first those that are not surfaces.
 pub fn lights(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
     let lights = desc.lights.iter_mut().map(|(handle, light)| {
-        let light = &mut light.value;
         let name = format!("{} light {}", light.kind.name(), handle.index() + 1);
-        let color = match &mut light.kind {
-            LightKind::Point { intensity, .. }
-            | LightKind::Spot { intensity, .. }
-            | LightKind::Goniometric { intensity, .. } => Some(intensity),
-            LightKind::Distant { radiance, .. }
-            | LightKind::Infinite { radiance: InfiniteRadiance::Constant(radiance), .. } => Some(radiance),
-            LightKind::Projection { .. } | LightKind::Infinite { .. } => None,
-        };
-        Thing { name, knobs: light_knobs(color, &mut light.scale) }
+        Thing { name, settings: &mut light.value, is_light: true, hidden: "" }
     });
     let surfaces = desc.area_lights.iter_mut().map(|(handle, light)| {
-        let light = &mut light.value;
-        let color = light.image.is_none().then_some(&mut light.radiance);
         let name = format!("area light {}", handle.index() + 1);
-        Thing { name, knobs: light_knobs(color, &mut light.scale) }
+        let hidden = if light.image.is_some() { "L" } else { "" };
+        Thing { name, settings: &mut light.value, is_light: true, hidden }
     });
     lights.chain(surfaces).collect()
-}
-
-fn light_knobs<'a>(color: Option<&'a mut SpectrumDesc>, scale: &'a mut f32) -> Vec<Knob<'a>> {
-    let color = color.map(|spectrum| {
-        let value = Value::Light(ColorKnob { spectrum, is_light: true });
-        Knob { label: "colour", value }
-    });
-    color.into_iter().chain([Knob { label: "scale", value: Value::Scale(scale) }]).collect()
 }
 
 /// The materials that have something to change.
 pub fn materials(desc: &mut SceneDesc) -> Vec<Thing<'_>> {
     let things = desc.materials.iter_mut().map(|(handle, material)| {
-        let material = &mut material.value;
         let name = match material.name.as_str() {
             // As the paths of a pixel call it.
             "" => format!("material-{} ({})", handle.index(), material.kind.name()),
             name => name.to_owned(),
         };
-        Thing { name, knobs: material_knobs(&mut material.kind) }
+        Thing { name, settings: &mut material.value.kind, is_light: false, hidden: "" }
     });
-    things.filter(|thing| !thing.knobs.is_empty()).collect()
+    let has_knobs = |thing: &mut Thing| {
+        let mut count = 0;
+        thing.visit(|_| count += 1);
+        count > 0
+    };
+    things.filter_map(|mut thing| has_knobs(&mut thing).then_some(thing)).collect()
 }
 
-fn material_knobs(kind: &mut MaterialKind) -> Vec<Knob<'_>> {
-    let mut knobs = Vec::new();
-    match kind {
-        MaterialKind::Diffuse { reflectance } => color(&mut knobs, "reflectance", reflectance),
-        MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
-            color(&mut knobs, "reflectance", reflectance);
-            color(&mut knobs, "transmittance", transmittance);
-        }
-        MaterialKind::Conductor(metal) => {
-            metal_color(&mut knobs, &mut metal.reflectance);
-            roughness(&mut knobs, &mut metal.roughness);
-        }
-        MaterialKind::Dielectric { roughness: rough, .. }
-        | MaterialKind::Subsurface { roughness: rough, .. } => {
-            roughness(&mut knobs, rough);
-        }
-        MaterialKind::CoatedDiffuse(coated) => {
-            color(&mut knobs, "reflectance", &mut coated.reflectance);
-            roughness(&mut knobs, &mut coated.roughness);
-        }
-        MaterialKind::CoatedConductor(coated) => {
-            metal_color(&mut knobs, &mut coated.conductor.reflectance);
-            roughness(&mut knobs, &mut coated.conductor.roughness);
-        }
-        MaterialKind::OpenPbr(principled) => {
-            let OpenPbrDesc { numbers, colors, .. } = &mut **principled;
-            for ((field, _), value) in OpenPbrDesc::COLORS.iter().zip(colors) {
-                if field.name == "base_color" {
-                    color(&mut knobs, field.name, value);
-                }
+impl Thing<'_> {
+    /// Calls a function for each value that can be changed.
+    pub fn visit(&mut self, mut visitor: impl FnMut(Knob)) {
+        self.settings.visit(&mut |field, slot| {
+            if field.name != self.hidden
+                && let Some(value) = value(field, &slot.get(), self.is_light)
+            {
+                visitor(Knob { field, value, slot });
             }
-            for (number, value) in OpenPbrDesc::NUMBERS.iter().zip(numbers) {
-                if matches!(
-                    number.field.name,
-                    "base_metalness" | "specular_roughness" | "transmission_weight"
-                ) {
-                    share(&mut knobs, number.field.name, value);
-                }
+        });
+    }
+}
+
+impl Knob<'_> {
+    /// Replaces the value, if the new one is allowed. A colour is in the colour space that the
+    /// spectrum had.
+    pub fn set(&mut self, value: Value) {
+        let value = match (value, self.slot.get()) {
+            (Value::Number(number), schema::Value::Spectrum(_)) => schema::Value::Spectrum(number.into()),
+            (Value::Number(number), _) => schema::Value::Number(number),
+            (Value::Color(rgb) | Value::Light(rgb), before) => {
+                use SpectrumDesc::{Illuminant, Rgb};
+                let space = match before {
+                    schema::Value::Spectrum(Rgb { space, .. } | Illuminant(space)) => space,
+                    _ => ColorSpaceDesc::Srgb,
+                };
+                schema::Value::Spectrum(Rgb { rgb, space })
             }
+        };
+        // Of a value that is not allowed nothing follows: the control shows the one before.
+        self.field.assign(self.slot, &value).ok();
+    }
+}
+
+/// The value of a parameter, if it can be changed.
+fn value(field: &Field, value: &schema::Value, is_light: bool) -> Option<Value> {
+    let is_share = field.domain.bounds()[1] <= 1.0;
+    match value {
+        schema::Value::Number(number) => Some(Value::Number(*number)),
+        schema::Value::Spectrum(SpectrumDesc::Constant(number)) if field.domain.is_index => {
+            Some(Value::Number(*number))
         }
-        MaterialKind::Mix { amount, .. } => share(&mut knobs, "amount", amount),
-        MaterialKind::ThinDielectric { .. }
-        | MaterialKind::Hair { .. }
-        | MaterialKind::Measured { .. }
-        | MaterialKind::Interface => (),
-    }
-    knobs
-}
-
-fn color<'a>(knobs: &mut Vec<Knob<'a>>, label: &'static str, parameter: &'a mut SpectrumParameter) {
-    if let Parameter::Value(spectrum) = parameter {
-        let value = Value::Color(ColorKnob { spectrum, is_light: false });
-        knobs.push(Knob { label, value });
+        schema::Value::Spectrum(_) if field.domain.is_index => None,
+        schema::Value::Spectrum(spectrum) if is_share => Some(Value::Color(rgb(spectrum, is_light))),
+        schema::Value::Spectrum(spectrum) => Some(Value::Light(rgb(spectrum, is_light))),
+        _ => None,
     }
 }
 
-fn metal_color<'a>(knobs: &mut Vec<Knob<'a>>, reflectance: &'a mut ConductorReflectance) {
-    if let ConductorReflectance::Reflectance(parameter) = reflectance {
-        color(knobs, "reflectance", parameter);
+/// Linear red, green and blue; of a measured spectrum those of the colour that it looks like, in
+/// sRGB.
+fn rgb(spectrum: &SpectrumDesc, is_light: bool) -> [f32; 3] {
+    match *spectrum {
+        SpectrumDesc::Constant(value) if !is_light => [value; 3],
+        SpectrumDesc::Rgb { rgb, .. } => rgb,
+        SpectrumDesc::Illuminant(_) => [1.0; 3],
+        _ => looks_like(spectrum, is_light),
     }
 }
 
-fn roughness<'a>(knobs: &mut Vec<Knob<'a>>, roughness: &'a mut RoughnessDesc) {
-    share(knobs, "roughness u", &mut roughness.u);
-    share(knobs, "roughness v", &mut roughness.v);
-}
-
-fn share<'a>(knobs: &mut Vec<Knob<'a>>, label: &'static str, parameter: &'a mut FloatParameter) {
-    if let Parameter::Value(value) = parameter {
-        knobs.push(Knob { label, value: Value::Share(value) });
-    }
+/// The colour of a light of the luminance 1, or of a surface in white light.
+fn looks_like(spectrum: &SpectrumDesc, is_light: bool) -> [f32; 3] {
+    let (space, kind) = (RgbColorSpace::srgb(), SpectrumType::Unbounded);
+    let spectrum = compile_spectrum(spectrum, kind, Span::NONE, &mut Vec::new());
+    let white = space.illuminant();
+    let (xyz, luminance) = if is_light {
+        let xyz = spectrum.to_xyz();
+        (xyz, xyz.y)
+    } else {
+        let reflected = DenselySampled::from_fn(|lambda| spectrum.at(lambda) * white.at(lambda));
+        (Spectrum::from(reflected).to_xyz(), white.to_xyz().y)
+    };
+    let rgb = space.to_rgb(xyz).to_array();
+    rgb.map(|part| (part / luminance.max(f32::MIN_POSITIVE)).max(0.0))
 }

@@ -121,6 +121,7 @@ macro_rules! settings {
                             names: &[$($spelling),+],
                             help: concat!($($about),+).trim_ascii(),
                             is_drawn: $crate::schema::settings!(@drawn $($not)?),
+                            is_extension: false,
                         }
                     },)*
                 })
@@ -191,10 +192,10 @@ macro_rules! settings {
     (@members $members:ident $field:ident $type:ty, $names:tt) => {};
 }
 
-/// Declares an `enum` as the type of a setting, with a name for each value.
+/// Declares an `enum` as the type of a setting, with a name for each value, the first of several.
 macro_rules! choices {
     ($(#[$meta:meta])* pub enum $name:ident {
-        $($(#[$attribute:meta])* $variant:ident = $spelling:literal,)+
+        $($(#[$attribute:meta])* $variant:ident = $spelling:literal $(| $alias:literal)*,)+
     }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -202,16 +203,34 @@ macro_rules! choices {
             $($(#[$attribute])* $variant,)+
         }
 
+        impl $name {
+            /// The names of all values.
+            pub const NAMES: &'static [&'static str] = &[$($spelling $(, $alias)*),+];
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $spelling,)+ }
+            }
+
+            /// The value of a name.
+            pub fn named(name: &str) -> Option<Self> {
+                match name {
+                    $($spelling $(| $alias)* => Some(Self::$variant),)+
+                    _ => None,
+                }
+            }
+        }
+
         impl $crate::schema::SettingType for $name {
-            const KIND: $crate::schema::Kind = $crate::schema::Kind::Choice(&[$($spelling),+]);
+            const KIND: $crate::schema::Kind = $crate::schema::Kind::Choice(Self::NAMES);
 
             fn to_value(&self) -> $crate::schema::Value {
-                $crate::schema::Value::Text(match self { $(Self::$variant => $spelling,)+ }.to_owned())
+                $crate::schema::Value::Text(self.name().to_owned())
             }
 
             fn from_value(value: &$crate::schema::Value) -> Option<Self> {
                 match value {
-                    $($crate::schema::Value::Text(text) if text == $spelling => Some(Self::$variant),)+
+                    $crate::schema::Value::Text(text) => Self::named(text),
                     _ => None,
                 }
             }

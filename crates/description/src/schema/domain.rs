@@ -10,15 +10,25 @@ pub struct Domain {
     most: f64,
     has_least: bool,
     has_most: bool,
+    /// Bounds that numbers usually have, though others are allowed.
+    usual: Option<[f32; 2]>,
     /// The unit of numbers; empty where they have none.
     pub unit: &'static str,
     /// Texts that are allowed; empty if all are.
     pub names: &'static [&'static str],
     /// The ending of texts.
     extension: &'static str,
-    /// Whether a number may be given for a spectrum, as for indices of refraction.
-    pub takes_numbers: bool,
+    /// Whether spectra are indices of refraction, for which a number may be given.
+    pub is_index: bool,
+    /// Whether points are vectors.
+    pub is_vector: bool,
 }
+
+/// Numbers and colours that are shares, usually from 0 to 1.
+pub(crate) const SHARE: Domain = Domain::ANY.usually(0.0, 1.0);
+
+/// Mean cosines, usually from -1 to 1.
+pub(crate) const MEAN_COSINE: Domain = Domain::ANY.usually(-1.0, 1.0);
 
 /// Numbers from `least` on.
 pub(crate) const fn at_least(least: f64) -> Domain {
@@ -47,7 +57,12 @@ pub(crate) const fn one_of(names: &'static [&'static str]) -> Domain {
 
 /// Spectra and numbers.
 pub(crate) const fn index_of_refraction() -> Domain {
-    Domain { takes_numbers: true, ..Domain::ANY }
+    Domain { is_index: true, ..Domain::ANY }
+}
+
+/// Vectors.
+pub(crate) const fn vector() -> Domain {
+    Domain { is_vector: true, ..Domain::ANY }
 }
 
 /// Names of files with an extension, including the dot.
@@ -62,20 +77,32 @@ impl Domain {
         most: f64::INFINITY,
         has_least: false,
         has_most: false,
+        usual: None,
         unit: "",
         names: &[],
         extension: "",
-        takes_numbers: false,
+        is_index: false,
+        is_vector: false,
     };
 
     /// Whether it excludes no value.
     pub fn is_any(&self) -> bool {
-        Self { unit: "", takes_numbers: false, ..*self } == Self::ANY
+        Self { usual: None, unit: "", is_index: false, is_vector: false, ..*self } == Self::ANY
     }
 
     /// Excludes numbers above `most`, which may be infinity.
     pub(crate) const fn at_most(self, most: f64) -> Self {
         Self { most, has_most: true, ..self }
+    }
+
+    /// Sets the bounds that numbers usually have.
+    pub(crate) const fn usually(self, least: f32, most: f32) -> Self {
+        Self { usual: Some([least, most]), ..self }
+    }
+
+    /// The bounds that a control of a number has: the usual ones, or those of all values.
+    pub fn bounds(&self) -> [f32; 2] {
+        self.usual.unwrap_or([self.least as f32, self.most as f32])
     }
 
     /// Sets the unit of the numbers.

@@ -15,8 +15,10 @@
 ///         },
 ///         /// The parameters of a struct.
 ///         Second(SecondDesc) = "second",
+///         /// A member that the format of pbrt-v4 has not.
+///         Third = "third" [extension],
 ///         /// Fields that an importer finds by itself.
-///         Third = "third" by hand {
+///         Fourth = "fourth" by hand {
 ///             /// What it is.
 ///             other: Type;
 ///         },
@@ -24,18 +26,19 @@
 /// }
 /// ```
 ///
-/// `SetType` is the set without fields: importers match over it.
+/// `SetType` is the set without fields: importers match over it. `pub enum Set<V: Bound>: SetType`
+/// has fields of a type `V`.
 macro_rules! members {
-    ($(#[$meta:meta])* pub enum $set:ident: $type:ident = $first:ident {
+    ($(#[$meta:meta])* pub enum $set:ident $(<$value:ident: $bound:ident>)?: $type:ident = $first:ident {
         $(
             $(#[doc = $about:literal])+
-            $variant:ident $(($settings:ty))? = $name:literal
+            $variant:ident $(($settings:ty))? = $name:literal $([$mark:ident])?
             $({ $($(#[doc = $help:literal])+ $field:ident: $kind:ty = $default:expr $(=> $keys:tt)?;)* })?
             $(by hand { $($(#[doc = $meaning:literal])+ $found:ident: $of:ty;)* })?
         ),* $(,)?
     }) => {
         $(#[$meta])*
-        pub enum $set {
+        pub enum $set $(<$value>)? {
             $(
                 $(#[doc = $about])+
                 $variant
@@ -60,6 +63,7 @@ macro_rules! members {
                 names: &[$name],
                 help: concat!($($about),+).trim_ascii(),
                 is_drawn: true,
+                is_extension: $crate::schema::members!(@mark $($mark)?),
             }),*];
 
             /// The member of a name.
@@ -71,7 +75,7 @@ macro_rules! members {
             }
         }
 
-        impl $set {
+        impl $(<$value: $bound>)? $set $(<$value>)? {
             /// The member with the defaults of its parameters; none if it has fields that are not
             /// parameters.
             pub fn new(kind: $type) -> Option<Self> {
@@ -95,13 +99,13 @@ macro_rules! members {
             }
         }
 
-        impl Default for $set {
+        impl $(<$value: $bound>)? Default for $set $(<$value>)? {
             fn default() -> Self {
                 Self::new($type::$first).expect("the default member has defaults")
             }
         }
 
-        impl $crate::schema::Settings for $set {
+        impl $(<$value: $bound>)? $crate::schema::Settings for $set $(<$value>)? {
             #[allow(unused_variables)]
             fn visit(&mut self, visitor: $crate::schema::Visitor) {
                 match self {
@@ -124,8 +128,15 @@ macro_rules! members {
             fn members() -> Vec<Self> {
                 [$(Self::new($type::$variant)),*].into_iter().flatten().collect()
             }
+
+            fn called(name: &str) -> Option<Self> {
+                $type::named(name).and_then(Self::new)
+            }
         }
     };
+
+    (@mark) => { false };
+    (@mark extension) => { true };
 
     (@new $variant:ident ($settings:ty)) => { Some(Self::$variant(<$settings>::default())) };
     (@new $variant:ident { $($fields:tt)* }) => { Some(Self::$variant { $($fields)* }) };

@@ -9,7 +9,9 @@ mod value;
 
 pub(crate) use declare::{choices, settings};
 pub use domain::Domain;
-pub(crate) use domain::{above, at_least, between, from, index_of_refraction, one_of, with_extension};
+pub(crate) use domain::{
+    MEAN_COSINE, SHARE, above, at_least, between, from, index_of_refraction, one_of, vector, with_extension,
+};
 pub(crate) use members::members;
 pub use value::{Kind, SettingType, Slot, Value};
 
@@ -32,6 +34,11 @@ impl Field {
     /// A parameter with any value.
     pub(crate) const fn new(name: &'static str, help: &'static str) -> Self {
         Self { name, aliases: &[], help, domain: Domain::ANY }
+    }
+
+    /// Sets the allowed values.
+    pub(crate) const fn within(self, domain: Domain) -> Self {
+        Self { domain, ..self }
     }
 
     /// Whether the name or an alias equals `name`.
@@ -68,7 +75,7 @@ pub struct Setting {
 }
 
 /// A member of a closed set, such as one of the integrators.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Member {
     /// Its names; the first is displayed.
     pub names: &'static [&'static str],
@@ -76,6 +83,8 @@ pub struct Member {
     pub help: &'static str,
     /// Whether it is supported. Others can be described, but are replaced when rendering.
     pub is_drawn: bool,
+    /// Whether the format of pbrt-v4 does not have it.
+    pub is_extension: bool,
 }
 
 /// The callback of [`Settings::visit`].

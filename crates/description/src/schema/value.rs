@@ -4,9 +4,7 @@ use std::fmt;
 
 use math::Point3;
 
-use crate::{
-    FloatParameter, FloatTextureDesc, Handle, Parameter, SpectrumDesc, SpectrumParameter, SpectrumTextureDesc,
-};
+use crate::{FloatTextureDesc, Handle, SpectrumDesc, SpectrumTextureDesc};
 
 /// A value of a setting.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,43 +167,6 @@ setting_types! {
     Point3: Point = Point(|&value: &Point3| value, |&value: &Point3| Some(value)),
     SpectrumDesc: Spectrum = Spectrum(SpectrumDesc::clone, |value: &SpectrumDesc| Some(value.clone())),
     String: Text = Text(String::clone, |value: &String| Some(value.clone())),
-}
-
-impl SettingType for FloatParameter {
-    const KIND: Kind = Kind::FloatParameter;
-
-    fn to_value(&self) -> Value {
-        match self {
-            Parameter::Value(value) => Value::Number(*value),
-            Parameter::Texture(texture) => Value::FloatTexture(*texture),
-        }
-    }
-
-    fn from_value(value: &Value) -> Option<Self> {
-        match value {
-            Value::Number(value) => Some(Parameter::Value(*value)),
-            Value::FloatTexture(texture) => Some(Parameter::Texture(*texture)),
-            _ => None,
-        }
-    }
-}
-
-impl SettingType for SpectrumParameter {
-    const KIND: Kind = Kind::SpectrumParameter;
-
-    fn to_value(&self) -> Value {
-        match self {
-            Parameter::Value(value) => value.to_value(),
-            Parameter::Texture(texture) => Value::SpectrumTexture(*texture),
-        }
-    }
-
-    fn from_value(value: &Value) -> Option<Self> {
-        match value {
-            Value::SpectrumTexture(texture) => Some(Parameter::Texture(*texture)),
-            value => SpectrumDesc::from_value(value).map(Parameter::Value),
-        }
-    }
 }
 
 impl<T: SettingType> SettingType for Option<T> {

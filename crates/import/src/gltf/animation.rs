@@ -74,7 +74,7 @@ impl Animation {
                 }
             };
             let Some(node) = node else { continue };
-            parsed.push(Channel::parse(document, buffers, sampler, (node, path))?);
+            parsed.push(Channel::parse(document, buffers, sampler, node, path)?);
         }
         Ok(Self { channels: parsed })
     }
@@ -104,7 +104,8 @@ impl Channel {
         document: &Document,
         buffers: &Buffers,
         sampler: &Place,
-        (node, target): (usize, Target),
+        node: usize,
+        target: Target,
     ) -> Result<Self> {
         let accessor = |key: &str| {
             Accessor::of(document, sampler, key)?

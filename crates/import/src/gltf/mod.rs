@@ -64,12 +64,15 @@ pub(crate) fn is_named_by(path: &Path, assets: &dyn AssetSource) -> bool {
 
 /// Reads a file as a scene.
 pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
-    selection::read(path, assets, |desc, file, selection, log| fill(desc, file, selection, assets, log))
+    selection::read(path, assets, |desc, (path, bytes), selection, log| {
+        fill(desc, path, bytes, selection, assets, log)
+    })
 }
 
 fn fill(
     desc: &mut SceneDesc,
-    (path, bytes): (&Path, Vec<u8>),
+    path: &Path,
+    bytes: Vec<u8>,
     selection: &Selection,
     assets: &dyn AssetSource,
     log: &mut Log,
@@ -118,10 +121,10 @@ fn fill(
     }
     for (index, image) in document.items("images").enumerate() {
         if !wanted.iter().any(|&(used, _)| used == index) {
-            log.keep(pictures::check(&image, &buffers, (path, assets)));
+            log.keep(pictures::check(&image, &buffers, path, assets));
         }
     }
-    let mut pictures = Pictures::decode(&document, &buffers, &wanted, (path, assets), log);
+    let mut pictures = Pictures::decode(&document, &buffers, &wanted, path, assets, log);
     let mut assembly = Assembly::new(&drawn, desc, &mut pictures, log);
     assembly.add_all();
     let bounds = assembly.bounds;

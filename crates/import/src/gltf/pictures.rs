@@ -63,7 +63,8 @@ impl Pictures {
         document: &Document,
         buffers: &Buffers,
         wanted: &[Source],
-        (path, assets): (&Path, &dyn AssetSource),
+        path: &Path,
+        assets: &dyn AssetSource,
         log: &mut Log,
     ) -> Self {
         let mut sources = wanted.to_vec();
@@ -144,11 +145,7 @@ fn name(place: &Place, index: usize) -> String {
 
 /// What is wrong with an image that no material uses. Its pixels are not decoded, and it may be of
 /// a format that is not read.
-pub(super) fn check(
-    place: &Place,
-    buffers: &Buffers,
-    (path, assets): (&Path, &dyn AssetSource),
-) -> Result<()> {
+pub(super) fn check(place: &Place, buffers: &Buffers, path: &Path, assets: &dyn AssetSource) -> Result<()> {
     let bytes = bytes(place, buffers, path, assets)?;
     match image::Format::from_content(&bytes) {
         Some(_) => image::info(&bytes, "").map(drop).map_err(|error| unreadable(&place.pointer, &error)),

@@ -328,7 +328,7 @@ impl<'s, 'a> Assembly<'s, 'a> {
                 );
                 continue;
             };
-            shapes.extend(self.shapes(&place, (index, material), vertices));
+            shapes.extend(self.shapes(&place, index, material, vertices));
         }
         Ok(shapes)
     }
@@ -337,7 +337,8 @@ impl<'s, 'a> Assembly<'s, 'a> {
     fn shapes(
         &mut self,
         place: &Place,
-        (index, material): (usize, &Material),
+        index: usize,
+        material: &Material,
         mut vertices: Vertices,
     ) -> Vec<ShapeDesc> {
         if material.alpha_mode == AlphaMode::Opaque {

@@ -152,7 +152,8 @@ impl Part<'_, '_, '_> {
         texture: &TextureRef,
         encoding: Encoding,
         edit: Edit,
-        (channel, factor): (ImageChannel, f32),
+        channel: ImageChannel,
+        factor: f32,
     ) -> Option<ImageTextureDesc> {
         let image = self.builder.pictures.image(texture, encoding)?;
         if channel == ImageChannel::Alpha && image.alpha_index().is_none() {
@@ -174,7 +175,7 @@ impl Part<'_, '_, '_> {
     fn number(&mut self, number: &Number, channel: ImageChannel) -> FloatParameter {
         let image = number.texture.as_ref().filter(|_| number.factor > 0.0);
         let image = image
-            .and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, (channel, number.factor)));
+            .and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, channel, number.factor));
         self.float(image, number.factor)
     }
 
@@ -213,7 +214,7 @@ impl Part<'_, '_, '_> {
                 Some(ImageTextureDesc { channel: Some(ImageChannel::Red), ..ImageTextureDesc::new(image) })
             }
             None => material.base.texture.as_ref().and_then(|texture| {
-                self.channel(texture, Encoding::Color, Edit::None, (ImageChannel::Alpha, material.opacity))
+                self.channel(texture, Encoding::Color, Edit::None, ImageChannel::Alpha, material.opacity)
             }),
         };
         let opacity = self.float(image, material.opacity);
@@ -366,7 +367,7 @@ impl Part<'_, '_, '_> {
                 (None, None) => (None, Edit::None),
             };
             let image = texture
-                .and_then(|texture| self.channel(texture, Encoding::Data, edit, (ImageChannel::Red, 1.0)));
+                .and_then(|texture| self.channel(texture, Encoding::Data, edit, ImageChannel::Red, 1.0));
             let number = self.float(image, constant[result]);
             surface.number(name, number);
         }
@@ -426,7 +427,7 @@ impl Part<'_, '_, '_> {
         };
         let tint = described.specular;
         let weight =
-            self.channel(texture, Encoding::Color, Edit::Largest(tint), (ImageChannel::Red, 1.0 / UNIT));
+            self.channel(texture, Encoding::Color, Edit::Largest(tint), ImageChannel::Red, 1.0 / UNIT);
         let weight = self.float(weight, most / UNIT);
         surface.number("specular_weight", weight);
         let color = match self.image(texture, Encoding::Color, Edit::Hue(tint)) {
@@ -434,8 +435,8 @@ impl Part<'_, '_, '_> {
             None => SpectrumDesc::rgb(r, g, b).into(),
         };
         surface.color("specular_color", color);
-        let glossiness = (ImageChannel::Alpha, described.glossiness);
-        let image = self.channel(texture, Encoding::Color, Edit::None, glossiness);
+        let (channel, glossiness) = (ImageChannel::Alpha, described.glossiness);
+        let image = self.channel(texture, Encoding::Color, Edit::None, channel, glossiness);
         let image = image.map(|image| ImageTextureDesc { invert: true, ..image });
         let roughness = self.float(image, rough);
         surface.number("specular_roughness", roughness);
@@ -463,8 +464,8 @@ impl Part<'_, '_, '_> {
         }
         let (weight, color) = match &sheen.texture {
             Some(texture) => {
-                let weight = (ImageChannel::Red, 1.0);
-                let weight = self.channel(texture, Encoding::Color, Edit::Largest(sheen.factor), weight);
+                let largest = Edit::Largest(sheen.factor);
+                let weight = self.channel(texture, Encoding::Color, largest, ImageChannel::Red, 1.0);
                 (weight, self.image(texture, Encoding::Color, Edit::Hue(sheen.factor)))
             }
             None => (None, None),
@@ -488,9 +489,9 @@ impl Part<'_, '_, '_> {
         surface.number("thin_film_ior", ior);
         // Nanometres in the file, micrometres here.
         let [thinnest, thickest] = film.thickness.map(|thickness| thickness / 1000.0);
-        let amount = (ImageChannel::Green, 1.0);
         let image = film.thickness_texture.as_ref();
-        let image = image.and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, amount));
+        let image = image
+            .and_then(|texture| self.channel(texture, Encoding::Data, Edit::None, ImageChannel::Green, 1.0));
         let thickness = match image {
             Some(image) => {
                 let amount = self.float(Some(image), 1.0);

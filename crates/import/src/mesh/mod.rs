@@ -20,6 +20,13 @@ use material::{Paint, Surfaces};
 /// Materials by their names, with the files that they are of.
 type Library = HashMap<String, (ObjMaterial, PathBuf)>;
 
+/// A mesh file, and the files beside it.
+struct Source<'a> {
+    path: &'a Path,
+    format: Format,
+    assets: &'a dyn AssetSource,
+}
+
 /// Reads a mesh file as a scene.
 pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imported {
     let (mut desc, mut log) = (SceneDesc::default(), Log::default());
@@ -29,7 +36,11 @@ pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imp
     let parts = parts
         .and_then(|bytes| parts_of(&bytes, format, path, &mut materials).map_err(|error| error.to_string()));
     match parts {
-        Ok(obj) => fill(&mut desc, obj, format, (path, assets, materials), &mut log),
+        Ok(obj) => {
+            let source = Source { path, format, assets };
+            add_materials(&obj, &source, &mut materials, &mut log);
+            fill(&mut desc, obj, &source, &materials, &mut log);
+        }
         Err(message) => {
             let message = format!("cannot read the mesh `{name}`: {message}");
             log.fault(Fault::new("unreadable-mesh", "", message));
@@ -59,21 +70,9 @@ fn parts_of(bytes: &[u8], format: Format, path: &Path, materials: &mut Library) 
     }
 }
 
-fn fill(
-    desc: &mut SceneDesc,
-    obj: Obj,
-    format: Format,
-    (path, assets, mut materials): (&Path, &dyn AssetSource, Library),
-    log: &mut Log,
-) {
-    let world_from_mesh = match format {
-        Format::Ply | Format::Obj => DMat4::IDENTITY,
-        // An object made layer by layer has z up, and its front towards −y.
-        Format::Stl => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
-    };
-    for text in obj.warnings {
-        log.warn("not-drawn", "", text);
-    }
+/// Adds the materials of the files that an object names.
+fn add_materials(obj: &Obj, source: &Source, materials: &mut Library, log: &mut Log) {
+    let Source { path, assets, .. } = *source;
     for library in obj.libraries.iter().flat_map(|line| libraries(line, path, assets)) {
         match read_unpacked(assets, &library) {
             Ok(bytes) => {
@@ -90,7 +89,18 @@ fn fill(
             }
         }
     }
-    let mut surfaces = Surfaces::new(desc, log, assets, path);
+}
+
+fn fill(desc: &mut SceneDesc, obj: Obj, source: &Source, materials: &Library, log: &mut Log) {
+    let world_from_mesh = match source.format {
+        Format::Ply | Format::Obj => DMat4::IDENTITY,
+        // An object made layer by layer has z up, and its front towards −y.
+        Format::Stl => DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
+    };
+    for text in obj.warnings {
+        log.warn("not-drawn", "", text);
+    }
+    let mut surfaces = Surfaces::new(desc, log, source.assets, source.path);
     for (name, mesh) in obj.parts {
         // A comment may follow the name.
         let material = materials.get(&name).or_else(|| materials.get(name.split(" #").next()?.trim_end()));

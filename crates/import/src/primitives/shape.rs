@@ -40,13 +40,17 @@ impl Look {
         let emitting = emission.map(|map| (Emitting::of(&desc.images[map.image].image), desc));
         let shared = self.mesh(vertices, uvs.clone(), surface.tangent_rotation);
         let parts = self.parts.iter();
-        parts.flat_map(|part| self.part(part, primitive, &uvs, emitting.as_ref(), &shared)).collect()
+        let shapes = parts.flat_map(|(triangles, surfaces)| {
+            self.part(triangles, surfaces, primitive, &uvs, emitting.as_ref(), &shared)
+        });
+        shapes.collect()
     }
 
     /// The shapes of a part.
     fn part(
         &self,
-        (triangles, surfaces): &(Vec<[u32; 3]>, [Surface; 2]),
+        triangles: &[[u32; 3]],
+        surfaces: &[Surface; 2],
         primitive: &Primitive,
         uvs: &[Point2],
         emitting: Option<&(Emitting, &SceneDesc)>,

@@ -37,7 +37,7 @@ impl Outline {
     /// The outline of the triangles and patches of a scene; of other shapes there is none.
     pub fn of(desc: &SceneDesc, axes: Axes, slopes: [f64; 2]) -> Self {
         let mut outline = Self::empty(axes, slopes);
-        outline.add_all((&desc.shapes, &desc.instances), &desc.objects, &[DMat4::IDENTITY], 0);
+        outline.add_all(&desc.shapes, &desc.instances, &desc.objects, &[DMat4::IDENTITY], 0);
         outline
     }
 
@@ -79,7 +79,8 @@ impl Outline {
 
     fn add_all(
         &mut self,
-        (shapes, instances): (&Arena<ShapeDesc>, &Arena<InstanceDesc>),
+        shapes: &Arena<ShapeDesc>,
+        instances: &Arena<InstanceDesc>,
         objects: &Arena<ObjectDesc>,
         placements: &[DMat4],
         depth: usize,
@@ -102,12 +103,11 @@ impl Outline {
         instances.iter().for_each(|(_, instance)| counts[instance.object.index()] += 1);
         for (index, count) in counts.into_iter().enumerate().filter(|&(_, count)| count > 0) {
             let handle = Handle::new(index as u32);
-            let object = &objects[handle];
+            let ObjectDesc { shapes, instances: inside, .. } = &objects[handle];
             let of_object = instances.iter().filter(|(_, instance)| instance.object == handle);
-            let whole = (count.saturating_mul(point_count(&object.shapes)) > MAX_POINTS).then(|| {
+            let whole = (count.saturating_mul(point_count(shapes)) > MAX_POINTS).then(|| {
                 let mut outline = Self::empty(self.axes, self.slopes);
-                let inside = (&object.shapes, &object.instances);
-                outline.add_all(inside, objects, &[DMat4::IDENTITY], depth + 1);
+                outline.add_all(shapes, inside, objects, &[DMat4::IDENTITY], depth + 1);
                 outline
             });
             for (_, instance) in of_object {
@@ -115,10 +115,7 @@ impl Outline {
                 match &whole {
                     Some(whole) if whole.is_empty() => (),
                     Some(whole) => self.add_box(whole.bounds, &placements),
-                    None => {
-                        let inside = (&object.shapes, &object.instances);
-                        self.add_all(inside, objects, &placements, depth + 1);
-                    }
+                    None => self.add_all(shapes, inside, objects, &placements, depth + 1),
                 }
             }
         }

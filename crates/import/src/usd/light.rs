@@ -4,11 +4,11 @@
 use std::f64::consts::PI;
 
 use description::{
-    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, MeshDesc, SceneDesc, ShapeDesc, ShapeKind,
-    SpectrumDesc, TransformDesc, UvImageDesc, WrapMode,
+    AreaLightDesc, ImageDesc, InfiniteRadiance, LightDesc, LightKind, MeshDesc, SceneDesc, ShapeDesc,
+    ShapeKind, SpectrumDesc, TransformDesc, UvImageDesc, WrapMode,
 };
 use image::Image;
-use math::{DAffine2, DMat4, DVec3, Point2, Vec3};
+use math::{DAffine2, DMat4, DVec3, DVec4, Point2, Vec3};
 use spectrum::{RgbColorSpace, Spectrum};
 
 use super::material::Materials;
@@ -32,6 +32,13 @@ struct Emission {
     is_normalized: bool,
 }
 
+impl Emission {
+    fn spectrum(&self) -> SpectrumDesc {
+        let [r, g, b] = self.color.map(|v| v as f32);
+        SpectrumDesc::rgb(r, g, b)
+    }
+}
+
 /// The names of schemas that are read.
 pub(super) const KINDS: [&str; 7] =
     ["DistantLight", "SphereLight", "RectLight", "DiskLight", "CylinderLight", "DomeLight", "DomeLight_1"];
@@ -42,74 +49,37 @@ pub(super) fn read(
     kind: &str,
     placement: TransformDesc,
     materials: &mut Materials,
-    (desc, log): (&mut SceneDesc, &mut Log),
+    desc: &mut SceneDesc,
+    log: &mut Log,
 ) -> Result<Option<Light>> {
     let emission = emission(prim, kind)?;
     if emission.scale <= 0.0 {
         return Ok(None);
     }
     not_honoured(prim, kind, log)?;
-    let texture = texture(prim)?;
-    let [r, g, b] = emission.color.map(|v| v as f32);
-    let color = SpectrumDesc::rgb(r, g, b);
-    let light = |kind: LightKind, scale: f64, world_from_light: TransformDesc| {
-        let group = Some(prim.name().to_owned());
-        Some(Light::Light(Box::new(LightDesc {
-            world_from_light,
-            scale: scale as f32,
-            group,
-            ..LightDesc::from(kind)
-        })))
-    };
-    match kind {
+    let image = texture(prim)?.filter(|_| matches!(kind, "RectLight" | "DomeLight" | "DomeLight_1"));
+    let image = image.and_then(|texture| materials.light_image(&texture, desc, log));
+    let color = emission.spectrum();
+    let (light, scale, world_from_light) = match kind {
         "DistantLight" => {
-            let angle = input(prim, "angle")?.unwrap_or(0.53).clamp(0.0, 360.0).to_radians() / 2.0;
-            if angle > 0.0 {
-                let message = "the size of a distant light is not drawn: its shadows are sharp";
-                log.warn("not-drawn", prim.path(), message);
-            }
-            let share = match angle {
-                0.0 => 1.0,
-                angle if angle <= PI / 2.0 => PI * libm::sin(angle).powi(2),
-                angle => PI * (2.0 - libm::sin(angle).powi(2)),
-            };
-            let illuminance = emission.scale * if emission.is_normalized { 1.0 } else { share };
-            let kind =
-                LightKind::Distant { radiance: color, illuminance: None, from: Vec3::ZERO, to: -Vec3::Z };
-            Ok(light(kind, illuminance, placement))
+            let (from, to) = (Vec3::ZERO, -Vec3::Z);
+            let light = LightKind::Distant { radiance: color, illuminance: None, from, to };
+            (light, illuminance(prim, &emission, log)?, placement)
         }
         "DomeLight" | "DomeLight_1" => {
-            let image = texture.and_then(|texture| materials.light_image(&texture, desc, log));
             let radiance = match image {
                 None => InfiniteRadiance::Constant(color),
                 Some(handle) => {
-                    let image = &desc.images[handle].image;
-                    let tinted = dome_image(image, emission.color);
-                    let name = desc.images[handle].name.clone();
-                    InfiniteRadiance::Image(
-                        desc.images.push(description::ImageDesc { name, image: tinted.into() }),
-                    )
+                    let ImageDesc { name, image } = &desc.images[handle];
+                    let tinted = dome_image(image, emission.color).into();
+                    let tinted = ImageDesc { name: name.clone(), image: tinted };
+                    InfiniteRadiance::Image(desc.images.push(tinted))
                 }
             };
-            // The pole is +y for a light, and +z for the images of the scene, whose middle is −x;
-            // that of the light's is +z.
-            let columns = [-DVec3::Z, DVec3::X, DVec3::Y, DVec3::ZERO];
-            let mut dome = DMat4::from_cols(
-                columns[0].extend(0.0),
-                columns[1].extend(0.0),
-                columns[2].extend(0.0),
-                columns[3].extend(1.0),
-            );
-            if kind == "DomeLight_1" {
-                let axis = prim.word("poleAxis")?.unwrap_or_else(|| "scene".to_owned());
-                if axis == "Z" || (axis == "scene" && prim.stage.is_z_up()) {
-                    dome = DMat4::from_rotation_x(PI / 2.0) * dome;
-                }
-            }
+            let light = LightKind::Infinite { radiance, illuminance: None, portal: None };
+            let dome = world_from_dome(prim, kind)?;
             let (start, end) = (placement.start * dome, placement.end * dome);
-            let placement = TransformDesc { start, end, ..placement };
-            let kind = LightKind::Infinite { radiance, illuminance: None, portal: None };
-            Ok(light(kind, emission.scale, placement))
+            (light, emission.scale, TransformDesc { start, end, ..placement })
         }
         "SphereLight" if is_point(prim)? => {
             let radius = input(prim, "radius")?.unwrap_or(0.5);
@@ -119,22 +89,7 @@ pub(super) fn read(
                 true => emission.scale / 4.0,
                 false => emission.scale * PI * radius * radius,
             };
-            let cone = input(prim, "shaping:cone:angle")?.filter(|_| has_cone(prim).unwrap_or(false));
-            let kind = match cone {
-                None => LightKind::Point { intensity: color, power: None, from: Vec3::ZERO },
-                Some(angle) => {
-                    let softness = input(prim, "shaping:cone:softness")?.unwrap_or(0.0).clamp(0.0, 1.0);
-                    LightKind::Spot {
-                        intensity: color,
-                        power: None,
-                        from: Vec3::ZERO,
-                        to: -Vec3::Z,
-                        cone_angle: angle.clamp(0.0, 180.0) as f32,
-                        cone_delta_angle: (angle.clamp(0.0, 180.0) * softness) as f32,
-                    }
-                }
-            };
-            Ok((intensity > 0.0).then(|| light(kind, intensity, placement)).flatten())
+            (point(prim, color)?, intensity, placement)
         }
         _ => {
             let (solids, area) = shapes(prim, kind, &placement)?;
@@ -142,11 +97,8 @@ pub(super) fn read(
             if !scale.is_finite() {
                 return Err(prim.fault("", "a normalized light has an area"));
             }
-            let image = texture.filter(|_| kind == "RectLight");
-            let image = image.and_then(|texture| materials.light_image(&texture, desc, log));
-            let image = image.map(|image| UvImageDesc::new(image, WrapMode::Clamp));
             let area_light = AreaLightDesc {
-                image,
+                image: image.map(|image| UvImageDesc::new(image, WrapMode::Clamp)),
                 scale: scale as f32,
                 group: Some(prim.name().to_owned()),
                 ..AreaLightDesc::new(color)
@@ -158,9 +110,52 @@ pub(super) fn read(
             // A convex body shows a quarter of its surface.
             let is_flat = matches!(kind, "RectLight" | "DiskLight");
             let intensity = scale * area * if is_flat { 1.0 } else { 0.25 };
-            Ok(Some(Light::Shapes(solids.into_iter().map(lit).collect(), intensity)))
+            return Ok(Some(Light::Shapes(solids.into_iter().map(lit).collect(), intensity)));
         }
+    };
+    let group = Some(prim.name().to_owned());
+    let light = LightDesc { world_from_light, scale: scale as f32, group, ..LightDesc::from(light) };
+    Ok((scale > 0.0).then(|| Light::Light(Box::new(light))))
+}
+
+/// The illuminance by a distant light.
+fn illuminance(prim: &Prim, emission: &Emission, log: &mut Log) -> Result<f64> {
+    let angle = input(prim, "angle")?.unwrap_or(0.53).clamp(0.0, 360.0).to_radians() / 2.0;
+    if angle > 0.0 {
+        let message = "the size of a distant light is not drawn: its shadows are sharp";
+        log.warn("not-drawn", prim.path(), message);
     }
+    let share = match angle {
+        _ if emission.is_normalized => 1.0,
+        0.0 => 1.0,
+        angle if angle <= PI / 2.0 => PI * libm::sin(angle).powi(2),
+        angle => PI * (2.0 - libm::sin(angle).powi(2)),
+    };
+    Ok(emission.scale * share)
+}
+
+/// The place of a dome, whose pole is +y for a light, and +z for the images of the scene, whose
+/// middle is −x; that of the light's is +z.
+fn world_from_dome(prim: &Prim, kind: &str) -> Result<DMat4> {
+    let [x, y, z] = [-DVec3::Z, DVec3::X, DVec3::Y].map(|axis| axis.extend(0.0));
+    let dome = DMat4::from_cols(x, y, z, DVec4::W);
+    let has_pole = kind == "DomeLight_1" && {
+        let axis = prim.word("poleAxis")?.unwrap_or_else(|| "scene".to_owned());
+        axis == "Z" || (axis == "scene" && prim.stage.is_z_up())
+    };
+    Ok(if has_pole { DMat4::from_rotation_x(PI / 2.0) * dome } else { dome })
+}
+
+/// A light without size, which may have a cone.
+fn point(prim: &Prim, intensity: SpectrumDesc) -> Result<LightKind> {
+    let (from, to, power) = (Vec3::ZERO, -Vec3::Z, None);
+    let cone = input(prim, "shaping:cone:angle")?.filter(|_| has_cone(prim).unwrap_or(false));
+    let Some(angle) = cone.map(|angle| angle.clamp(0.0, 180.0)) else {
+        return Ok(LightKind::Point { intensity, power, from });
+    };
+    let softness = input(prim, "shaping:cone:softness")?.unwrap_or(0.0).clamp(0.0, 1.0);
+    let (cone_angle, cone_delta_angle) = (angle as f32, (angle * softness) as f32);
+    Ok(LightKind::Spot { intensity, power, from, to, cone_angle, cone_delta_angle })
 }
 
 /// The name of an input, which older files have without the prefix.

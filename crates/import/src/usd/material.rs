@@ -55,7 +55,7 @@ impl<'a> Materials<'a> {
         desc: &mut SceneDesc,
         log: &mut Log,
     ) -> Option<Handle<ImageDesc>> {
-        self.pictures.add(texture, Edit::None, &mut desc.images, (self.files, log))
+        self.pictures.add(texture, Edit::None, &mut desc.images, self.files, log)
     }
 
     /// A diffuse surface of a colour.
@@ -259,7 +259,7 @@ impl Builder<'_, '_> {
 
     /// An image over (u, v).
     fn uv_image(&mut self, texture: &Texture, edit: Edit) -> Option<UvImageDesc> {
-        let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
+        let image = self.pictures.add(texture, edit, &mut self.desc.images, self.files, self.log)?;
         let columns =
             self.texture_from_mesh(texture).to_cols_array_2d().map(|column| column.map(|v| v as f32));
         Some(UvImageDesc { image, columns, wrap: texture.wrap, is_nearest: false })
@@ -267,7 +267,7 @@ impl Builder<'_, '_> {
 
     /// An image as a texture.
     fn texture(&mut self, texture: &Texture, edit: Edit) -> Option<ImageTextureDesc> {
-        let image = self.pictures.add(texture, edit, &mut self.desc.images, (self.files, self.log))?;
+        let image = self.pictures.add(texture, edit, &mut self.desc.images, self.files, self.log)?;
         let from_mesh = self.texture_from_mesh(texture);
         let [x, y, delta] = [from_mesh.matrix2.x_axis, from_mesh.matrix2.y_axis, from_mesh.translation];
         let mapping = if x.y == 0.0 && y.x == 0.0 {

@@ -81,7 +81,7 @@ impl<'s> Mesh<'_, 's, '_> {
             };
             let key = (set, colors);
             if !bodies.contains_key(&key) {
-                let body = self.body(&faces, &points, &key)?;
+                let body = self.body(&faces, &points, &key.0, key.1.as_deref())?;
                 bodies.insert(key.clone(), body);
             }
             let body = &bodies[&key];
@@ -103,14 +103,14 @@ impl<'s> Mesh<'_, 's, '_> {
         &mut self,
         faces: &Faces,
         points: &[Vec<[f64; 3]>],
-        (set, colors): &(String, Option<String>),
+        set: &str,
+        colors: Option<&str>,
     ) -> Result<Body> {
         let prim = self.prim;
         let counts = faces.elements(points[0].len());
         // Faulty values are reported, and the mesh drawn without.
         let uvs = self.log.keep(Primvar::of(prim, set, counts)).flatten();
-        let colors =
-            colors.as_ref().and_then(|name| self.log.keep(Primvar::of(prim, name, counts)).flatten());
+        let colors = colors.and_then(|name| self.log.keep(Primvar::of(prim, name, counts)).flatten());
         let mut values = Values { normals: None, uvs, colors };
         let is_left_handed = prim.word("orientation")?.as_deref() == Some("leftHanded");
         let scheme = prim.word("subdivisionScheme")?.unwrap_or_else(|| "catmullClark".to_owned());

@@ -67,7 +67,7 @@ fn guarded(
     let (resolver, questions) = Resolver::new();
     std::thread::scope(|scope| {
         let reader = std::thread::Builder::new().name("usd".to_owned()).stack_size(STACK);
-        let reader = reader.spawn_scoped(scope, || fill(desc, path, selection, (&files, resolver), log));
+        let reader = reader.spawn_scoped(scope, || fill(desc, path, selection, &files, resolver, log));
         let reader = reader
             .map_err(|error| Fault::new("unreadable-file", "", format!("cannot start a thread: {error}")))?;
         files.answer(&questions);
@@ -81,7 +81,8 @@ fn fill(
     desc: &mut SceneDesc,
     path: &Path,
     selection: &Selection,
-    (files, resolver): (&Files, Resolver),
+    files: &Files,
+    resolver: Resolver,
     log: &mut Log,
 ) -> Result<()> {
     for (name, is_given) in [

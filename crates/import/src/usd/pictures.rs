@@ -68,7 +68,8 @@ impl Pictures {
         texture: &Texture,
         edit: Edit,
         images: &mut Arena<ImageDesc>,
-        (files, log): (&Files, &mut Log),
+        files: &Files,
+        log: &mut Log,
     ) -> Option<Handle<ImageDesc>> {
         let mut image = self.image(texture, files, log)?;
         let name = texture.file.clone().unwrap_or_default();

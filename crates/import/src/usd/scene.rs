@@ -254,7 +254,7 @@ impl<'a> Assembly<'a> {
             }
             kind if light::KINDS.contains(&kind) => {
                 let Some(placement) = self.placement(&state.group_from_prim, prim) else { return Ok(()) };
-                match light::read(prim, kind, placement, &mut self.materials, (self.desc, self.log))? {
+                match light::read(prim, kind, placement, &mut self.materials, self.desc, self.log)? {
                     Some(Light::Light(light)) => group.lights.push(*light),
                     Some(Light::Shapes(solids, intensity)) => {
                         if state.nesting == 0 {

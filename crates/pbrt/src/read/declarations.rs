@@ -18,13 +18,6 @@ use super::statement::{
 use super::token::{TokenKind, Tokens};
 use description::did_you_mean;
 
-const COLOR_SPACES: [(&str, ColorSpaceDesc); 4] = [
-    ("srgb", ColorSpaceDesc::Srgb),
-    ("dci-p3", ColorSpaceDesc::DciP3),
-    ("rec2020", ColorSpaceDesc::Rec2020),
-    ("aces2065-1", ColorSpaceDesc::Aces2065_1),
-];
-
 impl Interpreter<'_> {
     /// A statement that a scene has once; a second one replaces the first.
     pub(super) fn only(
@@ -102,10 +95,10 @@ impl Interpreter<'_> {
 
     pub(super) fn color_space(&mut self, tokens: &mut Tokens) -> Step {
         let name = self.string(tokens, "the colour space")?;
-        let Some((_, space)) = COLOR_SPACES.into_iter().find(|(known, _)| *known == name.value) else {
+        let Some(space) = ColorSpaceDesc::named(&name.value) else {
             let message = format!("there is no colour space `{}`", name.value);
             self.report.push(Diagnostic {
-                help: did_you_mean(&name.value, COLOR_SPACES.map(|(known, _)| known)),
+                help: did_you_mean(&name.value, ColorSpaceDesc::NAMES.iter().copied()),
                 ..Diagnostic::error("unknown-color-space", message, name.span)
             });
             return Err(Abandoned);

@@ -30,11 +30,11 @@ pub(crate) fn lights(
     extensions: &mut BTreeSet<String>,
 ) {
     for (_, light) in desc.lights.iter() {
-        let LightDesc { kind, world_from_light, scale, medium, group } = &light.value;
+        let LightDesc { kind, world_from_light, scale: _, medium, group } = &light.value;
         let mut statement = Statement::new("LightSource", kind.name()).target("light");
-        write(&mut statement, kind, desc, names, files, extensions);
-        statement.float("scale", *scale, 1.0);
-        write_group(&mut statement, group.as_deref(), extensions);
+        parameters(&mut statement, &light.value, names);
+        note_group(group.as_ref(), extensions);
+        write(&mut statement, kind, desc, files, extensions);
         // The medium of the camera is in force.
         let is_elsewhere = *medium != desc.camera.medium;
         let TransformDesc { start, end, times: _ } = world_from_light;
@@ -53,11 +53,9 @@ fn write(
     to: &mut Statement,
     kind: &LightKind,
     desc: &SceneDesc,
-    names: &Names,
     files: &mut Files,
     extensions: &mut BTreeSet<String>,
 ) {
-    parameters(to, kind, names);
     match kind {
         LightKind::Goniometric { image: picture, .. } | LightKind::Projection { image: picture, .. } => {
             if let Some(picture) = picture {
@@ -88,7 +86,6 @@ pub(crate) fn area_light(
 ) -> Statement {
     let mut statement = Statement::new("AreaLightSource", "diffuse").target("light");
     let mut light = light.clone();
-    let group = light.group.take();
     if let Some(picture) = light.image {
         light.radiance = AreaLightDesc::default().radiance;
         let name = image(desc, picture.image, files);
@@ -99,13 +96,10 @@ pub(crate) fn area_light(
     if light.image.is_some() {
         statement.space = None;
     }
-    write_group(&mut statement, group.as_deref(), extensions);
+    note_group(light.group.as_ref(), extensions);
     statement
 }
 
-fn write_group(to: &mut Statement, group: Option<&str>, extensions: &mut BTreeSet<String>) {
-    if let Some(group) = group {
-        extensions.insert("groups of lights".into());
-        to.text("lightgroup", group);
-    }
+fn note_group(group: Option<&String>, extensions: &mut BTreeSet<String>) {
+    extensions.extend(group.map(|_| "groups of lights".into()));
 }

@@ -10,7 +10,7 @@ use scattering::SubsurfaceMethod;
 
 use crate::write::files::Files;
 use crate::write::names::Names;
-use crate::write::settings::parameters;
+use crate::write::settings::{note_extension, parameters};
 use crate::write::statement::Statement;
 use crate::write::text::Text;
 use crate::write::textures::uv_lookup;
@@ -70,6 +70,7 @@ fn write(
     files: &mut Files,
     extensions: &mut BTreeSet<String>,
 ) {
+    note_extension("material", kind, extensions);
     parameters(to, kind, names);
     match kind {
         MaterialKind::CoatedConductor(CoatedConductorDesc {
@@ -89,12 +90,10 @@ fn write(
             to.text("filename", &files.measured(table));
         }
         MaterialKind::OpenPbr(surface) => {
-            extensions.insert("material openpbr".into());
             to.white_or("emission_color", &surface.emission_color);
         }
-        MaterialKind::Mix { materials, amount } => {
+        MaterialKind::Mix { materials, .. } => {
             to.texts("materials", materials.iter().map(|&material| names.material(material)));
-            to.float_parameter("amount", amount, 0.5, names);
         }
         _ => (),
     }

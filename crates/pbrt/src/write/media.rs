@@ -12,11 +12,11 @@ use crate::write::text::Text;
 /// All media.
 pub(crate) fn media(desc: &SceneDesc, names: &Names, files: &mut Files, text: &mut Text) {
     for (handle, medium) in desc.media.iter() {
-        let MediumDesc { name: _, kind, world_from_medium, g } = &medium.value;
+        let MediumDesc { name: _, kind, world_from_medium, g: _ } = &medium.value;
         let mut statement =
             Statement::named("MakeNamedMedium", names.medium(handle), kind.name()).target("medium");
-        statement.float("g", *g, 0.0);
-        write(&mut statement, kind, names, files);
+        parameters(&mut statement, &medium.value, names);
+        write(&mut statement, kind, files);
         let TransformDesc { start, end, times: _ } = world_from_medium;
         text.block([start, end] != [&DMat4::IDENTITY; 2], |text| {
             text.transform(world_from_medium);
@@ -25,8 +25,7 @@ pub(crate) fn media(desc: &SceneDesc, names: &Names, files: &mut Files, text: &m
     }
 }
 
-fn write(to: &mut Statement, kind: &MediumKind, names: &Names, files: &mut Files) {
-    parameters(to, kind, names);
+fn write(to: &mut Statement, kind: &MediumKind, files: &mut Files) {
     match kind {
         MediumKind::Homogeneous { .. } | MediumKind::Cloud { .. } => (),
         MediumKind::UniformGrid { density, temperature, le_scale, emission_scale, .. } => {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use description::schema::{Field, Setting, SettingType, Settings, Value};
+use description::schema::{Kind, Setting, SettingType, Settings, Value};
 use description::{OptionsDesc, SceneDesc, SpectrumDesc};
 use math::Point3;
 
@@ -58,37 +58,54 @@ pub(crate) fn statement<T: Settings + Clone + Default>(
         extensions.insert(format!("{} {kind}", directive.to_lowercase()));
     }
     let mut statement = Statement::new(directive, kind);
-    for Setting { field, value, .. } in changed(desc) {
-        if OWN_SETTINGS.contains(&field.name) && !is_own {
-            extensions.insert(format!("{} {}", directive.to_lowercase(), field.name));
+    for setting in changed(desc) {
+        let name = setting.field.name;
+        if OWN_SETTINGS.contains(&name) && !is_own {
+            extensions.insert(format!("{} {name}", directive.to_lowercase()));
         }
-        write(&mut statement, field, &value, None);
+        write(&mut statement, &setting, None);
     }
     statement
 }
 
+/// Notes a member that the format of pbrt-v4 does not have.
+pub(crate) fn note_extension(set: &str, desc: &impl Settings, extensions: &mut BTreeSet<String>) {
+    let name = desc.member().filter(|member| member.is_extension).map(|member| member.names[0]);
+    extensions.extend(name.map(|name| format!("{set} {name}")));
+}
+
 /// The parameters of a member of a scene that differ from its defaults.
 pub(crate) fn parameters<T: Settings + Clone + Default>(to: &mut Statement, desc: &T, names: &Names) {
-    for (Setting { field, value, .. }, usual) in with_defaults(desc) {
-        match (&value, &usual.value) {
+    for (setting, usual) in with_defaults(desc) {
+        match (&setting.value, &usual.value) {
             // The white of the colour space in force.
             (
                 Value::Spectrum(SpectrumDesc::Illuminant(space)),
                 Value::Spectrum(SpectrumDesc::Illuminant(_)),
             ) => to.space = Some(*space),
             (value, usual) if value == usual => (),
-            (value, _) => write(to, field, value, Some(names)),
+            _ => write(to, &setting, Some(names)),
         }
     }
 }
 
+/// The member of a set that a parameter names, and its parameters.
+pub(crate) fn part<T: Settings + Clone + Default>(to: &mut Statement, name: &str, desc: &T, names: &Names) {
+    to.choice(name, desc.name(), T::default().name());
+    parameters(to, desc, names);
+}
+
 /// A parameter with its value.
-fn write(to: &mut Statement, field: &Field, value: &Value, names: Option<&Names>) {
+fn write(to: &mut Statement, setting: &Setting, names: Option<&Names>) {
+    let Setting { field, kind, value } = setting;
     let name = field.name;
     match (value, names) {
-        (Value::Spectrum(SpectrumDesc::Constant(value)), _) if field.domain.takes_numbers => {
-            to.floats(name, [*value]);
+        (Value::Spectrum(SpectrumDesc::Constant(index)), _)
+            if field.domain.is_index && *kind == Kind::Spectrum =>
+        {
+            to.floats(name, [*index]);
         }
+        (Value::Point(vector), _) if field.domain.is_vector => to.triples("vector3", name, &[*vector]),
         (Value::Point(point), _) => to.triples("point3", name, &[*point]),
         (Value::List(values), _) if matches!(values[..], [Value::Point(_), ..]) => {
             let points: Vec<Point3> = values.iter().filter_map(Point3::from_value).collect();

@@ -1,7 +1,7 @@
 //! A statement of the format: its head and its parameters, of which those that have the format's
 //! default are left out.
 
-use description::{ColorSpaceDesc, FloatParameter, Parameter, SpectrumDesc, SpectrumParameter};
+use description::{ColorSpaceDesc, FloatParameter, Parameter, SpectrumDesc};
 use math::{Vec2, Vec3};
 
 use crate::write::names::Names;
@@ -47,16 +47,6 @@ pub(crate) fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
-/// The format's name of a colour space.
-pub(crate) fn space_name(space: ColorSpaceDesc) -> &'static str {
-    match space {
-        ColorSpaceDesc::Srgb => "srgb",
-        ColorSpaceDesc::DciP3 => "dci-p3",
-        ColorSpaceDesc::Rec2020 => "rec2020",
-        ColorSpaceDesc::Aces2065_1 => "aces2065-1",
-    }
-}
-
 impl Statement {
     /// A directive and its type.
     pub(crate) fn new(directive: &str, kind: &str) -> Self {
@@ -83,12 +73,6 @@ impl Statement {
 
     pub(crate) fn push(&mut self, kind: &str, name: &str, values: Vec<String>) {
         self.parameters.push(Written { declaration: format!("{kind} {name}"), values, space: None });
-    }
-
-    pub(crate) fn flag(&mut self, name: &str, value: bool, default: bool) {
-        if value != default {
-            self.push("bool", name, vec![value.to_string()]);
-        }
     }
 
     pub(crate) fn integer(&mut self, name: &str, value: i32, default: i32) {
@@ -128,13 +112,6 @@ impl Statement {
     /// Points, vectors or normals.
     pub(crate) fn triples(&mut self, kind: &str, name: &str, values: &[Vec3]) {
         self.numbers(kind, name, values.iter().flat_map(|value| value.to_array()));
-    }
-
-    /// A point or a vector.
-    pub(crate) fn triple(&mut self, kind: &str, name: &str, value: Vec3, default: Vec3) {
-        if value != default {
-            self.triples(kind, name, &[value]);
-        }
     }
 
     /// Points of the plane, if there are any.
@@ -190,34 +167,11 @@ impl Statement {
         }
     }
 
-    /// A spectrum whose default is a constant.
-    pub(crate) fn spectrum_or(&mut self, name: &str, spectrum: &SpectrumDesc, default: f32) {
-        if *spectrum != SpectrumDesc::Constant(default) {
-            self.spectrum(name, spectrum);
-        }
-    }
-
     /// A spectrum whose default is the white of the colour space in force.
     pub(crate) fn white_or(&mut self, name: &str, spectrum: &SpectrumDesc) {
         match spectrum {
             SpectrumDesc::Illuminant(space) => self.space = Some(*space),
             spectrum => self.spectrum(name, spectrum),
-        }
-    }
-
-    /// A number or a texture.
-    pub(crate) fn float_parameter(
-        &mut self,
-        name: &str,
-        value: &FloatParameter,
-        default: f32,
-        names: &Names,
-    ) {
-        match value {
-            Parameter::Value(value) => self.float(name, *value, default),
-            Parameter::Texture(texture) => {
-                self.push("texture", name, vec![quoted(names.float_texture(*texture))]);
-            }
         }
     }
 
@@ -230,25 +184,10 @@ impl Statement {
     ) {
         match value {
             Some(Parameter::Value(value)) => self.floats(name, [*value]),
-            Some(texture) => self.float_parameter(name, texture, 0.0, names),
-            None => (),
-        }
-    }
-
-    /// A spectrum or a texture.
-    pub(crate) fn spectrum_parameter(
-        &mut self,
-        name: &str,
-        value: &SpectrumParameter,
-        default: Option<f32>,
-        names: &Names,
-    ) {
-        match (value, default) {
-            (Parameter::Value(value), Some(default)) => self.spectrum_or(name, value, default),
-            (Parameter::Value(value), None) => self.spectrum(name, value),
-            (Parameter::Texture(texture), _) => {
-                self.push("texture", name, vec![quoted(names.spectrum_texture(*texture))]);
+            Some(Parameter::Texture(texture)) => {
+                self.push("texture", name, vec![quoted(names.float_texture(*texture))]);
             }
+            None => (),
         }
     }
 }

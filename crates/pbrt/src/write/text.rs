@@ -4,7 +4,7 @@ use description::{ColorSpaceDesc, TransformDesc};
 use math::DMat4;
 
 use crate::write::number::decimal;
-use crate::write::statement::{Statement, Written, quoted, space_name};
+use crate::write::statement::{Statement, Written, quoted};
 
 /// The most characters of a line.
 const WIDTH: usize = 100;
@@ -82,7 +82,7 @@ impl Text {
 
     fn set_space(&mut self, space: ColorSpaceDesc) {
         if space != self.space() {
-            self.line(&format!("ColorSpace {}", quoted(space_name(space))));
+            self.line(&format!("ColorSpace {}", quoted(space.name())));
             self.spaces.last_mut().into_iter().for_each(|current| *current = space);
         }
     }

@@ -252,7 +252,10 @@ fn names_may_be_used_before_they_are_defined() {
     else {
         panic!()
     };
-    assert!(matches!(desc.spectrum_textures[*texture].kind, TextureKind::Constant(SpectrumDesc::Rgb { .. })));
+    assert!(matches!(
+        desc.spectrum_textures[*texture].kind,
+        TextureKind::Constant { value: SpectrumDesc::Rgb { .. } }
+    ));
     let interface = shape.medium_interface.unwrap();
     assert!(interface.outside.is_none());
     let fog = &desc.media[interface.inside.unwrap()];

@@ -289,7 +289,7 @@ const IN_WORLD: &[(&str, &str)] = &[
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 -2]"#,
         "1:42 error[parameter-value] `radius` 1 is -2; it must be above zero",
     ),
-    (r#"Shape "sphere" "float radius" 0"#, "1:16 error[parameter-value] `radius` must be above zero"),
+    (r#"Shape "sphere" "float radius" 0"#, "1:16 error[parameter-value] `radius` is a number above 0, not 0"),
     (
         r#"Shape "sphere" "float radius" 2 "float zmin" 3 "float zmax" 4"#,
         "1:48 error[parameter-value] no part of the surface lies between `zmin` and `zmax`",
@@ -314,7 +314,10 @@ const IN_WORLD: &[(&str, &str)] = &[
         r#"Shape "curve" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1] "float width" -1"#,
         "1:52 error[parameter-value] the width of a curve cannot be negative",
     ),
-    (r#"LightSource "point" "float scale" -2"#, "1:21 error[parameter-value] `scale` cannot be negative"),
+    (
+        r#"LightSource "point" "float scale" -2"#,
+        "1:21 error[parameter-value] `scale` is a number of 0 or more, not -2",
+    ),
     (
         r#"AreaLightSource "diffuse" "float scale" -2"#,
         "1:27 error[parameter-value] `scale` is a number of 0 or more, not -2",

@@ -267,7 +267,7 @@ impl GraphBuilder<'_> {
     fn kind<V: Value>(&mut self, desc: &Stated<TextureDesc<V>>, usage: V::Use) -> NodeId {
         let origin = &desc.origin;
         match &desc.kind {
-            TextureKind::Constant(value) => self.value(value, usage, origin.parameter("value")),
+            TextureKind::Constant { value } => self.value(value, usage, origin.parameter("value")),
             TextureKind::Scale { texture, scale } => {
                 let texture = self.operand(texture, usage, "tex", desc);
                 let scale = self.operand(scale, (), "scale", desc);

@@ -127,7 +127,7 @@ fn scale_and_mix_follow_their_formulas() {
     let mut scene = SceneDesc::default();
     let image = ImageTextureDesc::new(push_image(&mut scene, ramp));
     let a = scene.float_textures.push(FloatTextureDesc::new(TextureKind::Image(image)));
-    let b = scene.float_textures.push(FloatTextureDesc::new(TextureKind::Constant(0.8)));
+    let b = scene.float_textures.push(FloatTextureDesc::new(TextureKind::Constant { value: 0.8 }));
     for kind in [
         TextureKind::Scale { texture: b.into(), scale: a.into() },
         TextureKind::Mix { textures: [0.2.into(), b.into()], amount: a.into() },
@@ -478,7 +478,7 @@ fn invalid_values_are_reported() {
     };
     let constant = |value: SpectrumDesc| {
         move |scene: &mut SceneDesc| {
-            scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant(value.clone())));
+            scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant { value: value.clone() }));
         }
     };
     assert_eq!(codes(&constant(SpectrumDesc::Named("metal-Unobtainium-eta".into()))), ["invalid-value"]);
@@ -490,7 +490,7 @@ fn invalid_values_are_reported() {
     assert!(codes(&constant(SpectrumDesc::rgb(2.0, 0.0, 0.0))).is_empty(), "valid as an illuminant");
     let image = |change: fn(&mut FloatTextureDesc, &mut ImageTextureDesc)| {
         move |scene: &mut SceneDesc| {
-            let mut desc = FloatTextureDesc::new(TextureKind::Constant(0.0));
+            let mut desc = FloatTextureDesc::new(TextureKind::Constant { value: 0.0 });
             let mut image = ImageTextureDesc::new(push_image(scene, four()));
             change(&mut desc, &mut image);
             desc.kind = TextureKind::Image(image);

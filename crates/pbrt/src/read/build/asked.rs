@@ -5,7 +5,6 @@ use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 
 use description::schema::{Field, Slot};
-use math::Vec3;
 
 use crate::read::parameter::ParameterType;
 
@@ -97,14 +96,5 @@ pub(super) struct Listed<'a>(pub(super) &'a [&'a str]);
 impl Display for Listed<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "one of {}", self.0.join(", "))
-    }
-}
-
-/// The numbers of a point or vector.
-pub(super) struct Numbers(pub(super) Vec3);
-
-impl Display for Numbers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {} {}", self.0.x, self.0.y, self.0.z)
     }
 }

@@ -73,10 +73,7 @@ fn realistic(camera: &mut RealisticCameraDesc, reader: &mut Reader) -> Option<()
             _ => ApertureDesc::Image(reader.builder.image(&name, None)),
         },
     };
-    let Some(file) = reader.string("lensfile") else {
-        reader.missing("lensfile");
-        return None;
-    };
+    let file = reader.needed("lensfile", Reader::string)?;
     let element = |[curvature_radius, thickness, eta, aperture_diameter]: [f32; 4]| LensElement {
         curvature_radius,
         thickness,

@@ -9,14 +9,10 @@ use crate::read::statement::{LightStatement, Statement};
 
 impl Builder<'_> {
     pub(super) fn light(&mut self, light: LightStatement) -> Option<Stated<LightDesc>> {
-        let (read, origin) = self.read(light.statement, |reader| {
-            let kind = kind(reader)?;
-            Some((kind, scale(reader), group(reader)))
-        });
+        let (read, origin) = self.read(light.statement, read_light);
         let medium = light.medium.as_ref().and_then(|name| self.named_medium(name));
-        let (kind, scale, group) = read?;
-        let world_from_light = light.world_from_light;
-        Some(Stated::new(LightDesc { kind, world_from_light, scale, medium, group }, origin))
+        let desc = LightDesc { world_from_light: light.world_from_light, medium, ..read? };
+        Some(Stated::new(desc, origin))
     }
 
     /// Builds an area light; one that cannot be read is replaced by one without emission.
@@ -26,22 +22,7 @@ impl Builder<'_> {
     }
 }
 
-/// A factor of the light's brightness.
-fn scale(reader: &mut Reader) -> f32 {
-    let scale = reader.float("scale", 1.0);
-    if scale < 0.0 {
-        reader.refuse("scale", "`scale` cannot be negative");
-    }
-    scale
-}
-
-/// The group of lights that it belongs to.
-fn group(reader: &mut Reader) -> Option<String> {
-    let name = reader.string("lightgroup")?.value;
-    check_group(reader, Some(&name));
-    Some(name)
-}
-
+/// Checks that a group of lights has a name.
 fn check_group(reader: &mut Reader, group: Option<&str>) {
     if group == Some("") {
         reader.refuse("lightgroup", "a group of lights has a name");
@@ -62,22 +43,19 @@ fn without_none(reader: &mut Reader, lights: &mut impl Settings) {
     });
 }
 
-fn kind(reader: &mut Reader) -> Option<LightKind> {
-    let Some(light) = LightType::named(&reader.kind.value) else {
+fn read_light(reader: &mut Reader) -> Option<LightDesc> {
+    let Some(kind) = LightType::named(&reader.kind.value).and_then(LightKind::new) else {
         reader.unknown_type("light", "light", LightType::NAMES);
         return None;
     };
-    let mut kind = LightKind::new(light)?;
-    reader.settings(&mut kind);
-    without_none(reader, &mut kind);
-    match &mut kind {
+    let mut light = LightDesc::from(kind);
+    reader.settings(&mut light);
+    without_none(reader, &mut light);
+    check_group(reader, light.group.as_deref());
+    match &mut light.kind {
         LightKind::Goniometric { image, .. } => *image = reader.image("filename", None),
         LightKind::Projection { image, .. } => {
-            *image = reader.image("filename", None);
-            if image.is_none() {
-                reader.missing("filename");
-                return None;
-            }
+            *image = Some(reader.needed("filename", |reader, name| reader.image(name, None))?);
         }
         LightKind::Infinite { radiance, .. } => {
             if let Some(image) = reader.image("filename", None) {
@@ -92,7 +70,7 @@ fn kind(reader: &mut Reader) -> Option<LightKind> {
         }
         LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Distant { .. } => (),
     }
-    Some(kind)
+    Some(light)
 }
 
 fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {

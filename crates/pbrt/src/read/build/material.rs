@@ -83,14 +83,13 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
         reader.builder.report.warning("deprecated", "this material is now called `interface`", span);
         return Some(MaterialKind::Interface);
     }
-    let Some(material) = MaterialType::named(&reader.kind.value) else {
+    let material = MaterialType::named(&reader.kind.value);
+    if material == Some(MaterialType::Measured) {
+        return measured(reader);
+    }
+    let Some(mut kind) = material.and_then(MaterialKind::new) else {
         reader.unknown_type("material", "material", MaterialType::NAMES);
         return None;
-    };
-    let mut kind = match material {
-        MaterialType::Measured => return measured(reader),
-        MaterialType::Mix => return mix(reader),
-        _ => MaterialKind::new(material)?,
     };
     reader.settings(&mut kind);
     match &mut kind {
@@ -109,7 +108,14 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
                 "geometry_coat_normal_columns",
             ]);
         }
-        _ => (),
+        MaterialKind::Mix { materials, .. } => *materials = mixed(reader)?,
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::CoatedDiffuse(_)
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::DiffuseTransmission { .. }
+        | MaterialKind::Measured { .. }
+        | MaterialKind::Interface => (),
     }
     Some(kind)
 }
@@ -156,10 +162,7 @@ fn subsurface(reader: &mut Reader, scattering: &SubsurfaceScattering) -> Option<
 }
 
 fn measured(reader: &mut Reader) -> Option<MaterialKind> {
-    let Some(file) = reader.string("filename") else {
-        reader.missing("filename");
-        return None;
-    };
+    let file = reader.needed("filename", Reader::string)?;
     Some(MaterialKind::Measured { table: reader.builder.measured_file(&file)? })
 }
 
@@ -176,17 +179,14 @@ pub(super) fn substance(reader: &mut Reader, name: Spanned<String>) -> Option<St
     None
 }
 
-fn mix(reader: &mut Reader) -> Option<MaterialKind> {
-    let amount = reader.float_parameter("amount", 0.5);
-    let Some(names) = reader.strings("materials") else {
-        reader.missing("materials");
-        return None;
-    };
+/// The materials of a mix.
+fn mixed(reader: &mut Reader) -> Option<[Handle<MaterialDesc>; 2]> {
+    let names = reader.needed("materials", Reader::strings)?;
     let [first, second] = names.as_slice() else {
         reader.refuse("materials", format!("`materials` takes two names, not {}", names.len()));
         return None;
     };
     // Both are looked up before either failure counts, so that both are reported.
     let (first, second) = (reader.builder.named_material(first), reader.builder.named_material(second));
-    Some(MaterialKind::Mix { materials: [first?, second?], amount })
+    Some([first?, second?])
 }

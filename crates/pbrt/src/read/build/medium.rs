@@ -15,13 +15,10 @@ use description::{
 impl Builder<'_> {
     /// Builds a medium; one that cannot be read is replaced by a homogeneous one.
     pub(super) fn medium(&mut self, medium: MediumStatement) -> Stated<MediumDesc> {
-        let (read, origin) = self.read(medium.statement, |reader| {
-            let g = reader.float("g", 0.0);
-            Some((kind(reader)?, g))
-        });
-        let (kind, g) = read.unwrap_or_default();
-        let (name, world_from_medium) = (medium.name.value, medium.world_from_medium);
-        Stated::new(MediumDesc { name, kind, world_from_medium, g }, origin)
+        let mut stated = self.read_or_default(medium.statement, read_medium);
+        stated.name = medium.name.value;
+        stated.world_from_medium = medium.world_from_medium;
+        stated
     }
 
     /// The media on the two sides of a surface.
@@ -34,14 +31,14 @@ impl Builder<'_> {
     }
 }
 
-fn kind(reader: &mut Reader) -> Option<MediumKind> {
-    let Some(medium) = MediumType::named(&reader.kind.value) else {
+fn read_medium(reader: &mut Reader) -> Option<MediumDesc> {
+    let Some(kind) = MediumType::named(&reader.kind.value).and_then(MediumKind::new) else {
         reader.unknown_type("medium", "medium", MediumType::NAMES);
         return None;
     };
-    let mut kind = MediumKind::new(medium)?;
-    reader.settings(&mut kind);
-    match &mut kind {
+    let mut medium = MediumDesc { kind, ..MediumDesc::default() };
+    reader.settings(&mut medium);
+    match &mut medium.kind {
         MediumKind::Homogeneous { coefficients, .. } | MediumKind::Cloud { coefficients, .. } => {
             check_preset(reader, coefficients);
         }
@@ -98,7 +95,7 @@ fn kind(reader: &mut Reader) -> Option<MediumKind> {
             (*density, *temperature) = (given?, hot);
         }
     }
-    Some(kind)
+    Some(medium)
 }
 
 /// Checks that a substance exists, and that nothing else is given; one that does not is replaced by
@@ -143,10 +140,7 @@ fn grid<T>(
 
 /// The grids of densities and of temperatures of a file.
 fn voxels(reader: &mut Reader) -> Option<[Option<VoxelsDesc>; 2]> {
-    let Some(file) = reader.string("filename") else {
-        reader.missing("filename");
-        return None;
-    };
+    let file = reader.needed("filename", Reader::string)?;
     let [density, temperature] = ["gridname", "temperaturename"].map(|name| reader.string(name));
     let grid = |name: Option<Spanned<String>>, default: &str, is_needed| GridName {
         name: name.unwrap_or(Spanned { value: default.into(), span: file.span }),

@@ -15,7 +15,7 @@ use description::{
 use math::{Vec2, Vec3};
 
 use super::Builder;
-use super::asked::{Asked, Listed, Numbers, Within};
+use super::asked::{Asked, Listed, Within};
 use crate::read::names;
 use crate::read::parameter::{ParameterType, RawParameter, Values};
 use crate::read::statement::Statement;
@@ -223,6 +223,19 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.builder.report.error("missing-parameter", message, self.kind.span);
     }
 
+    /// A parameter that the statement needs, by its reader: one that is absent is reported.
+    pub(crate) fn needed<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut Self, &'static str) -> Option<T>,
+    ) -> Option<T> {
+        let value = read(self, name);
+        if value.is_none() && !self.has(name) {
+            self.missing(name);
+        }
+        value
+    }
+
     /// Whether a parameter is given by the statement itself or by `Attribute`.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.given.iter().any(|given| given.parameter.name == name)
@@ -269,7 +282,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     fn setting(&mut self, field: &Field, kind: Kind) -> Option<Value> {
         let name = field.name;
         match kind {
-            Kind::Bool => self.optional_boolean(name).map(Value::Bool),
+            Kind::Bool => self.boolean(name).map(Value::Bool),
             Kind::Integer | Kind::Count => {
                 self.optional_integer(name).map(|value| Value::Integer(value.into()))
             }
@@ -280,28 +293,33 @@ impl<'b, 'a> Reader<'b, 'a> {
             }
             Kind::Text => self.string(name).map(|text| Value::Text(text.value)),
             Kind::Point => {
-                let points = self.points3(name)?;
+                let points = match field.domain.is_vector {
+                    true => self.vectors3(name)?,
+                    false => self.points3(name)?,
+                };
                 let &[point] = &*points else {
                     self.count(name, 3, 3 * points.len(), self.origin.parameter(name));
                     return None;
                 };
                 Some(Value::Point(point))
             }
-            Kind::Spectrum if field.domain.takes_numbers => self.index_or_spectrum(name).map(Value::Spectrum),
+            Kind::Spectrum if field.domain.is_index => self.index_or_spectrum(name).map(Value::Spectrum),
             Kind::Spectrum => self.spectrum(name).map(Value::Spectrum),
             Kind::FloatParameter => self.optional_float_parameter(name).map(|value| value.to_value()),
             Kind::SpectrumParameter => self.optional_spectrum_parameter(name).map(|value| value.to_value()),
             Kind::List(kind, count) => {
+                let (kind, row) = if let Kind::List(kind, row) = kind { (*kind, *row) } else { (kind, 1) };
                 let values: Vec<Value> = match kind {
                     Kind::Point => self.points3(name)?.iter().map(|&point| Value::Point(point)).collect(),
                     Kind::Number => self.floats(name)?.iter().map(|&value| Value::Number(value)).collect(),
                     _ => self.integers(name)?.iter().map(|&value| Value::Integer(value.into())).collect(),
                 };
-                if values.len() != count {
-                    self.count(name, count, values.len(), self.origin.parameter(name));
+                if values.len() != row * count {
+                    self.count(name, row * count, values.len(), self.origin.parameter(name));
                     return None;
                 }
-                Some(Value::List(values))
+                let rows = || values.chunks(row).map(|row| Value::List(row.to_vec())).collect();
+                Some(Value::List(if row == 1 { values } else { rows() }))
             }
         }
     }
@@ -332,17 +350,6 @@ impl<'b, 'a> Reader<'b, 'a> {
         let value = self.optional_float(name).unwrap_or(default);
         self.note(default, "");
         value
-    }
-
-    /// A number above zero.
-    pub(crate) fn positive(&mut self, name: &'static str, default: f32) -> f32 {
-        let value = self.float(name, default);
-        self.note(default, "above 0");
-        if value > 0.0 {
-            return value;
-        }
-        self.refuse(name, format!("`{name}` must be above zero"));
-        default
     }
 
     /// Integers.
@@ -378,8 +385,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         default
     }
 
-    /// A Boolean that may be absent.
-    fn optional_boolean(&mut self, name: &'static str) -> Option<bool> {
+    /// A Boolean.
+    fn boolean(&mut self, name: &'static str) -> Option<bool> {
         match self.take(name, &[ParameterType::Bool])? {
             (_, Values::Bools(values), span) => match values[..] {
                 [value] => Some(value),
@@ -390,13 +397,6 @@ impl<'b, 'a> Reader<'b, 'a> {
             },
             _ => None,
         }
-    }
-
-    /// A Boolean.
-    pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
-        let value = self.optional_boolean(name).unwrap_or(default);
-        self.note(default, "");
-        value
     }
 
     /// Strings with their spans.
@@ -430,6 +430,24 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.note(usual, Listed(&names));
         let Some(given) = given else { return default };
         known.iter().find(|(choice, _)| *choice == given).map_or(default, |&(_, value)| value)
+    }
+
+    /// A value that has a name in the format.
+    pub(crate) fn named<T: SettingType>(&mut self, name: &'static str) -> Option<T> {
+        let Kind::Choice(known) = T::KIND else { return None };
+        let given = self.name_of(name, known);
+        self.note("", Listed(known));
+        T::from_value(&Value::Text(given?))
+    }
+
+    /// The member of a set that a parameter names, with its settings, or the default.
+    pub(crate) fn part<T: Settings + Default>(&mut self, name: &'static str) -> T {
+        let known: Vec<&str> = T::members().iter().map(Settings::name).collect();
+        let given = self.name_of(name, &known);
+        self.note(T::default().name(), Listed(&known));
+        let mut part = given.and_then(|given| T::called(&given)).unwrap_or_default();
+        self.settings(&mut part);
+        part
     }
 
     /// One of some names.
@@ -480,31 +498,6 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.triples(name, &[ParameterType::Normal])
     }
 
-    fn one(&mut self, name: &'static str, values: Option<Arc<[Vec3]>>, default: Vec3) -> Vec3 {
-        match values.as_deref() {
-            None => default,
-            Some(&[value]) => value,
-            Some(several) => {
-                self.count(name, 3, 3 * several.len(), self.origin.parameter(name));
-                default
-            }
-        }
-    }
-
-    /// A point.
-    pub(crate) fn point3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
-        let values = self.points3(name);
-        self.note(Numbers(default), "");
-        self.one(name, values, default)
-    }
-
-    /// A vector.
-    pub(crate) fn vector3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
-        let values = self.vectors3(name);
-        self.note(Numbers(default), "");
-        self.one(name, values, default)
-    }
-
     /// Colours, in the space in force where they were given.
     pub(crate) fn rgbs(&mut self, name: &'static str) -> Option<Arc<[[f32; 3]]>> {
         match self.take(name, &[ParameterType::Rgb])? {
@@ -539,13 +532,6 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// A number or a texture of numbers.
-    pub(crate) fn float_parameter(&mut self, name: &'static str, default: f32) -> FloatParameter {
-        let value = self.optional_float_parameter(name).unwrap_or(FloatParameter::Value(default));
-        self.note(default, "");
-        value
-    }
-
     /// A spectrum or a texture of spectra, which may be absent.
     pub(crate) fn optional_spectrum_parameter(&mut self, name: &'static str) -> Option<SpectrumParameter> {
         let index = self.find(name, ParameterType::of(Kind::SpectrumParameter))?;
@@ -562,13 +548,6 @@ impl<'b, 'a> Reader<'b, 'a> {
                 None
             }
         }
-    }
-
-    /// A spectrum or a texture of spectra.
-    pub(crate) fn spectrum_parameter(&mut self, name: &'static str, default: f32) -> SpectrumParameter {
-        let value = self.optional_spectrum_parameter(name);
-        self.note(default, "");
-        value.unwrap_or_else(|| SpectrumParameter::Value(default.into()))
     }
 
     /// An image file that may be absent.

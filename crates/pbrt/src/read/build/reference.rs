@@ -9,12 +9,12 @@ use std::path::Path;
 use description::schema::{Member, Settings};
 use description::{
     AcceleratorDesc, CameraDesc, FilmDesc, FilterDesc, IntegratorDesc, LightType, MaterialType, MediumType,
-    SamplerDesc, ShapeType, SpectrumDesc, Substance,
+    SamplerDesc, ShapeType, SpectrumDesc, Substance, TextureType, TextureValue,
 };
 
 use super::Builder;
 use super::asked::{Asked, Reference};
-use super::texture::TextureValue;
+use super::texture;
 use crate::read::interpreter::{DIRECTIVES, Interpreter, Section};
 use crate::read::parameter::ParameterType;
 use assets::MemoryAssets;
@@ -51,7 +51,10 @@ fn lookups(statement: &str, kind: &str, parameters: &str) -> Vec<Row> {
     let Interpreter { report, sources, mut statements, .. } = interpreter;
     let mut builder = Builder::new(&statements, report, &sources, &assets);
     builder.scene(&mut statements);
-    let recorded = builder.recorded.into_iter().rev().find(|(name, _)| name == kind);
+    let Builder { recorded, report, .. } = builder;
+    // A member that the reader forgets would be one.
+    assert!(report.finish().iter().all(|diagnostic| diagnostic.code != "unknown-type"), "{text}");
+    let recorded = recorded.into_iter().rev().find(|(name, _)| name == kind);
     let (_, asked) = recorded.unwrap_or_else(|| panic!("no statement was read: {text}"));
     let mut rows: Vec<Row> = Vec::new();
     for Asked { name, reference } in asked {
@@ -73,7 +76,7 @@ fn examples(statement: &str, kind: &str) -> (&'static str, [&'static str; 2], &'
         ("Shape", "trianglemesh" | "polygon" | "loopsubdiv" | "spheres") => {
             (r#""point3 P" [0 0 0 1 0 0 0 1 0]"#, NONE, &[])
         }
-        ("Shape", "plymesh") => (r#""string filename" "a.ply""#, ["float", "edgelength"], &["1"]),
+        ("Shape", "plymesh") => (r#""string filename" "a.ply""#, NONE, &[]),
         ("Shape", "implicit") => (r#""string f" "x""#, NONE, &[]),
         ("Shape", "csg") => (r#""string operation" "union" "string operands" ["a" "a"]"#, NONE, &[]),
         ("Camera", "realistic") => (r#""string lensfile" "a""#, NONE, &[]),
@@ -122,12 +125,11 @@ fn rows(statement: &str, kind: &str) -> Vec<Row> {
 }
 
 fn texture_rows(kind: &str) -> Vec<Row> {
-    let of = |value: &str, types: &[&str]| {
-        types.contains(&kind).then(|| rows(&format!("Texture \"a\" \"{value}\""), kind))
-    };
-    let numbers = of("float", <f32 as TextureValue>::TYPES);
-    let spectra = of("spectrum", <SpectrumDesc as TextureValue>::TYPES);
-    let (mut rows, spectra) = match (numbers, spectra) {
+    fn of<V: TextureValue>(kind: &str) -> Option<Vec<Row>> {
+        let statement = format!("Texture \"a\" \"{}\"", V::NAME);
+        texture::names::<V>().contains(&kind).then(|| rows(&statement, kind))
+    }
+    let (mut rows, spectra) = match (of::<f32>(kind), of::<SpectrumDesc>(kind)) {
         (Some(numbers), Some(spectra)) => (numbers, spectra),
         (numbers, spectra) => return numbers.or(spectra).unwrap_or_default(),
     };
@@ -197,45 +199,35 @@ impl Meanings {
     }
 
     /// A section: the parameters that all types have, and then each type with its others.
-    fn section(&mut self, title: &str, directive: &str, types: &[(Vec<&str>, &str, Vec<Row>)]) -> String {
+    fn section(&mut self, title: &str, directive: &str, types: &[(Member, Vec<Row>)]) -> String {
         let mut text = format!("## {title}\n\n");
-        let lists: Vec<&Vec<Row>> = types.iter().map(|(_, _, rows)| rows).collect();
+        let lists: Vec<&Vec<Row>> = types.iter().map(|(_, rows)| rows).collect();
         let mut shared = lists[0].clone();
         shared.retain(|row| lists.len() > 1 && lists.iter().all(|rows| rows.contains(row)));
         if !shared.is_empty() {
             text += &format!("All types have\n\n{}\n", self.table(directive, "*", &shared));
         }
-        for (names, help, rows) in types {
+        for (Member { names, help, is_drawn: _, is_extension }, rows) in types {
             let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
             text += &format!("### `{directive}` {}\n\n", quoted.join(" or "));
             let help = self.of(&[format!("{directive} {}", names[0])], help);
             let own: Vec<Row> = rows.iter().filter(|row| !shared.contains(row)).cloned().collect();
             let table = self.table(directive, names[0], &own);
-            text += &format!("{help}\n\n{table}{}", if own.is_empty() { "" } else { "\n" });
+            let extension = if *is_extension { "**Extension.** " } else { "" };
+            text += &format!("{extension}{help}\n\n{table}{}", if own.is_empty() { "" } else { "\n" });
         }
         text
     }
 
-    /// The members of a scene's set.
+    /// A section whose types have the parameters that a statement looks up.
     fn members(&mut self, title: &str, directive: &str, statement: &str, members: &[Member]) -> String {
-        let rows = |kind| rows(statement, kind);
-        let types: Vec<_> = members
-            .iter()
-            .map(|member| (member.names.to_vec(), member.help, rows(member.names[0])))
-            .collect();
-        self.section(title, directive, &types)
-    }
-
-    fn named(&mut self, title: &str, directive: &str, statement: &str, types: &[&'static str]) -> String {
-        let types: Vec<_> = types.iter().map(|&kind| (vec![kind], "", rows(statement, kind))).collect();
+        let types: Vec<_> =
+            members.iter().map(|&member| (member, rows(statement, member.names[0]))).collect();
         self.section(title, directive, &types)
     }
 
     fn settings<T: Settings + Default>(&mut self, title: &str, directive: &str) -> String {
-        let types: Vec<_> = members::<T>()
-            .map(|Member { names, help, .. }| (names.to_vec(), *help, rows(directive, names[0])))
-            .collect();
-        self.section(title, directive, &types)
+        self.members(title, directive, directive, &members::<T>().copied().collect::<Vec<_>>())
     }
 }
 
@@ -268,17 +260,24 @@ fn tables() -> String {
     text += &meanings.settings::<FilterDesc>("Pixel filters", "PixelFilter");
     text += &meanings.settings::<IntegratorDesc>("Integrators", "Integrator");
     text += &meanings.settings::<AcceleratorDesc>("Accelerators", "Accelerator");
-    let shapes = [ShapeType::NAMES, &["polygon"]].concat();
-    text += &meanings.named("Shapes", "Shape", "Shape", &shapes);
+    let polygon = Member {
+        names: &["polygon"],
+        help: "A planar polygon with holes.",
+        is_drawn: true,
+        is_extension: true,
+    };
+    text += &meanings.members("Shapes", "Shape", "Shape", &[ShapeType::MEMBERS, &[polygon]].concat());
     text += &meanings.members("Materials", "Material", "Material", MaterialType::MEMBERS);
-    let numbers = <f32 as TextureValue>::TYPES.iter();
-    let mut textures: Vec<&str> = numbers.chain(<SpectrumDesc as TextureValue>::TYPES).copied().collect();
-    let mut seen = BTreeSet::new();
-    textures.retain(|kind| seen.insert(*kind));
-    let textures: Vec<_> = textures.into_iter().map(|kind| (vec![kind], "", texture_rows(kind))).collect();
-    text += &meanings.section("Textures", "Texture", &textures);
+    let textures = TextureType::MEMBERS.iter().map(|&member| (member, texture_rows(member.names[0])));
+    text += &meanings.section("Textures", "Texture", &textures.collect::<Vec<_>>());
     text += &meanings.members("Lights", "LightSource", "LightSource", LightType::MEMBERS);
-    text += &meanings.named("Area lights", "AreaLightSource", "AreaLightSource", &["diffuse"]);
+    let diffuse = Member {
+        names: &["diffuse"],
+        help: "A surface that emits alike in all directions.",
+        is_drawn: true,
+        is_extension: false,
+    };
+    text += &meanings.members("Area lights", "AreaLightSource", "AreaLightSource", &[diffuse]);
     text += &meanings.members("Media", "MakeNamedMedium", "MakeNamedMedium \"a\"", MediumType::MEMBERS);
     let list = |names: Vec<&str>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     text += &format!("## Names of spectra\n\n{}\n\n", list(spectrum::names().collect()));

@@ -51,22 +51,16 @@ impl Builder<'_> {
 
     /// Builds a shape; one that cannot be read is left out.
     pub(super) fn shape(&mut self, shape: ShapeStatement) -> Option<Stated<ShapeDesc>> {
-        let (read, origin) = self.read(shape.statement, |reader| {
-            let kind = kind(reader)?;
-            Some((kind, reader.optional_float_parameter("alpha"), reader.boolean("singlesided", false)))
-        });
+        let (read, origin) = self.read(shape.statement, read_shape);
         let material = self.material_reference(&shape.material);
         let medium_interface = self.medium_interface(shape.medium_interface.as_ref());
-        let (kind, alpha, single_sided) = read?;
         let desc = ShapeDesc {
-            kind,
             world_from_object: shape.world_from_object,
             reverse_orientation: shape.reverse_orientation,
-            single_sided,
             material,
             area_light: shape.area_light.map(Handle::new),
-            alpha,
             medium_interface,
+            ..read?
         };
         Some(Stated::new(desc, origin))
     }
@@ -114,133 +108,100 @@ fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<(ShapeK
     Ok((mesh.into_shape(), warnings))
 }
 
-fn kind(reader: &mut Reader) -> Option<ShapeKind> {
-    if reader.kind.value == "polygon" {
-        return polygon(reader).map(ShapeKind::Triangles);
-    }
-    let Some(shape) = ShapeType::named(&reader.kind.value) else {
-        reader.unknown_type("shape", "shape", &[ShapeType::NAMES, &["polygon"]].concat());
+/// Triangles are also called `polygon`, then with the corners of contours.
+const POLYGON: &str = "polygon";
+
+fn read_shape(reader: &mut Reader) -> Option<ShapeDesc> {
+    let is_polygon = reader.kind.value == POLYGON;
+    let kind = if is_polygon { Some(ShapeType::Triangles) } else { ShapeType::named(&reader.kind.value) };
+    let Some(kind) = kind.and_then(ShapeKind::new) else {
+        reader.unknown_type("shape", "shape", &[ShapeType::NAMES, &[POLYGON]].concat());
         return None;
     };
-    Some(match shape {
-        ShapeType::Sphere => {
-            let radius = reader.positive("radius", 1.0);
-            let (z_min, z_max) = z_range(reader, [-radius, radius], [-radius, radius])?;
-            ShapeKind::Sphere { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+    let mut shape = ShapeDesc::from(kind);
+    reader.settings(&mut shape);
+    match &mut shape.kind {
+        ShapeKind::Sphere { radius, z_min, z_max, .. } => {
+            *z_min = reader.float("zmin", -*radius);
+            *z_max = reader.float("zmax", *radius);
+            check_range(reader, [*z_min, *z_max], [-*radius, *radius])?;
         }
-        ShapeType::Cylinder => {
-            let radius = reader.positive("radius", 1.0);
-            let (z_min, z_max) = z_range(reader, [-1.0, 1.0], [f32::NEG_INFINITY, f32::INFINITY])?;
-            ShapeKind::Cylinder { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+        ShapeKind::Cylinder { z_min, z_max, .. } => {
+            check_range(reader, [*z_min, *z_max], [f32::NEG_INFINITY, f32::INFINITY])?;
         }
-        ShapeType::Cone => ShapeKind::Cone {
-            radius: reader.positive("radius", 1.0),
-            height: reader.positive("height", 1.0),
-            phi_max: reader.positive("phimax", 360.0),
-        },
-        ShapeType::Paraboloid => {
-            let radius = reader.positive("radius", 1.0);
-            let (z_min, z_max) = z_range(reader, [0.0, 1.0], [0.0, f32::INFINITY])?;
-            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+        ShapeKind::Paraboloid { z_min, z_max, .. } => {
+            check_range(reader, [*z_min, *z_max], [0.0, f32::INFINITY])?;
         }
-        ShapeType::Hyperboloid => {
-            let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
-            if ends[0].z == ends[1].z {
-                reader.refuse(
-                    "p2",
-                    "`p1` and `p2` have the same z: use a `disk`, which is what such a line sweeps",
-                );
-                return None;
-            }
-            if ends.iter().all(|end| end.x == 0.0 && end.y == 0.0) {
-                reader.refuse("p2", "`p1` and `p2` both lie on the z axis: such a line sweeps no surface");
-                return None;
-            }
-            ShapeKind::Hyperboloid { ends, phi_max: reader.positive("phimax", 360.0) }
-        }
-        ShapeType::Disk => {
-            let (height, radius) = (reader.float("height", 0.0), reader.positive("radius", 1.0));
-            let inner_radius = reader.float("innerradius", 0.0);
-            if !(0.0..radius).contains(&inner_radius) {
+        ShapeKind::Hyperboloid { ends, .. } => check_segment(reader, ends)?,
+        ShapeKind::Disk { radius, inner_radius, .. } => {
+            if !(0.0..*radius).contains(inner_radius) {
                 reader.refuse("innerradius", "`innerradius` must be at least 0, and below `radius`");
                 return None;
             }
-            ShapeKind::Disk { height, radius, inner_radius, phi_max: reader.positive("phimax", 360.0) }
         }
-        ShapeType::Plane => ShapeKind::Plane,
-        ShapeType::Spheres => ShapeKind::Spheres(spheres(reader)?),
-        ShapeType::Implicit => implicit(reader)?,
-        ShapeType::Solid => solid(reader)?,
-        ShapeType::Triangles => ShapeKind::Triangles(triangle_mesh(reader, true)?),
-        ShapeType::Patches => ShapeKind::Patches(patch_mesh(reader)?),
-        ShapeType::PlyMesh => mesh_file(reader)?,
-        ShapeType::Curve => ShapeKind::Curve(curve(reader)?),
-        ShapeType::LoopSubdivision => {
-            let levels = reader.integer("levels", 3, 0..=12);
+        ShapeKind::Cone { .. } | ShapeKind::Plane => (),
+        ShapeKind::Spheres(set) => *set = spheres(reader)?,
+        ShapeKind::Implicit { formula, bounds: [min, max] } => {
+            *formula = reader.needed("f", Reader::string)?;
+            if !(min.cmplt(*max).all() && min.is_finite() && max.is_finite()) {
+                let message = "`bounds` are two corners of a box: the lowest and the highest x, y and z";
+                reader.refuse("bounds", message);
+                return None;
+            }
+        }
+        ShapeKind::Solid { operation, operands } => (*operation, *operands) = solid(reader)?,
+        ShapeKind::Triangles(mesh) if is_polygon => *mesh = polygon(reader)?,
+        ShapeKind::Triangles(mesh) => *mesh = triangle_mesh(reader, true)?,
+        ShapeKind::Patches(mesh) => *mesh = patch_mesh(reader)?,
+        ShapeKind::PlyMesh { .. } => mesh_file(reader, &mut shape.kind)?,
+        ShapeKind::Curve(desc) => curve(reader, desc)?,
+        ShapeKind::LoopSubdivision { mesh, .. } => {
             // The format has one scheme only.
             reader.choice("scheme", (), &[("loop", ())]);
-            ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
+            *mesh = triangle_mesh(reader, false)?;
         }
-    })
+    }
+    Some(shape)
 }
 
-/// The parameters `zmin` and `zmax`, in either order, of a surface whose z lies between `limits`.
-fn z_range(reader: &mut Reader, default: [f32; 2], limits: [f32; 2]) -> Option<(f32, f32)> {
-    let z = [reader.float("zmin", default[0]), reader.float("zmax", default[1])];
+/// Checks that a part of a surface whose z lies between `limits` is between `zmin` and `zmax`, in
+/// either order.
+fn check_range(reader: &mut Reader, z: [f32; 2], limits: [f32; 2]) -> Option<()> {
     let [low, high] = [z[0].min(z[1]), z[0].max(z[1])];
     if low.max(limits[0]) < high.min(limits[1]) {
-        return Some((z[0], z[1]));
+        return Some(());
     }
     let blamed = if reader.has("zmax") { "zmax" } else { "zmin" };
     reader.refuse(blamed, "no part of the surface lies between `zmin` and `zmax`");
     None
 }
 
-/// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it
-/// is negative; its syntax is that of `geometry::Formula`. `"point3 bounds"`: two corners of the
-/// box at which the surface is cut off, ±2 if absent.
-fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
-    let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
-    let Some(formula) = reader.string("f") else {
-        if !reader.has("f") {
-            reader.missing("f");
-        }
-        return None;
+/// Checks that a segment sweeps a hyperboloid.
+fn check_segment(reader: &mut Reader, ends: &[Vec3; 2]) -> Option<()> {
+    let problem = if ends[0].z == ends[1].z {
+        "have the same z: use a `disk`, which is what such a line sweeps"
+    } else if ends.iter().all(|end| end.x == 0.0 && end.y == 0.0) {
+        "both lie on the z axis: such a line sweeps no surface"
+    } else {
+        return Some(());
     };
-    match *bounds {
-        [min, max] if min.cmplt(max).all() && min.is_finite() && max.is_finite() => {
-            Some(ShapeKind::Implicit { formula, bounds: [min, max] })
-        }
-        _ => {
-            reader
-                .refuse("bounds", "`bounds` are two corners of a box: the lowest and the highest x, y and z");
-            None
-        }
-    }
+    reader.refuse("p2", format!("`p1` and `p2` {problem}"));
+    None
 }
 
 /// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others).
 /// `"string operands"`: names of objects, all shapes of which are one body; they are placed as an
 /// instance of the object would be, and their materials are ignored.
-fn solid(reader: &mut Reader) -> Option<ShapeKind> {
-    let known = [
-        ("union", SolidOperation::Union),
-        ("intersection", SolidOperation::Intersection),
-        ("difference", SolidOperation::Difference),
-    ];
-    let operation = reader.choice("operation", SolidOperation::Union, &known);
-    let names = reader.strings("operands").unwrap_or_default();
-    let absent: Vec<_> = ["operation", "operands"].into_iter().filter(|name| !reader.has(name)).collect();
-    if !absent.is_empty() {
-        absent.into_iter().for_each(|name| reader.missing(name));
-        return None;
-    }
+fn solid(reader: &mut Reader) -> Option<(SolidOperation, Vec<Spanned<Handle<ObjectDesc>>>)> {
+    let operation = reader.needed("operation", Reader::named);
+    let names = reader.needed("operands", Reader::strings);
+    let (operation, names) = (operation?, names?);
     if names.len() < 2 {
         reader.refuse("operands", "a solid is made of two objects or more");
         return None;
     }
     let operands: Vec<_> = names.iter().filter_map(|name| operand(reader.builder, name)).collect();
-    (operands.len() == names.len()).then_some(ShapeKind::Solid { operation, operands })
+    (operands.len() == names.len()).then_some((operation, operands))
 }
 
 /// An object that may be a part of a solid here: one that is complete.
@@ -272,10 +233,7 @@ fn indices<const N: usize>(
         if vertices == N {
             return Some(Arc::from([default]));
         }
-        if !reader.has("indices") {
-            reader.missing("indices");
-        }
-        return None;
+        return reader.needed("indices", |_, _| None);
     };
     if !reader.has_rows_of("indices", N) {
         return None;
@@ -313,11 +271,7 @@ fn per_vertex<T>(
 }
 
 fn points(reader: &mut Reader) -> Option<Arc<[Vec3]>> {
-    let points = reader.points3("P");
-    if points.is_none() && !reader.has("P") {
-        reader.missing("P");
-    }
-    points
+    reader.needed("P", Reader::points3)
 }
 
 fn face_indices(reader: &mut Reader, faces: usize) -> Arc<[i32]> {
@@ -430,100 +384,67 @@ fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
     Some(SpheresDesc { centers, radii })
 }
 
-fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
-    let displaced = reader.optional_float_parameter("displacement");
-    let edge = if reader.has("edgelength") {
-        reader.positive("edgelength", 1.0)
-    } else {
-        reader.positive("displacement.edgelength", 1.0)
-    };
-    let Some(file) = reader.string("filename") else {
-        if !reader.has("filename") {
-            reader.missing("filename");
-        }
-        return None;
-    };
+/// The mesh of a file, in place of an empty one.
+fn mesh_file(reader: &mut Reader, kind: &mut ShapeKind) -> Option<()> {
+    let edge = reader.optional_float("edgelength");
+    if edge.is_some_and(|edge| edge <= 0.0) {
+        reader.refuse("edgelength", "`edgelength` must be above zero");
+    }
+    let file = reader.needed("filename", Reader::string)?;
     let path = reader.builder.path(&file);
-    match reader.builder.meshes.get(&path) {
-        Some(Ok((kind, warnings))) => {
-            let mut kind = kind.clone();
-            for text in warnings {
-                let message = format!("of the mesh `{}`: {text}", path.display());
-                reader.builder.report.warning("not-drawn", message, file.span);
-            }
-            if let ShapeKind::PlyMesh { displacement, edge_length, .. } = &mut kind {
-                (*displacement, *edge_length) = (displaced, edge);
-            }
-            Some(kind)
-        }
-        Some(Err(message)) => {
+    // Only a parameter of the wrong type or count was not loaded; that has been reported.
+    let (mut mesh, warnings) = match reader.builder.meshes.get(&path)? {
+        Ok(loaded) => loaded.clone(),
+        Err(message) => {
             let message = format!("cannot read the mesh `{}`: {message}", path.display());
             reader.builder.report.error("unreadable-mesh", message, file.span);
-            None
+            return None;
         }
-        None => {
-            // Only a parameter of the wrong type or count was not loaded; that has been reported.
-            None
-        }
+    };
+    for text in warnings {
+        let message = format!("of the mesh `{}`: {text}", path.display());
+        reader.builder.report.warning("not-drawn", message, file.span);
     }
+    if let ShapeKind::PlyMesh { displacement: displaced, edge_length: length, .. } = &mut mesh
+        && let ShapeKind::PlyMesh { displacement, edge_length, .. } = kind
+    {
+        (*displaced, *length) = (displacement.take(), edge.unwrap_or(*edge_length));
+    }
+    *kind = mesh;
+    Some(())
 }
 
-fn curve(reader: &mut Reader) -> Option<CurveDesc> {
-    let control_points = points(reader)?;
-    let degree = reader.integer("degree", 3, 2..=3);
-    let basis = reader.choice(
-        "basis",
-        CurveBasis::Bezier,
-        &[("bezier", CurveBasis::Bezier), ("bspline", CurveBasis::BSpline)],
-    );
-    let count = control_points.len() as i32;
-    let fits = match basis {
-        CurveBasis::Bezier => count > degree && (count - 1 - degree) % degree == 0,
-        CurveBasis::BSpline => count > degree,
+/// Checks the number of control points, and reads normals and width.
+fn curve(reader: &mut Reader, curve: &mut CurveDesc) -> Option<()> {
+    let CurveDesc { control_points, degree, basis, profile, normals, width, split_depth: _ } = curve;
+    *control_points = points(reader)?;
+    let (count, degree) = (control_points.len() as i32, *degree);
+    let (fits, segments) = match basis {
+        CurveBasis::Bezier => ((count - 1) % degree == 0, (count - 1) / degree),
+        CurveBasis::BSpline => (true, count - degree),
     };
-    if !fits {
+    if count <= degree || !fits {
         let message =
             format!("{count} points in `P` do not make a whole number of segments of degree {degree}");
         reader.refuse("P", message);
         return None;
     }
-    let segments = match basis {
-        CurveBasis::Bezier => (count - 1) / degree,
-        CurveBasis::BSpline => count - degree,
-    };
-    let mut profile = reader.choice(
-        "type",
-        CurveProfile::Flat,
-        &[
-            ("flat", CurveProfile::Flat),
-            ("ribbon", CurveProfile::Ribbon),
-            ("cylinder", CurveProfile::Cylinder),
-        ],
-    );
-    let mut normals = reader.normals("N").unwrap_or_default();
-    if profile != CurveProfile::Ribbon && !normals.is_empty() {
+    *normals = reader.normals("N").unwrap_or_default();
+    if *profile != CurveProfile::Ribbon && !normals.is_empty() {
         reader.ignored("N", "curves have normals only if they are of type `ribbon`");
-        normals = Arc::default();
+        *normals = Arc::default();
     }
-    if profile == CurveProfile::Ribbon && normals.len() as i32 != segments + 1 {
+    if *profile == CurveProfile::Ribbon && normals.len() as i32 != segments + 1 {
         let message = format!("a ribbon of {segments} segments needs {} normals in `N`", segments + 1);
         reader.refuse("N", message);
-        profile = CurveProfile::Flat;
+        *profile = CurveProfile::Flat;
     }
-    let width = reader.float("width", 1.0);
-    let width = [reader.float("width0", width), reader.float("width1", width)];
+    let both = reader.float("width", 1.0);
+    *width = ["width0", "width1"].map(|name| reader.float(name, both));
     if width.iter().any(|&width| width < 0.0) {
         let name = ["width0", "width1", "width"].into_iter().find(|name| reader.has(name));
         reader.refuse(name.unwrap_or("width"), "the width of a curve cannot be negative");
         return None;
     }
-    Some(CurveDesc {
-        control_points,
-        degree,
-        basis,
-        profile,
-        normals,
-        width,
-        split_depth: reader.integer("splitdepth", 3, 0..=20),
-    })
+    Some(())
 }

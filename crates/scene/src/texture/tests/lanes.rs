@@ -67,7 +67,7 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
     let [red, grey] = [SpectrumDesc::rgb(0.9, 0.1, 0.1), SpectrumDesc::Constant(0.3)];
     let [first, second]: [Parameter<SpectrumDesc>; 2] = [red.clone().into(), grey.clone().into()];
     for kind in [
-        TextureKind::Constant(grey.clone()),
+        TextureKind::Constant { value: grey.clone() },
         TextureKind::Scale { texture: image.clone(), scale: number.clone() },
         TextureKind::Mix { textures: [image, first.clone()], amount: number },
         TextureKind::Checkerboard {

@@ -3,7 +3,7 @@
 use eframe::egui::{CollapsingHeader, DragValue, Slider, Ui};
 
 use super::group;
-use crate::knobs::{Thing, Value, lights, materials};
+use crate::knobs::{Knob, Thing, Value, lights, materials};
 use crate::window::state::State;
 
 /// What can be changed of the scene. Changes show as soon as it is compiled again.
@@ -24,45 +24,39 @@ fn things(ui: &mut Ui, things: Vec<Thing<'_>>) -> bool {
     }
     let is_open = things.len() <= 6;
     let mut has_changed = false;
-    for (index, Thing { name, knobs }) in things.into_iter().enumerate() {
-        let head = CollapsingHeader::new(name).id_salt(index).default_open(is_open);
+    for (index, mut thing) in things.into_iter().enumerate() {
+        let head = CollapsingHeader::new(&thing.name).id_salt(index).default_open(is_open);
         head.show(ui, |ui| {
-            for knob in knobs {
-                ui.horizontal(|ui| has_changed |= turn(ui, knob.label, knob.value));
-            }
+            thing.visit(|knob| {
+                ui.horizontal(|ui| has_changed |= turn(ui, knob));
+            });
         });
     }
     has_changed
 }
 
 /// Shows the control of a value; returns whether it was changed.
-fn turn(ui: &mut Ui, label: &str, value: Value<'_>) -> bool {
-    let has_changed = match value {
-        Value::Color(mut color) => {
-            let mut rgb = color.rgb();
-            let has_changed = ui.color_edit_button_rgb(&mut rgb).changed();
-            if has_changed {
-                color.set(rgb);
-            }
-            has_changed
-        }
-        Value::Light(mut color) => {
-            let rgb = color.rgb();
+fn turn(ui: &mut Ui, mut knob: Knob<'_>) -> bool {
+    let changed = match knob.value {
+        Value::Color(mut rgb) => ui.color_edit_button_rgb(&mut rgb).changed().then_some(Value::Color(rgb)),
+        Value::Light(rgb) => {
             // The button has colours up to 1.
             let most = rgb.into_iter().fold(f32::MIN_POSITIVE, f32::max);
             let mut shown = rgb.map(|part| part / most);
             let has_changed = ui.color_edit_button_rgb(&mut shown).changed();
-            if has_changed {
-                color.set(shown.map(|part| part * most));
-            }
-            has_changed
+            has_changed.then(|| Value::Light(shown.map(|part| part * most)))
         }
-        Value::Scale(scale) => {
-            let speed = 0.01 * scale.max(0.01);
-            ui.add(DragValue::new(scale).range(0.0..=1e9).speed(speed)).changed()
+        Value::Number(mut number) => {
+            let [least, most] = knob.field.domain.bounds();
+            let response = if most - least <= 1e3 {
+                ui.add(Slider::new(&mut number, least..=most))
+            } else {
+                let speed = 0.01 * number.abs().max(0.01);
+                ui.add(DragValue::new(&mut number).range(least.max(-1e9)..=most.min(1e9)).speed(speed))
+            };
+            response.changed().then_some(Value::Number(number))
         }
-        Value::Share(share) => ui.add(Slider::new(share, 0.0..=1.0)).changed(),
     };
-    ui.label(label);
-    has_changed
+    ui.label(knob.field.name).on_hover_text(knob.field.help);
+    changed.map(|value| knob.set(value)).is_some()
 }
