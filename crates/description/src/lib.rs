@@ -79,7 +79,7 @@ pub use suggest::{closest, did_you_mean};
 pub use texture::{
     EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, TextureType,
-    TextureValue, UvImageDesc, WrapMode,
+    TextureValue, UvImageDesc, UvImageNames, WrapMode,
 };
 pub use transform::TransformDesc;
 pub use voxels::VoxelsDesc;

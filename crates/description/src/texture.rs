@@ -287,7 +287,40 @@ pub struct UvImageDesc {
     pub is_nearest: bool,
 }
 
+/// The names of the parameters of an image over (u, v).
+#[derive(Clone, Copy, Debug)]
+pub struct UvImageNames {
+    /// Of the file.
+    pub file: &'static str,
+    /// Of the wrap mode.
+    pub wrap: &'static str,
+    /// Of the filter.
+    pub filter: &'static str,
+    /// Of the columns of the matrix.
+    pub columns: &'static str,
+}
+
 impl UvImageDesc {
+    /// The names of an image of emission.
+    pub const EMISSION: UvImageNames =
+        UvImageNames { file: "filename", wrap: "wrap", filter: "filter", columns: "columns" };
+
+    /// The names of a map of normals.
+    pub const NORMALS: UvImageNames = UvImageNames {
+        file: "normalmap",
+        wrap: "normalmap_wrap",
+        filter: "normalmap_filter",
+        columns: "normalmap_columns",
+    };
+
+    /// The names of a map of the coat's normals.
+    pub const COAT_NORMALS: UvImageNames = UvImageNames {
+        file: "geometry_coat_normal",
+        wrap: "geometry_coat_normal_wrap",
+        filter: "geometry_coat_normal_filter",
+        columns: "geometry_coat_normal_columns",
+    };
+
     /// The columns of the identity.
     pub const IDENTITY: [[f32; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use description::{
     AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, TransformDesc,
-    WrapMode,
+    UvImageDesc, WrapMode,
 };
 use image::ColorEncoding;
 use math::DMat4;
@@ -90,7 +90,7 @@ pub(crate) fn area_light(
         light.radiance = AreaLightDesc::default().radiance;
         let name = image(desc, picture.image, files);
         statement.text("filename", &name);
-        uv_lookup(&mut statement, &picture, ["wrap", "filter", "columns"], WrapMode::Clamp, extensions);
+        uv_lookup(&mut statement, &picture, &UvImageDesc::EMISSION, WrapMode::Clamp, extensions);
     }
     parameters(&mut statement, &light, names);
     if light.image.is_some() {

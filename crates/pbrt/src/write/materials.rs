@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use description::{
-    CoatedConductorDesc, ConductorDesc, MaterialDesc, MaterialKind, SceneDesc, UvImageDesc, WrapMode,
+    CoatedConductorDesc, ConductorDesc, MaterialDesc, MaterialKind, SceneDesc, UvImageDesc, UvImageNames,
+    WrapMode,
 };
 use image::ColorEncoding;
 use scattering::SubsurfaceMethod;
@@ -30,21 +31,14 @@ pub(crate) fn materials(
         write(&mut statement, kind, names, files, extensions);
         if !matches!(kind, MaterialKind::Mix { .. } | MaterialKind::Interface) {
             if let Some(map) = normal_map {
-                let names = ["normalmap", "normalmap_wrap", "normalmap_filter", "normalmap_columns"];
-                write_normal_map(&mut statement, names, map, desc, files, extensions);
+                write_normal_map(&mut statement, &UvImageDesc::NORMALS, map, desc, files, extensions);
             } else {
                 statement.optional_float_parameter("displacement", displacement.as_ref(), names);
             }
             if let MaterialKind::OpenPbr(surface) = kind
                 && let Some(map) = &surface.geometry_coat_normal
             {
-                let names = [
-                    "geometry_coat_normal",
-                    "geometry_coat_normal_wrap",
-                    "geometry_coat_normal_filter",
-                    "geometry_coat_normal_columns",
-                ];
-                write_normal_map(&mut statement, names, map, desc, files, extensions);
+                write_normal_map(&mut statement, &UvImageDesc::COAT_NORMALS, map, desc, files, extensions);
             }
         }
         text.statement(statement);
@@ -53,14 +47,14 @@ pub(crate) fn materials(
 
 fn write_normal_map(
     to: &mut Statement,
-    [file, wrap, filter, columns]: [&str; 4],
+    names: &UvImageNames,
     map: &UvImageDesc,
     desc: &SceneDesc,
     files: &mut Files,
     extensions: &mut BTreeSet<String>,
 ) {
-    to.text(file, &files.image(&desc.images[map.image].image, ColorEncoding::Linear));
-    uv_lookup(to, map, [wrap, filter, columns], WrapMode::Repeat, extensions);
+    to.text(names.file, &files.image(&desc.images[map.image].image, ColorEncoding::Linear));
+    uv_lookup(to, map, names, WrapMode::Repeat, extensions);
 }
 
 fn write(
@@ -95,6 +89,15 @@ fn write(
         MaterialKind::Mix { materials, .. } => {
             to.texts("materials", materials.iter().map(|&material| names.material(material)));
         }
-        _ => (),
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::CoatedDiffuse(_)
+        | MaterialKind::CoatedConductor(_)
+        | MaterialKind::Conductor(_)
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::DiffuseTransmission { .. }
+        | MaterialKind::Hair { .. }
+        | MaterialKind::Subsurface { .. }
+        | MaterialKind::Interface => (),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use description::{
     EncodingDesc, ImageTextureDesc, MappingDesc, SceneDesc, TextureDesc, TextureKind, TextureValue,
-    UvImageDesc, WrapMode,
+    UvImageDesc, UvImageNames, WrapMode,
 };
 use image::{ColorEncoding, Pixels};
 use math::DMat4;
@@ -110,12 +110,11 @@ impl Context<'_, '_> {
     }
 }
 
-/// How an image over (u, v) is looked up, by the names of its wrap mode, filter and columns, and
-/// the wrap mode that is the default.
+/// How an image over (u, v) is looked up, and the wrap mode that is the default.
 pub(crate) fn uv_lookup(
     to: &mut Statement,
     image: &UvImageDesc,
-    [wrap, filter, columns]: [&str; 3],
+    names: &UvImageNames,
     default: WrapMode,
     extensions: &mut BTreeSet<String>,
 ) {
@@ -124,10 +123,10 @@ pub(crate) fn uv_lookup(
         return;
     }
     extensions.insert("lookups of images of emission and normals".into());
-    to.choice(wrap, mode.name(), default.name());
-    to.choice(filter, if *is_nearest { "point" } else { "bilinear" }, "bilinear");
+    to.choice(names.wrap, mode.name(), default.name());
+    to.choice(names.filter, if *is_nearest { "point" } else { "bilinear" }, "bilinear");
     if *matrix != UvImageDesc::IDENTITY {
-        to.floats(columns, matrix.as_flattened().iter().copied());
+        to.floats(names.columns, matrix.as_flattened().iter().copied());
     }
 }
 

@@ -1,7 +1,9 @@
 //! Lights and area lights.
 
 use description::schema::{Settings, Value};
-use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType, Stated, WrapMode};
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType, Stated, UvImageDesc, WrapMode,
+};
 
 use super::Builder;
 use super::reader::Reader;
@@ -78,8 +80,7 @@ fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {
         reader.unknown_type("area-light", "area light", &["diffuse"]);
         return None;
     }
-    let names = ["filename", "wrap", "filter", "columns"];
-    let image = reader.uv_image(names, None, WrapMode::Clamp);
+    let image = reader.uv_image(&UvImageDesc::EMISSION, None, WrapMode::Clamp);
     if image.is_some() && reader.has("L") {
         reader.refuse("L", "an area light takes its colour from `L` or from `filename`, not from both");
     }

@@ -2,7 +2,7 @@
 
 use description::{
     Arena, Diagnostic, HairColor, Handle, MaterialDesc, MaterialKind, MaterialType, Spanned, SpectrumDesc,
-    Substance, SubsurfaceScattering,
+    Substance, SubsurfaceScattering, UvImageDesc,
 };
 
 use super::Builder;
@@ -65,8 +65,7 @@ fn material(reader: &mut Reader) -> Option<MaterialDesc> {
     let mut surface = (None, None);
     if !matches!(reader.kind.value.as_str(), "mix" | "interface" | "" | "none") {
         let displacement = reader.optional_float_parameter("displacement");
-        let names = ["normalmap", "normalmap_wrap", "normalmap_filter", "normalmap_columns"];
-        surface = (displacement, reader.normal_map(names));
+        surface = (displacement, reader.normal_map(&UvImageDesc::NORMALS));
     }
     let mut desc = MaterialDesc::from(kind(reader)?);
     (desc.displacement, desc.normal_map) = surface;
@@ -101,12 +100,7 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
             let color = reader.spectrum("emission_color");
             reader.note("white", "");
             surface.emission_color = color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space));
-            surface.geometry_coat_normal = reader.normal_map([
-                "geometry_coat_normal",
-                "geometry_coat_normal_wrap",
-                "geometry_coat_normal_filter",
-                "geometry_coat_normal_columns",
-            ]);
+            surface.geometry_coat_normal = reader.normal_map(&UvImageDesc::COAT_NORMALS);
         }
         MaterialKind::Mix { materials, .. } => *materials = mixed(reader)?,
         MaterialKind::Diffuse { .. }

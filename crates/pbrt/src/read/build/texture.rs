@@ -2,7 +2,7 @@
 
 use description::{
     Arena, EncodingDesc, Handle, SceneDesc, Stated, TextureDesc, TextureKind, TextureType, TextureValue,
-    UvImageDesc, WrapMode,
+    UvImageDesc, UvImageNames, WrapMode,
 };
 
 use super::Builder;
@@ -113,23 +113,23 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
 }
 
 impl Reader<'_, '_> {
-    /// A normal map, by the names of its file, wrap mode, filter and columns.
-    pub(super) fn normal_map(&mut self, names: [&'static str; 4]) -> Option<UvImageDesc> {
+    /// A map of normals.
+    pub(super) fn normal_map(&mut self, names: &UvImageNames) -> Option<UvImageDesc> {
         self.uv_image(names, Some(EncodingDesc::Linear), WrapMode::Repeat)
     }
 
-    /// An image over (u, v) by the same names, with its wrap mode if none is given.
+    /// An image over (u, v), with its wrap mode if none is given.
     pub(super) fn uv_image(
         &mut self,
-        [file, wrap, filter, columns]: [&'static str; 4],
+        names: &UvImageNames,
         encoding: Option<EncodingDesc>,
         otherwise: WrapMode,
     ) -> Option<UvImageDesc> {
-        let image = self.image(file, encoding)?;
-        let wrap = self.choice(wrap, otherwise, WrapMode::NAMES);
-        let is_nearest = self.choice(filter, false, &[("bilinear", false), ("point", true)]);
+        let image = self.image(names.file, encoding)?;
+        let wrap = self.choice(names.wrap, otherwise, WrapMode::NAMES);
+        let is_nearest = self.choice(names.filter, false, &[("bilinear", false), ("point", true)]);
         let columns = self
-            .float_array(columns)
+            .float_array(names.columns)
             .map_or(UvImageDesc::IDENTITY, |[a, b, c, d, e, f]| [[a, b], [c, d], [e, f]]);
         Some(UvImageDesc { image, columns, wrap, is_nearest })
     }
