@@ -164,7 +164,7 @@ fn what_the_format_cannot_express_is_an_error() {
 
     let mut desc = SceneDesc::default();
     desc.shapes.push(ShapeDesc { alpha: Some(f32::NAN.into()), ..sphere() });
-    assert!(problem(&desc).contains("`alpha` has a value that is not finite"), "{}", problem(&desc));
+    assert!(problem(&desc).contains("`alpha` cannot be NaN"), "{}", problem(&desc));
 }
 
 #[test]

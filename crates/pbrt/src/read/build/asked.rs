@@ -54,7 +54,7 @@ impl Asked {
             use description::schema::{Kind, Value};
             let default = match slot.get() {
                 Value::Automatic => String::new(),
-                Value::List(values) => values.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
+                value @ Value::List(_) => value.to_string().replace(',', " "),
                 value => value.to_string(),
             };
             let values = match slot.kind() {
