@@ -478,7 +478,9 @@ fn invalid_values_are_reported() {
     };
     let constant = |value: SpectrumDesc| {
         move |scene: &mut SceneDesc| {
-            scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant { value: value.clone() }));
+            scene
+                .spectrum_textures
+                .push(SpectrumTextureDesc::new(TextureKind::Constant { value: value.clone() }));
         }
     };
     assert_eq!(codes(&constant(SpectrumDesc::Named("metal-Unobtainium-eta".into()))), ["invalid-value"]);

@@ -5,16 +5,12 @@ use super::tree::Tree;
 use super::{Finding, rust};
 
 /// The most parameters of a function, besides `self`.
-const MOST: usize = 6;
-
-/// Crates whose functions still take tuples.
-const EXEMPT: [&str; 3] = ["crates/description/", "crates/import/", "crates/pbrt/"];
+const MAX_PARAMETERS: usize = 6;
 
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let of_libraries = |path: &str| path.contains("/src/") && !path.ends_with("tests.rs");
-    let checked = |path: &str| of_libraries(path) && !EXEMPT.iter().any(|folder| path.starts_with(folder));
     tree.ending(".rs")
-        .filter(|(path, _)| checked(path))
+        .filter(|(path, _)| of_libraries(path))
         .flat_map(|(path, text)| check_file(path, text))
         .collect()
 }
@@ -24,8 +20,8 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
     for function in functions(&code) {
         let line = 1 + code[..function.at].matches('\n').count();
-        if function.parameters.len() > MOST && !function.is_excused {
-            let message = format!("{} parameters, more than {MOST}", function.parameters.len());
+        if function.parameters.len() > MAX_PARAMETERS && !function.is_excused {
+            let message = format!("{} parameters, more than {MAX_PARAMETERS}", function.parameters.len());
             findings.push(Finding::new(path, line, message));
         }
         for parameter in function.parameters.iter().filter(|parameter| is_tuple(parameter)) {
