@@ -163,6 +163,20 @@ impl<T> Handle<T> {
     }
 }
 
+impl<T> Handle<T> {
+    /// The handle without the type of its item.
+    pub fn untyped(self) -> Handle<()> {
+        Handle::new(self.index)
+    }
+}
+
+impl Handle<()> {
+    /// The handle of an item of the type from which it was made.
+    pub fn typed<T>(self) -> Handle<T> {
+        Handle::new(self.index)
+    }
+}
+
 impl<T> Copy for Handle<T> {}
 impl<T> Clone for Handle<T> {
     fn clone(&self) -> Self {

@@ -118,8 +118,8 @@ members! {
         Triangles(MeshDesc) = "trianglemesh",
         /// Bilinear patches.
         Patches(PatchMeshDesc) = "bilinearmesh",
-        /// The triangles and quadrilaterals of a mesh file. Quadrilaterals are bilinear patches, and
-        /// share vertices with the triangles.
+        /// The triangles and quadrilaterals of a mesh file. Quadrilaterals are bilinear patches,
+        /// and share vertices with the triangles.
         PlyMesh = "plymesh" {
             /// Its triangles (and triangulated larger polygons).
             triangles: MeshDesc = MeshDesc::default();
@@ -146,13 +146,13 @@ members! {
             /// Lowest and highest corner of the box that clips the surface.
             bounds: [Point3; 2] = [Vec3::splat(-2.0), Vec3::splat(2.0)] => ["bounds"];
         },
-        /// Union, intersection or difference of the bodies of objects. Every shape of an object is a
-        /// body, closed where it is clipped; several shapes are their union.
+        /// Union, intersection or difference of the bodies of objects. Every shape of an object is
+        /// a body, closed where it is clipped; several shapes are their union.
         Solid = "csg" [extension] {
             /// How they are combined.
             operation: SolidOperation = SolidOperation::Union;
-            /// The bodies. A solid in an object refers only to earlier objects, so that no solid is a
-            /// part of itself.
+            /// The bodies. A solid in an object refers only to earlier objects, so that no solid is
+            /// a part of itself.
             operands: Vec<Spanned<Handle<ObjectDesc>>> = Vec::new();
         },
     }

@@ -98,11 +98,11 @@ impl TextureValue for f32 {
     }
 
     fn from_texture(texture: Handle<FloatTextureDesc>) -> Value {
-        Value::FloatTexture(texture)
+        Value::FloatTexture(texture.untyped())
     }
 
     fn to_texture(value: &Value) -> Option<Handle<FloatTextureDesc>> {
-        if let Value::FloatTexture(texture) = value { Some(*texture) } else { None }
+        if let Value::FloatTexture(texture) = value { Some(texture.typed()) } else { None }
     }
 }
 
@@ -116,11 +116,11 @@ impl TextureValue for SpectrumDesc {
     }
 
     fn from_texture(texture: Handle<SpectrumTextureDesc>) -> Value {
-        Value::SpectrumTexture(texture)
+        Value::SpectrumTexture(texture.untyped())
     }
 
     fn to_texture(value: &Value) -> Option<Handle<SpectrumTextureDesc>> {
-        if let Value::SpectrumTexture(texture) = value { Some(*texture) } else { None }
+        if let Value::SpectrumTexture(texture) = value { Some(texture.typed()) } else { None }
     }
 }
 

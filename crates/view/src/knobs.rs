@@ -1,4 +1,4 @@
-//! What can be changed of a scene while it is shown: numbers and colours of lights and materials, as
+//! Editable parameters of a scene that is shown: numbers and colours of lights and materials, as
 //! far as they are constants. The declarations of their parameters say which there are.
 
 use alhazen::description::schema::{self, Field, Settings, Slot};

@@ -2,12 +2,15 @@
 //! default, names, range, unit and help. All code that reads, checks, lists or changes settings
 //! uses [`Settings::visit`], independent of the individual settings.
 
+mod choice;
 mod declare;
 mod domain;
 mod members;
 mod value;
 
-pub(crate) use declare::{choices, settings};
+pub use choice::Choice;
+pub(crate) use choice::choices;
+pub(crate) use declare::settings;
 pub use domain::Domain;
 pub(crate) use domain::{
     MEAN_COSINE, SHARE, above, at_least, between, from, index_of_refraction, one_of, vector, with_extension,

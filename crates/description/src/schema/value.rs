@@ -4,7 +4,8 @@ use std::fmt;
 
 use math::Point3;
 
-use crate::{FloatTextureDesc, Handle, SpectrumDesc, SpectrumTextureDesc};
+use super::choice::Choice;
+use crate::{Handle, SpectrumDesc};
 
 /// A value of a setting.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,9 +23,9 @@ pub enum Value {
     /// A spectrum.
     Spectrum(SpectrumDesc),
     /// A texture in place of a number.
-    FloatTexture(Handle<FloatTextureDesc>),
+    FloatTexture(Handle<()>),
     /// A texture in place of a spectrum.
-    SpectrumTexture(Handle<SpectrumTextureDesc>),
+    SpectrumTexture(Handle<()>),
     /// Several values.
     List(Vec<Value>),
     /// Chosen by the renderer.
@@ -167,6 +168,21 @@ setting_types! {
     Point3: Point = Point(|&value: &Point3| value, |&value: &Point3| Some(value)),
     SpectrumDesc: Spectrum = Spectrum(SpectrumDesc::clone, |value: &SpectrumDesc| Some(value.clone())),
     String: Text = Text(String::clone, |value: &String| Some(value.clone())),
+}
+
+impl<T: Choice> SettingType for T {
+    const KIND: Kind = Kind::Choice(T::NAMES);
+
+    fn to_value(&self) -> Value {
+        Value::Text(self.name().to_owned())
+    }
+
+    fn from_value(value: &Value) -> Option<Self> {
+        match value {
+            Value::Text(text) => T::named(text),
+            _ => None,
+        }
+    }
 }
 
 impl<T: SettingType> SettingType for Option<T> {

@@ -113,10 +113,10 @@ fn write(to: &mut Statement, setting: &Setting, names: Option<&Names>) {
         }
         (Value::Spectrum(spectrum), _) => to.spectrum(name, spectrum),
         (Value::FloatTexture(texture), Some(names)) => {
-            to.push("texture", name, vec![quoted(names.float_texture(*texture))]);
+            to.push("texture", name, vec![quoted(names.float_texture(texture.typed()))]);
         }
         (Value::SpectrumTexture(texture), Some(names)) => {
-            to.push("texture", name, vec![quoted(names.spectrum_texture(*texture))]);
+            to.push("texture", name, vec![quoted(names.spectrum_texture(texture.typed()))]);
         }
         // The value of an alternative that is not the one chosen.
         (Value::Automatic, Some(_)) => (),
