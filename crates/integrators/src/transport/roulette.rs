@@ -7,8 +7,8 @@
 //! too, as each of their vertices costs connections.
 //!
 //! Camera paths have q = min(1, 3 c_max) ([`camera_path_survival`]). Their vertices are cheap, and
-//! a path that ends by chance is no longer spread evenly by the sampler: `docs/performance.md` has
-//! figures.
+//! a path that ends by chance is no longer spread evenly by the sampler: the log of the wavefront
+//! in `docs/measurements` has figures.
 
 use lanes::{Int, Real};
 use sampling::Sampler;
