@@ -49,10 +49,10 @@ fn the_page_of_settings_is_generated() {
 }
 
 #[test]
-fn the_page_of_rendering_names_every_layer() {
-    let page = document("docs/rendering.md");
+fn the_page_of_layers_names_every_layer() {
+    let page = document("docs/layers.md");
     for layer in Layer::ALL {
-        assert!(page.contains(&format!("`{layer}`")), "docs/rendering.md does not name `{layer}`");
+        assert!(page.contains(&format!("`{layer}`")), "docs/layers.md does not name `{layer}`");
     }
 }
 
