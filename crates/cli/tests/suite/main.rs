@@ -8,6 +8,8 @@ mod console;
 #[cfg(feature = "gpu")]
 mod device;
 mod doctor;
+#[cfg(unix)]
+mod documents;
 mod errors;
 mod image;
 mod inlining;
