@@ -6,10 +6,13 @@ use std::io;
 use std::path::Path;
 
 /// The entries at the root that are checked; all others (build output, pictures, data) are not.
-const ROOTS: [&str; 12] = [
+const ROOTS: [&str; 15] = [
     ".cargo",
     ".ci",
     ".gitignore",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
     "Cargo.toml",
     "LICENSE-APACHE",
     "LICENSE-MIT",
