@@ -34,8 +34,9 @@ usage: cargo xtask TASK
   dist [--static] [--profile] [TARGET]
              archives of the program, and on Debian a package, into target/packages;
              with --static without window and GPU, for any Linux
-  gallery [NAME…]
-             the pages of docs/gallery with these in their names, with their pictures
+  gallery [--words] [NAME…]
+             the pages of docs/gallery with these in their names, with their pictures;
+             with --words the pictures stay as they are
   scenes [NAME…]
              large scenes made of formulas, into target/scenes: car, forest, head,
              planet

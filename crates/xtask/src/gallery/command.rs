@@ -1,4 +1,4 @@
-//! The commands of pages, and what they draw.
+//! The commands of figures, and what they draw.
 
 use std::fs;
 use std::path::Path;
@@ -12,18 +12,9 @@ use showcase::Size;
 use crate::command::{QUICK_KERNELS, target};
 use crate::scenes::folder;
 
-/// What a command has drawn.
-#[derive(Default)]
-pub struct Drawn {
-    /// The picture as a data URI.
-    pub picture: String,
-    /// What it cost.
-    pub cost: String,
-    /// What it said.
-    pub text: String,
-}
+use super::figure::{Drawn, escaped};
 
-/// Runs commands, and tells with the costs of all but the last how far their pictures are from its.
+/// Runs commands, and notes with all but the last how far their pictures are from its.
 pub fn compare(root: &Path, program: &Path, lines: &[&str]) -> Result<Vec<Drawn>, String> {
     let folder = target(root).join("gallery");
     let file = |i: usize| folder.join(format!("compared-{i}.exr"));
@@ -37,7 +28,8 @@ pub fn compare(root: &Path, program: &Path, lines: &[&str]) -> Result<Vec<Drawn>
             command.args(["image", "diff", "--json"]).args([&reference, &file(i)]);
             let json = json(&output(&mut command)?)?;
             let [flip, relmse] = ["flip", "relmse"].map(|key| json[key].as_f64().unwrap_or(f64::NAN));
-            drawn.cost += &format!("; FLIP {flip:.3} and relMSE {relmse:.4} to the last picture");
+            drawn.notes +=
+                &format!("<p>Error against the last picture: FLIP {flip:.3}, relMSE {relmse:.4}</p>");
         }
     }
     Ok(drawn)
@@ -94,16 +86,18 @@ fn run_and_keep(
     };
     let bytes = fs::read(&file).map_err(|error| failed(error.to_string()))?;
     let kind = if *name == "trace-pixel" { "svg+xml" } else { "jpeg" };
-    let picture = format!("data:image/{kind};base64,{}", STANDARD.encode(bytes));
-    if *name == "trace-pixel" {
-        return Ok(Drawn { picture, cost: String::new(), text });
-    }
-    let json = json(&text).map_err(failed)?;
-    let cost = if *name == "view" { cost_of_view(&json) } else { cost(&json) };
-    Ok(Drawn { picture, cost, text: String::new() })
+    let picture = format!("image/{kind};base64,{}", STANDARD.encode(bytes));
+    let notes = if *name == "trace-pixel" {
+        format!("<summary>Every event in words</summary><pre>{}</pre>", escaped(&text))
+    } else {
+        let json = json(&text).map_err(failed)?;
+        let cost = if *name == "view" { cost_of_view(&json) } else { cost(&json) };
+        format!("<summary>Cost</summary><p>{cost}</p>")
+    };
+    Ok(Drawn { picture, notes })
 }
 
-/// What a command writes.
+/// The standard output of a command, or its errors if it fails.
 fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| error.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -131,7 +125,7 @@ fn without_size<'a>(words: &[&'a str]) -> Vec<&'a str> {
     kept
 }
 
-/// What a render cost in words; not in seconds, so that pages are the same on every machine.
+/// The cost of a render in words; not in seconds, so that pages are the same on every machine.
 fn cost(json: &Value) -> String {
     let number = |key: &str| json[key].as_f64().unwrap_or(0.0);
     let rays = number("rays");
@@ -142,13 +136,12 @@ fn cost(json: &Value) -> String {
     let bound = |i: usize| json["pixel_bounds"][i].as_i64().unwrap_or(0);
     let [width, height] = [bound(1) - bound(0), bound(3) - bound(2)];
     format!(
-        "{width} × {height} pixels, {} samples a pixel, {rays} rays with {:.1} tests of extents and {:.1} of \
-         primitives each",
+        "{width} × {height} pixels, {} spp, {rays} rays; mean per ray: {:.1} bounding box tests, {:.1} primitive tests",
         json["samples_per_pixel"], tests.0, tests.1
     )
 }
 
-/// What a view cost in words.
+/// The cost of a view in words.
 fn cost_of_view(json: &Value) -> String {
     let [width, height] = [0, 1].map(|i| json["resolution"][i].as_u64().unwrap_or(0));
     if json["rasterized"].is_null() {

@@ -1,57 +1,107 @@
 //! The gallery: pages that show what the program draws, each made of a text in
 //! `docs/gallery/pages`.
 //!
-//! The blocks of commands in a text are run, and what they draw becomes part of the page with what
-//! it cost, so that pages agree with the program. Pages are self-contained.
+//! The commands in a text are run, and what they draw becomes part of the page with what it cost,
+//! so that pages agree with the program. Pages are self-contained. The index is a text, too, which
+//! code hosts show with the folder; it has a thumbnail of each page.
 
 mod command;
+mod figure;
 mod page;
 mod pages;
+mod thumbnail;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use super::scenes;
+use figure::Drawn;
 use page::Page;
 use showcase::Size;
 
 /// The folders of texts and of pages.
 const TEXTS: &str = "docs/gallery/pages";
 const PAGES: &str = "docs/gallery";
+/// The text of the index.
+const INDEX: &str = "docs/gallery/README.md";
+
+/// The option that leaves pictures as they are.
+const WORDS: &str = "--words";
 
 /// Makes the pages that have one of these in their names, or all if there are none, with the
-/// program built for release.
-pub fn make(root: &Path, names: &[&str]) -> Result<(), String> {
-    super::command::succeed(super::command::cargo(root).args([
-        "build",
-        "--release",
-        "-p",
-        "alhazen-cli",
-        "--features",
-        "gpu",
-    ]))?;
-    let program = super::command::target(root).join("release/alhazen");
+/// program built for release. With [`WORDS`] nothing is drawn: each page keeps the pictures of its
+/// commands, and a new command is an error.
+pub fn make(root: &Path, arguments: &[&str]) -> Result<(), String> {
+    let (options, names): (Vec<&str>, Vec<&str>) = arguments.iter().partition(|word| word.starts_with("--"));
+    let is_drawn = match options[..] {
+        [] => true,
+        [WORDS] => false,
+        _ => {
+            return Err(format!(
+                "{} is no option of `gallery`, whose only one is {WORDS}",
+                options.join(" ")
+            ));
+        }
+    };
     let pages = pages(root)?;
     let is_chosen = |page: &Page| names.is_empty() || names.iter().any(|name| page.file().contains(name));
-    make_scenes(root, pages.iter().filter(|page| is_chosen(page)), Size::Whole)?;
+    let program = super::command::target(root).join("release/alhazen");
+    if is_drawn {
+        build(root)?;
+        make_scenes(root, pages.iter().filter(|page| is_chosen(page)), Size::Whole)?;
+    }
     for (i, page) in pages.iter().enumerate().filter(|(_, page)| is_chosen(page)) {
         println!("{}", page.title);
-        let neighbours = neighbours(&pages, i);
-        let draw = |lines: &[&str], compared: bool| {
-            if compared {
-                return command::compare(root, &program, lines);
-            }
-            lines.iter().map(|line| command::run(root, &program, line, Size::Whole, "picture")).collect()
-        };
-        let html = page.to_html(draw, neighbours)?;
         let path = root.join(PAGES).join(page.file());
-        fs::write(&path, html).map_err(|error| format!("{}: {error}", path.display()))?;
+        let kept = if is_drawn { HashMap::new() } else { figure::drawn(&read(&path)?) };
+        let draw = |lines: &[&str], compared: bool| match (is_drawn, compared) {
+            (false, _) => lines.iter().map(|&line| keep(&kept, line)).collect(),
+            (true, true) => command::compare(root, &program, lines),
+            (true, false) => {
+                lines.iter().map(|line| command::run(root, &program, line, Size::Whole, "picture")).collect()
+            }
+        };
+        let html = page.to_html(draw, neighbours(&pages, i))?;
+        if let Some(drawn) = page.thumbnail().and_then(|command| figure::drawn(&html).remove(command)) {
+            thumbnail::write(&drawn, &root.join(PAGES).join(page.thumbnail_file()))?;
+        }
+        write(&path, &html)?;
     }
-    let index = root.join(PAGES).join("index.html");
-    fs::write(&index, page::index(&pages)).map_err(|error| format!("{}: {error}", index.display()))
+    write(&root.join(PAGES).join("index.html"), &index(root)?.to_html(nothing, [None; 2])?)
+}
+
+/// Builds the program for release.
+fn build(root: &Path) -> Result<(), String> {
+    let arguments = ["build", "--release", "-p", "alhazen-cli", "--features", "gpu"];
+    super::command::succeed(super::command::cargo(root).args(arguments))
+}
+
+/// The picture that a page has of a command.
+fn keep(kept: &HashMap<String, Drawn>, command: &str) -> Result<Drawn, String> {
+    kept.get(command)
+        .cloned()
+        .ok_or_else(|| format!("the page has no picture of `{command}`; leave out {WORDS}"))
+}
+
+/// No pictures, for a page that has none or whose pictures do not matter.
+fn nothing(commands: &[&str], _: bool) -> Result<Vec<Drawn>, String> {
+    Ok(commands.iter().map(|_| Drawn::default()).collect())
+}
+
+/// The text of the index.
+fn index(root: &Path) -> Result<Page, String> {
+    Page::read(&root.join(INDEX), "")
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// Checks pages as they are, and runs the commands of all with small scenes and pictures, and with
@@ -105,7 +155,7 @@ fn pages(root: &Path) -> Result<Vec<Page>, String> {
     let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
-    paths.iter().map(|path| Page::read(path)).collect()
+    paths.iter().map(|path| Page::read(path, "pages/")).collect()
 }
 
 #[cfg(test)]

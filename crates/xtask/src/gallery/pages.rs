@@ -6,10 +6,15 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::command::Drawn;
-use super::page::{self, Page};
-use super::{PAGES, neighbours};
+use super::figure::without_drawings;
+use super::page::Page;
+use super::{INDEX, PAGES, index, neighbours, nothing, read};
 use crate::command::target;
+
+/// The fewest words of a page.
+const LEAST_WORDS: usize = 150;
+/// The places to which every page has a link: the code, and the book.
+const LEADS: [&str; 2] = ["href=\"../../crates/", "href=\"https://pbr-book.org/"];
 
 /// Pages have the words and commands of their texts, links hold, and a browser shows them.
 pub fn check(root: &Path, pages: &[Page]) -> Result<(), String> {
@@ -19,18 +24,29 @@ pub fn check(root: &Path, pages: &[Page]) -> Result<(), String> {
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter(|name| name.ends_with(".html"))
         .collect();
-    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(|error| format!("{name}: {error}"));
-    let nothing = |lines: &[&str], _| Ok(lines.iter().map(|_| Drawn::default()).collect());
-    let mut expected = vec![("index.html".to_owned(), page::index(pages))];
+    let mut expected = Vec::new();
+    let start = index(root)?.to_html(nothing, [None; 2])?;
     for (i, page) in pages.iter().enumerate() {
-        expected.push((page.file(), page.to_html(nothing, neighbours(pages, i))?));
-    }
-    for (name, html) in &expected {
-        let found = read(name)?;
-        if without_drawings(&found) != without_drawings(html) {
-            return Err(format!("{name} differs from its text: `cargo xtask gallery` makes it"));
+        let (name, html) = (page.file(), page.to_html(nothing, neighbours(pages, i))?);
+        if page.words() < LEAST_WORDS {
+            return Err(format!("{name} has {} words, fewer than {LEAST_WORDS}", page.words()));
         }
-        if let Some(link) = links(&found).find(|link| !names.contains(*link)) {
+        if let Some(lead) = LEADS.iter().find(|lead| !html.contains(**lead)) {
+            return Err(format!("{name} has no link with `{lead}`"));
+        }
+        let shown = [format!("href=\"{name}\""), format!("src=\"{}\"", page.thumbnail_file())];
+        if let Some(missing) = shown.iter().find(|shown| !start.contains(*shown)) {
+            return Err(format!("{INDEX} has no `{missing}`"));
+        }
+        expected.push((name, html));
+    }
+    expected.push(("index.html".to_owned(), start));
+    for (name, html) in &expected {
+        let found = read(&folder.join(name))?;
+        if without_drawings(&found) != without_drawings(html) {
+            return Err(format!("{name} differs from its text: `cargo xtask gallery --words` updates it"));
+        }
+        if let Some(link) = links(&found).find(|link| !folder.join(link).exists()) {
             return Err(format!("{name} refers to `{link}`, which does not exist"));
         }
     }
@@ -40,18 +56,11 @@ pub fn check(root: &Path, pages: &[Page]) -> Result<(), String> {
     show(root, &names)
 }
 
-/// A page without what its commands have drawn and told.
-fn without_drawings(html: &str) -> String {
-    let mut parts = html.split("<img ");
-    let first = parts.next().unwrap_or_default().to_owned();
-    let rest = |part: &str| part.split_once("</figure>").map_or(String::new(), |(_, rest)| rest.to_owned());
-    first + &parts.map(rest).collect::<String>()
-}
-
-/// Where links lead that are not pictures.
+/// The files that a page refers to.
 fn links(html: &str) -> impl Iterator<Item = &str> {
-    let targets = html.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next());
-    targets.filter(|link| !link.starts_with("data:") && !link.starts_with("https://"))
+    let attributes = ["href=\"", "src=\""].into_iter().flat_map(|opening| html.split(opening).skip(1));
+    let targets = attributes.filter_map(|rest| rest.split(['"', '#']).next());
+    targets.filter(|link| !link.is_empty() && !link.starts_with("data:") && !link.starts_with("https://"))
 }
 
 /// Counts in a browser the pictures that pages show, all of which must be whole.
@@ -96,7 +105,7 @@ fn show(root: &Path, names: &BTreeSet<String>) -> Result<(), String> {
     Ok(())
 }
 
-/// What tells of each page how many of its pictures are shown.
+/// The script that counts the pictures of each page that are shown.
 const COUNT: &str = "<pre></pre><script>
 onload = () => {
     const lines = [...document.querySelectorAll('iframe')].map(frame => {
@@ -114,18 +123,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pages_are_compared_without_their_drawings() {
-        let [old, new] = ["a", "b"].map(|picture| {
-            format!("<figure><pre>line</pre><img src=\"{picture}\"><pre>told</pre></figure>\n<p>text</p>")
-        });
-        assert_eq!(without_drawings(&old), without_drawings(&new));
-        assert_ne!(without_drawings(&old), without_drawings(&new.replace("line", "another")));
-        assert_ne!(without_drawings(&old), without_drawings(&new.replace("text", "another")));
-    }
-
-    #[test]
     fn links_are_those_to_files() {
-        let html = "<link href=\"data:,\"><a href=\"a.html\">a</a> <a href=\"https://b\">b</a>";
-        assert_eq!(Vec::from_iter(links(html)), ["a.html"]);
+        let html = "<link href=\"data:,\"><a href=\"a.html\">a</a> <a href=\"https://b\">b</a> <img src=\"c.jpg\">\
+                    <a href=\"d.md#e\">d</a> <img src=\"data:a\">";
+        assert_eq!(Vec::from_iter(links(html)), ["a.html", "d.md", "c.jpg"]);
     }
 }

@@ -78,7 +78,7 @@ const EDGES: [(&str, &[&str]); 26] = [
     ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering", "gpu", "alhazen", "view"]),
     ("translate", &[]),
     ("showcase", &["lanes", "math", "sampling", "planet"]),
-    ("xtask", &["spectrum", "showcase", "translate"]),
+    ("xtask", &["image", "spectrum", "showcase", "translate"]),
 ];
 
 /// Lines that every crate's manifest has: the workspace's lints, licence and edition.
