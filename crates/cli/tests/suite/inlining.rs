@@ -22,7 +22,7 @@ fn kernels_inline_all_operations_of_vectors() {
     };
     let listed = String::from_utf8(listed.stdout).unwrap();
     let symbols: Vec<&str> = listed.lines().filter_map(|line| line.split(' ').nth(2)).collect();
-    let kernels = symbols.iter().filter(|name| name.contains("alhazen_lanes6avx5123run"));
+    let kernels = symbols.iter().filter(|name| name.contains("alhazen_lanes15instruction_set6avx5123run"));
     assert!(kernels.count() > 50, "the program's symbols are not listed");
     let is_operation = |name: &&&str| OPERATIONS.iter().any(|module| name.contains(module));
     let called: Vec<&&str> = symbols.iter().filter(is_operation).collect();
