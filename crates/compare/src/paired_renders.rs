@@ -29,7 +29,7 @@ pub(super) struct Effort {
     pub rays: f64,
 }
 
-/// What all contenders render, and by what.
+/// The scene, view and device that all contenders share.
 pub(super) struct Subject {
     /// The scene.
     pub scene: Arc<Scene>,

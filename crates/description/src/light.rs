@@ -9,7 +9,7 @@ settings! {
     /// A light that is not a surface.
     #[derive(Clone, Debug)]
     pub struct LightDesc {
-        /// Which one.
+        /// The member of the set.
         kind: LightKind = LightKind::default() => ..;
         /// From the light's space to the world.
         world_from_light: TransformDesc = TransformDesc::default();

@@ -18,7 +18,7 @@ use crate::{
 pub struct MaterialDesc {
     /// Its name; may be empty.
     pub name: String,
-    /// Which one.
+    /// The member of the set.
     pub kind: MaterialKind,
     /// A tangent-space normal map.
     pub normal_map: Option<UvImageDesc>,

@@ -13,7 +13,7 @@ settings! {
     pub struct MediumDesc {
         /// Its name.
         name: String = String::new();
-        /// Which one.
+        /// The member of the set.
         kind: MediumKind = MediumKind::default() => ..;
         /// From the medium's space to the world.
         world_from_medium: TransformDesc = TransformDesc::default();

@@ -14,7 +14,7 @@ settings! {
     /// A shape with its transform, material, emission and media.
     #[derive(Clone, Debug)]
     pub struct ShapeDesc {
-        /// Which one.
+        /// The member of the set.
         kind: ShapeKind = ShapeKind::default() => ..;
         /// From the shape's space to the world (for a shape of an object: to the object's space).
         world_from_object: TransformDesc = TransformDesc::default();
@@ -323,7 +323,7 @@ pub struct ObjectDesc {
 /// An instance of an object.
 #[derive(Clone, Debug)]
 pub struct InstanceDesc {
-    /// Which one.
+    /// The member of the set.
     pub object: Handle<ObjectDesc>,
     /// From the object's space to the world (for an instance in an object: to the space of that).
     pub world_from_object: TransformDesc,

@@ -72,7 +72,7 @@ impl<V> TextureDesc<V> {
     }
 }
 
-/// What the values of a texture are: numbers or spectra.
+/// The values of a texture: numbers or spectra.
 pub trait TextureValue: SettingType + From<f32> + Clone + PartialEq {
     /// The format's name of their type.
     const NAME: &'static str;

@@ -5,8 +5,8 @@ fn scattered(s: Surface, bsdf: Bsdf, light: LightSample) -> vec4f {
     return bsdf_f(bsdf, s.wo, light.wi) * light.l * abs(dot(light.wi, s.ns));
 }
 
-// Russian roulette with a probability of survival: that, or 1 where it is certain, and 0 if the path
-// has ended.
+// Russian roulette with a probability of survival: the probability, or 1 where survival is certain,
+// and 0 if the path has ended.
 fn roulette(probability: f32, depth: u32) -> f32 {
     if (!plays_roulette(depth, probability)) {
         return 1;

@@ -137,7 +137,7 @@ fn shade(
     }
     let flags = bxdf_flags(bsdf);
     let context = light_context(s, flags);
-    // What chooses the light and its point, and the lobe and its direction.
+    // Random numbers of the light and its point, and the lobe and its direction.
     var u: array<vec2f, 4>;
     let samples_light = is_non_specular(flags) && !(HAS_RESERVOIRS && (*path).depth == 1);
     for (var i = select(2u, 0u, samples_light); i < 4; i++) {

@@ -43,8 +43,8 @@ fn pass_interface(path: ptr<function, Path>, s: Surface, t: f32) {
     (*path).ray = ray;
 }
 
-// What a path samples of a material: of a body the boundary alone, and roughened where that is
-// wanted of paths that rough surfaces have scattered before.
+// The BSDF that a path samples of a material: of a body the boundary alone, and roughened where
+// that is wanted of paths that rough surfaces have scattered before.
 fn roughen(bsdf: ptr<function, Bsdf>, rough_before: bool) {
     keep_boundary(bsdf);
     if (has_setting(SettingBit_Regularizes) && rough_before) {

@@ -127,7 +127,7 @@ fn survives(path: ptr<function, Path>) -> bool {
     return probability > 0;
 }
 
-// What a shadow ray does at the end of a part of its way; the light that it brings if that was the
+// Continues a shadow ray at the end of a segment; the light that it brings if that was the
 // last one.
 fn follow_shadow(c: ptr<function, Connection>, hit: Hit, s: Surface, flight: Flight, heroes: Heroes) -> vec4f {
     (*c).t_max -= hit.t;
@@ -186,7 +186,7 @@ fn scatter(
     return survives(path);
 }
 
-// What a path does at the end of its ray, or where a medium scatters it before: it adds light to
+// Shades a path at the end of its ray, or where a medium scatters it before: it adds light to
 // `l`, finds the connection of the vertex with a light and the next ray; false if it has ended.
 fn shade(
     path: ptr<function, Path>,
@@ -258,8 +258,8 @@ fn shade(
         context = light_context(s, flags);
     }
     let phase = HenyeyGreenstein(number(max((*path).medium, 1) + 1));
-    // What chooses the light and its point, the collisions of the shadow ray, and the lobe and its
-    // direction.
+    // Random numbers of the light and its point, the collisions of the shadow ray, and the lobe and
+    // its direction.
     let samples_light = has_setting(SettingBit_SamplesLights) && (in_medium || is_non_specular(flags));
     var u: array<vec2f, 6>;
     for (var i = select(4u, 0u, samples_light); i < 6; i++) {

@@ -1,6 +1,6 @@
 // Whitted's ray tracing: the light of all lights with shadows, perfect reflection and refraction.
 
-// `MOST_RAYS` is how many rays may wait: one for each scattering event of a path, and one more.
+// `MAX_RAYS` is how many rays may wait: one for each scattering event of a path, and one more.
 // `HAS_AMBIENT` says that skies of one colour cast no shadows.
 
 // A ray of the tree.
@@ -13,7 +13,7 @@ struct Branch {
 
 fn radiance(ray: Ray, near: Differentials, lambda: ptr<function, SampledWavelengths>) -> vec4f {
     var l = vec4f();
-    var waiting: array<Branch, MOST_RAYS>;
+    var waiting: array<Branch, MAX_RAYS>;
     waiting[0] = Branch(ray, near, vec4f(1), 0);
     var count = 1u;
     while (count > 0) {

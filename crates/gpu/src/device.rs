@@ -13,7 +13,7 @@ use wgpu::{
     BindingResource, BufferUsages, DeviceType, ExperimentalFeatures, Features, InstanceFlags, Limits,
 };
 
-use crate::bvh::MOST_FOR_RAY_QUERIES;
+use crate::bvh::MAX_FOR_RAY_QUERIES;
 use crate::pruning::{bindings, parsed};
 
 /// What buffers are used for.
@@ -154,7 +154,7 @@ impl Device {
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
             ..Limits::default()
         };
-        let most = MOST_FOR_RAY_QUERIES as u32;
+        let most = MAX_FOR_RAY_QUERIES as u32;
         let required_limits = if has_ray_queries {
             Limits {
                 max_blas_primitive_count: most,

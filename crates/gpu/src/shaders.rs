@@ -107,7 +107,7 @@ const RANDOM_NUMBERS: &str = include_str!("../shaders/random_numbers.wgsl");
 /// Subpaths from both ends: the camera's and the lights' ends, and what is between.
 const SUBPATHS: [&str; 3] = plumbing! { "importance" "light_paths" "subpaths" };
 
-/// What all paths do, and those in empty space, or those through media.
+/// Steps of all paths, and of those in empty space, or those through media.
 const PATH: [&str; 4] = plumbing! { "heroes" "generator" "under_surface" "path_hits" };
 const IN_VACUUM: [&str; 2] = plumbing! { "path" "path_loop" };
 const IN_MEDIA: [&str; 2] = plumbing! { "media" "vol_path" };
@@ -228,7 +228,7 @@ fn radiance(algorithm: &Algorithm, parts: Parts) -> Cow<'static, str> {
         Algorithm::RayCasting => include_str!("../shaders/ray_casting.wgsl"),
         Algorithm::Whitted(desc) => {
             let (rays, has_ambient) = (desc.max_depth + 1, desc.ambient);
-            let constants = format!("const MOST_RAYS = {rays}u;\nconst HAS_AMBIENT = {has_ambient};\n");
+            let constants = format!("const MAX_RAYS = {rays}u;\nconst HAS_AMBIENT = {has_ambient};\n");
             return (constants + include_str!("../shaders/whitted.wgsl")).into();
         }
         Algorithm::AmbientOcclusion(..) => include_str!("../shaders/ambient_occlusion.wgsl"),

@@ -209,7 +209,7 @@ fn Chances_pdf(this_: Chances, surface: OpenPbr, argument_2: array<vec3f, 2>, mo
     return DensityOf_run(DensityOf(this_, surface, wo, wi, mode, directions));
 }
 
-// What the glass of a surface scatters from a direction.
+// Light that the glass of a surface scatters from a direction.
 struct GlassShares {
     reflected: f32,
     refracted: f32,
@@ -217,7 +217,7 @@ struct GlassShares {
     through: f32,
 }
 
-// What glass scatters of the light to `wo`, of which from above this share is seen.
+// Light to `wo` that glass scatters, of which from above this share is seen.
 fn OpenPbr_scattered_by_glass(this_: OpenPbr, shares: Shares, rests: Rests, wo: vec3f, seen: f32) -> GlassShares {
     let is_inside = (wo.z < 0.0f) & !this_.stack.is_thin;
     let outside = shares.reflected * SampledSpectrum_average(this_.specular_color);

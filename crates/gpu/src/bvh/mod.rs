@@ -27,7 +27,7 @@ use node::Writer;
 use crate::records::record;
 pub(crate) use node::{ITEMS, TRIANGLES};
 pub(crate) use placed::Placed;
-pub(crate) use ray_queries::{MOST as MOST_FOR_RAY_QUERIES, Plan};
+pub(crate) use ray_queries::{MOST as MAX_FOR_RAY_QUERIES, Plan};
 
 /// The entries of the stack of `shaders/trace.wgsl`.
 pub(crate) const STACK: usize = 24;

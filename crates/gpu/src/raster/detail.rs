@@ -15,7 +15,7 @@ const FEWEST: u64 = 64;
 /// What a picture draws.
 #[derive(Default)]
 pub struct Drawn {
-    /// What it is seen by.
+    /// The camera that sees it.
     pub eye: Eye,
     /// The groups that are drawn as triangles, with their first instance and the number of them.
     pub groups: Vec<(u32, std::ops::Range<u32>)>,

@@ -68,7 +68,7 @@ const FRAMES: &[Option<VertexBufferLayout>] = &[Some(VertexBufferLayout {
     attributes: &vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4],
 })];
 
-/// What covers a pixel in part is over what is there; the nearness of that stays.
+/// A surface that covers a pixel in part is composited over the pixel; the nearness of that stays.
 const OVER: BlendState = BlendState {
     color: BlendComponent::OVER,
     alpha: BlendComponent {

@@ -16,7 +16,8 @@ record! {
         index: u32,
         samples: u32,
         before: u32,
-        /// Which half of the buffers is of this frame, and whether the other is of the one before.
+        /// The half of the buffers that is of this frame, and whether the other is of the one
+        /// before.
         half: u32,
         has_history: u32,
         /// Whether the camera moves, and the number of samples for which the filtered picture

@@ -60,9 +60,9 @@ enum LightPaths {
     None,
     /// One for each pixel, which has so many splats at most.
     Splatting(u32),
-    /// Those that chains propose, beside the samples of pixels.
+    /// Paths that chains propose, beside the samples of pixels.
     Chains(Chains),
-    /// Those whose photons the samples of pixels gather.
+    /// Light paths whose photons the samples of pixels gather.
     Photons(Photons),
 }
 

@@ -81,7 +81,7 @@ struct Made {
     places: u64,
 }
 
-/// What the stages lack for a scene and an algorithm, if anything: few scenes have it.
+/// Features that the stages lack for a scene and an algorithm, if anything: few scenes have it.
 pub fn lacking_stages(algorithm: &Algorithm, parts: Parts) -> Option<&'static str> {
     let Parts { media, subsurface, lenses, .. } = parts;
     let is_path = matches!(algorithm, Algorithm::Path(_) | Algorithm::VolPath(_));

@@ -50,7 +50,7 @@ pub(super) fn medium(number: u32) -> Option<MediumId> {
     number.checked_sub(1).map(MediumId)
 }
 
-/// What [`SegmentColumns`] have besides where there are media.
+/// Columns that [`SegmentColumns`] have besides where there are media.
 #[derive(Default)]
 pub(super) struct MediaColumns {
     /// The media of the rays, as numbers.

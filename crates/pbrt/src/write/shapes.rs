@@ -12,7 +12,7 @@ use crate::write::settings::{note_extension, parameters};
 use crate::write::statement::Statement;
 
 /// Meshes of more triangles or vertices are written to files.
-const LARGEST_INLINE: usize = 64;
+const MAX_INLINE: usize = 64;
 
 /// A shape without what is in force for it.
 pub(crate) fn shape(
@@ -40,7 +40,7 @@ pub(crate) fn shape(
     statement
 }
 
-/// What is not declared as a parameter.
+/// The fields that are not declared as parameters.
 fn write(to: &mut Statement, kind: &ShapeKind, desc: &SceneDesc, names: &Names, files: &mut Files) {
     match kind {
         ShapeKind::Sphere { radius, z_min, z_max, phi_max: _ } => {
@@ -80,7 +80,7 @@ fn write(to: &mut Statement, kind: &ShapeKind, desc: &SceneDesc, names: &Names, 
 /// A mesh: in its statement if it is small, else in a file. Files have no tangents and no motion.
 fn triangles(mesh: &MeshDesc, files: &mut Files) -> Statement {
     let MeshDesc { indices, positions, normals, tangents, uvs, face_indices, later } = mesh;
-    let is_small = indices.len() <= LARGEST_INLINE && positions.len() <= LARGEST_INLINE;
+    let is_small = indices.len() <= MAX_INLINE && positions.len() <= MAX_INLINE;
     if !is_small && tangents.is_empty() && later.is_empty() {
         let mut statement = Statement::new("Shape", "plymesh");
         match files.mesh(mesh, None) {

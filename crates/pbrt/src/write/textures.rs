@@ -54,7 +54,7 @@ impl Context<'_, '_> {
         });
     }
 
-    /// What is not declared as a parameter.
+    /// The fields that are not declared as parameters.
     fn kind<V: TextureValue>(&mut self, to: &mut Statement, kind: &TextureKind<V>) {
         match kind {
             TextureKind::Bilerp { mapping, .. } | TextureKind::Dots { mapping, .. } => {

@@ -47,7 +47,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 /// A row of the table of media.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// Which one.
+    /// The member of the set.
     pub kind: MediumKind,
     /// Its phase function.
     pub phase: HenyeyGreenstein,

@@ -7,7 +7,7 @@ use super::pores::lip;
 use crate::noise::fbm;
 use crate::picture;
 
-/// What of the front the picture of colours shows: the extent of x and z.
+/// The part of the front that the picture of colours shows: the extent of x and z.
 const EXTENT: f32 = 260.0;
 
 /// Coordinates of a point in the picture.

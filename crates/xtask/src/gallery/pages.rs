@@ -12,7 +12,7 @@ use super::{INDEX, PAGES, index, neighbours, nothing, read};
 use crate::command::target;
 
 /// The fewest words of a page.
-const LEAST_WORDS: usize = 150;
+const MIN_WORDS: usize = 150;
 /// The places to which every page has a link: the code, and the book.
 const LEADS: [&str; 2] = ["href=\"../../crates/", "href=\"https://pbr-book.org/"];
 
@@ -28,8 +28,8 @@ pub fn check(root: &Path, pages: &[Page]) -> Result<(), String> {
     let start = index(root)?.to_html(nothing, [None; 2])?;
     for (i, page) in pages.iter().enumerate() {
         let (name, html) = (page.file(), page.to_html(nothing, neighbours(pages, i))?);
-        if page.words() < LEAST_WORDS {
-            return Err(format!("{name} has {} words, fewer than {LEAST_WORDS}", page.words()));
+        if page.words() < MIN_WORDS {
+            return Err(format!("{name} has {} words, fewer than {MIN_WORDS}", page.words()));
         }
         if let Some(lead) = LEADS.iter().find(|lead| !html.contains(**lead)) {
             return Err(format!("{name} has no link with `{lead}`"));

@@ -182,20 +182,20 @@ impl<R: Real> Chances<R> {
     }
 }
 
-/// What the glass of a surface scatters from a direction.
+/// Light that the glass of a surface scatters from a direction.
 struct GlassShares<R> {
     /// By its facets, reflected.
     reflected: R,
     /// By them, refracted; of a sheet, what passes it.
     refracted: R,
-    /// What they keep between them, on the side where light comes from.
+    /// The part that they keep between them, on the side where light comes from.
     rest: R,
     /// The same on the other side.
     through: R,
 }
 
 impl<R: Real> OpenPbr<'_, R> {
-    /// What glass scatters of the light to `wo`, of which from above this share is seen.
+    /// Light to `wo` that glass scatters, of which from above this share is seen.
     #[inline(always)]
     fn scattered_by_glass(
         &self,

@@ -115,7 +115,8 @@ struct DiffuseBase<R: Real> {
     weight: R,
     /// The colour without what is scattered under the surface.
     over: SampledSpectrum<R>,
-    /// What the rest of it, within a thin wall, scatters, and the share of that which it transmits.
+    /// Light that the rest of it, within a thin wall, scatters, and the share of that which is
+    /// transmitted.
     scattered: SampledSpectrum<R>,
     forward: R,
 }
